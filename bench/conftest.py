@@ -25,6 +25,7 @@ ORDER = (
     "mapped",
     "bridges",
     "peers",
+    "generated",
     "attributes",
     "reading",
     "building",

@@ -131,6 +131,7 @@ TABLES = {
     "numbers": "| function | takes | gives |",
     "groups": "| function | takes | gives |",
     "elements": "| function | takes | gives |",
+    "arrays": "| function | gives | else, an error of kind |",
     "texts": "| function | gives | else, an error of kind |",
     "bytes": "| function | gives | else, an error of kind |",
     "images": "| function | takes | gives |",

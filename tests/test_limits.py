@@ -25,7 +25,8 @@ FRAMEWORKS = {
 ROOMS = {
     "language": ("language", "functions"),
     **{f"frameworks/{name}": tuple(f"frameworks/{each}" for each in rooms) for name, rooms in FRAMEWORKS.items()},
-    **{room: (room,) for room in ("parsing", "model", "lowering", "kernel", "runtime", "transports", "bridge", "logs")},
+    **{room: (room,) for room in ("parsing", "model", "lowering", "kernel", "runtime", "catalogue", "pipeline", "explain", "draft")},
+    **{room: (room,) for room in ("transports", "bridge", "logs")},
 }
 """Where limits stand, and the rooms that they are of."""
 

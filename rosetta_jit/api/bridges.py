@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack, cast
+from typing import TYPE_CHECKING, Any, Literal, Self, TypedDict, Unpack, cast
 
 from rosetta_jit.api.loading import answer, interpreted_kernel, library, sites_of
 from rosetta_jit.api.options import request_of, type_request
@@ -117,6 +117,31 @@ class Bridge(BridgeBase):
         """What the bridge became, as text: of both halves, or of the code, which is one."""
         return _build(self._request).stage(stage)
 
+    def announced(self, framework: str, half: Literal["decode", "encode"] = "encode") -> dict[str, str]:
+        """What a publisher says of the type that this bridge writes, by the names of transports' options. It is made anew: keep it.
+
+        Parameters
+        ----------
+        framework
+            ``ros1``: ``type``, ``md5`` and ``definition``; ``ros2``: ``type`` and ``hash``; ``protobuf``, for events of RSB: ``type``.
+        half
+            ``decode`` asks for the type that the bridge reads, for a subscriber.
+
+        Returns
+        -------
+        dict
+            Empty where that is a type of another framework, or of none.
+        """
+        build = _build(self._request)
+        from rosetta_jit.pipeline.bridge import BridgeBuild
+
+        if not isinstance(build, BridgeBuild):
+            return {}
+        build_of = build.halves[half == "encode"]
+        if build_of.wire_framework.name != framework:
+            return {}
+        return build_of.wire_framework.announced(build_of.types.wire, build_of.types.schema)
+
     def __repr__(self) -> str:
         return f"<Bridge from {ends(self._request.decode)} to {ends(self._request.encode)}>"
 
@@ -141,11 +166,6 @@ def _of_request(program: Any, request: BridgeRequest) -> Any:
     made = program.__new__(program)
     made._make(request)
     return made
-
-
-def bridge_of(request: BridgeRequest) -> Bridge:
-    """The bridge that answers a request."""
-    return _of_request(Bridge, request)
 
 
 def _build(request: BridgeRequest) -> BridgeBuild | TranscodingBuild:

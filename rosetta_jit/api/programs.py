@@ -235,6 +235,11 @@ def holder_type_of(request: Request) -> type[Holder]:
     return _holder_type({"type": to_plain(Ref(build.types.holder.name), build.types.schema), "manners": build.manners})
 
 
+def wires_of(request: Request) -> list[str]:
+    """The names of the mapping's wires, where a request is for one that has several; nothing is compiled."""
+    return _build(request).wires
+
+
 class Serialising:
     """The programs behind ``SerializeToString`` and its like: of each holder class its own, compiled when first used."""
 

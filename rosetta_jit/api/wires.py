@@ -11,6 +11,7 @@ from rosetta_jit.api.options import Options, request_of
 from rosetta_jit.api.programs import Decoder, Encoder, program_of
 from rosetta_jit.kernel.state import VALID
 from rosetta_jit.runtime.arrivals import ages
+from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -148,6 +149,13 @@ class Decoders(_Programs[Decoder]):
         holder = self._programs[wire](message)
         self._times[wire] = time
         return holder
+
+    def encoder(self, **options: Unpack[Options]) -> Encoder:
+        """What encodes the holder as a whole, in an encoding of its own framework: ``decoders.encoder(encoding="ros1")``."""
+        imported("rosetta_jit.pipeline.bridge")
+        from rosetta_jit.pipeline.bridge import closed
+
+        return program_of(closed(request_of("encode", options), self._requests[0]))
 
     @property
     def holder(self) -> Any:

@@ -6,9 +6,10 @@ import json
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.bridge.announcing import announced
 from rosetta_jit.bridge.configuration import read
 from rosetta_jit.bridge.patterns import is_pattern
-from rosetta_jit.bridge.translating import translator
+from rosetta_jit.bridge.translating import translation_of, translator
 from rosetta_jit.catalogue import bridge as words
 from rosetta_jit.errors import AddressError, BridgeError, RosettaError
 from rosetta_jit.transports.address import parse, settle
@@ -17,6 +18,7 @@ from rosetta_jit.transports.opening import COMMON
 
 if TYPE_CHECKING:
     from rosetta_jit.bridge.configuration import Configuration, Route, Rpc, Translation
+    from rosetta_jit.bridge.translating import Joining, Translate
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
     from rosetta_jit.transports.base import Transport
@@ -43,23 +45,24 @@ def mistakes(configuration: Configuration) -> list[Diagnostic]:
     places = configuration.places
     for route in configuration.routes:
         here = ("route", route.number)
-        source = places.of(*here, "source")
-        transport = _checked(route.source, "subscribe", source, found)
-        if transport is not None and is_pattern(route.source) and not transport.names:
-            found.append(words.cannot_list(source, transport.name))
-        if transport is not None and route.full == "block" and "pipe" not in transport.schemes:
-            found.append(words.cannot_wait(places.of(*here, "full"), transport.name))
+        source = places.of(*here, "sources" if route.sources else "source")
+        addresses = [address for _, address in route.sources] or [route.source]
+        for transport in [_checked(address, "subscribe", source, found) for address in addresses]:
+            if transport is not None and is_pattern(route.source) and not transport.names:
+                found.append(words.cannot_list(source, transport.name))
+            if transport is not None and route.full == "block" and "pipe" not in transport.schemes:
+                found.append(words.cannot_wait(places.of(*here, "full"), transport.name))
         key = "call" if route.calls else "target"
         target = _checked(route.target, "call" if route.calls else "publish", places.of(*here, key), found)
-        if target is not None and not route.calls and _lacks_type(route.target, target):
+        translate = _compiled(route, route.translation, configuration, here, found)
+        if target is not None and not route.calls and _lacks_type(route.target, target) and not announced(route.target, translate):
             found.append(words.no_type(places.of(*here, key), target.name, target.options["type"].meaning))
-        _compiled(route.translation, configuration, here, found)
     for rpc in configuration.rpcs:
         here = ("rpc", rpc.number)
         _checked(rpc.serve, "serve", places.of(*here, "serve"), found)
         _checked(rpc.call, "call", places.of(*here, "call"), found)
-        _compiled(rpc.request, configuration, (*here, "request"), found)
-        _compiled(rpc.reply, configuration, (*here, "reply"), found)
+        _compiled(None, rpc.request, configuration, (*here, "request"), found)
+        _compiled(None, rpc.reply, configuration, (*here, "reply"), found)
     return found
 
 
@@ -92,14 +95,18 @@ def _example(direction: str) -> str:
     return next(each.example for each in installed().values() if getattr(each, direction))
 
 
-def _compiled(translation: Translation, configuration: Configuration, here: tuple[str | int, ...], found: list[Diagnostic]) -> None:
+def _compiled(
+    route: Route | None, translation: Translation, configuration: Configuration, here: tuple[str | int, ...], found: list[Diagnostic]
+) -> Translate | Joining | None:
+    """Compile what a route, or one direction of a service, has for messages."""
     try:
-        translator(translation, configuration.search_path)
+        return translator(translation, configuration.search_path) if route is None else translation_of(route, configuration.search_path)
     except (RosettaError, TypeError, ValueError) as error:
         given: dict[str, Any] = json.loads(translation.text)
         keys = [key for key in ("decode_mapping", "encode_mapping", "decode_type", "encode_type", "between") if key in given]
         path = (*here, "mapping") if keys[:1] == ["decode_mapping"] else (*here, *keys[:1])
         found.append(words.bad_mapping(configuration.places.of(*path), str(error)))
+        return None
 
 
 def explained(configuration: Configuration) -> list[dict[str, Any]]:
@@ -111,6 +118,8 @@ def _explained_route(route: Route) -> dict[str, Any]:
     return {
         "route": route.name,
         "from": route.source,
+        "sources": dict(route.sources),
+        "on": route.on,
         "to": route.target,
         "by": _by(route.translation),
         "asks": route.calls,
@@ -151,13 +160,15 @@ def lines(configuration: Configuration) -> list[str]:
     shown: list[str] = []
     for each in explained(configuration):
         shown.append(each["route"])
-        shown.append(f"  from {each['from']}")
+        shown += [f"  from {address} ({wire})" for wire, address in each.get("sources", {}).items()] or [f"  from {each['from']}"]
         shown.append(f"  to   {each['to']}{' (a service, asked with each message)' if each.get('asks') else ''}")
         shown.append(f"  by   {each['by']}")
         if "back" in each:
             shown.append(f"  back {each['back']}, within {each['timeout_s']:g} s")
         else:
             rate = f"at most {each['rate']:g} a second, " if each["rate"] else ""
+            if each["sources"]:
+                shown.append(f"       behind messages of {each['on'] or 'any of them'}, once all have come")
             full = {"oldest": "the oldest is dropped", "newest": "new ones are dropped", "block": "the source waits"}[each["full"]]
             shown.append(f"       {rate}{each['queue']} wait for the target; when that many do, {full}")
     return shown

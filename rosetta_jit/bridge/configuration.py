@@ -1,11 +1,11 @@
 """The file of a bridge: what may stand in it, and what is wrong with it.
 
     [bridge]      metrics search_path interval
-    [[route]]     name source target | call, reply, mapping…, rate, queue, full
+    [[route]]     name source | sources, on; target | call, reply, mapping…, rate, queue, full
     [[rpc]]       name serve call, request, reply
 
 A mapping is what `rosetta_jit.Bridge` takes: `decode_mapping`, `encode_mapping` or types in place of them, `decode` and `encode` with their
-options, or `between` for messages that describe themselves. Without one, bytes pass as they are.
+options, or `between` for messages that describe themselves. Without one, bytes pass as they are. With `sources` it has several wires.
 """
 
 from __future__ import annotations
@@ -33,6 +33,8 @@ TRANSLATION = ("mapping", "decode_mapping", "encode_mapping", "decode_type", "en
 KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
     "name": (str, "a text"),
     "source": (str, "the address of a channel"),
+    "sources": (dict, 'addresses by the names of wires: { pose = "ros1:/pose", velocity = "ros1:/twist" }'),
+    "on": (str, "the name of a wire"),
     "target": (str, "the address of a channel"),
     "call": (str, "the address of a service"),
     "serve": (str, "the address of a service"),
@@ -57,7 +59,7 @@ KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
 """What values may be, by key."""
 
 POSITIVE = ("rate", "queue", "timeout", "interval")
-ROUTE = ("name", "source", "target", "call", "timeout", "rate", "queue", "full", *TRANSLATION)
+ROUTE = ("name", "source", "sources", "on", "target", "call", "timeout", "rate", "queue", "full", *TRANSLATION)
 RPC = ("name", "serve", "call", "timeout", "request", "reply")
 
 
@@ -72,7 +74,8 @@ class Translation:
 class Route:
     """Messages from one channel to another, or to a service.
 
-    ``number`` is its place among the routes of the file. Where ``calls``, the target is a service, which each message asks.
+    ``number`` is its place among the routes of the file. Where ``calls``, the target is a service, which each message asks. A route that
+    joins messages of several wires has ``sources``, the address of each, and goes on behind messages of the wire ``on``, or of all.
     """
 
     name: str
@@ -85,6 +88,8 @@ class Route:
     rate: float | None = None
     queue: int = QUEUE
     full: Full = "oldest"
+    sources: tuple[tuple[str, str], ...] = ()
+    on: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,11 +190,14 @@ class _Reading:
         place = ("route", number)
         before = len(self.problems)
         self.known(table, ROUTE, "a route", place)
-        if "source" not in table or ("target" in table) == ("call" in table):
-            self.problems.append(words.missing_key(self.places.of(*place), "this route", "a `source`, or one of `target` and `call`"))
+        if ("source" in table) == ("sources" in table) or ("target" in table) == ("call" in table):
+            needed = "one of `source` and `sources`, or one of `target` and `call`"
+            self.problems.append(words.missing_key(self.places.of(*place), "this route", needed))
+        sources = self.sources(table, place) if len(self.problems) == before else ()
         if len(self.problems) > before:
             return Route(str(table.get("name", number)), "", "", Translation(), number)
-        source, target = str(table["source"]), str(table.get("target") or table.get("call"))
+        source = " + ".join(address for _, address in sources) or str(table["source"])
+        target = str(table.get("target") or table.get("call"))
         if source == target:
             self.problems.append(words.same_address(self.places.of(*place, "target"), source))
         return Route(
@@ -203,7 +211,20 @@ class _Reading:
             rate=float(table["rate"]) if "rate" in table else None,
             queue=int(table.get("queue", QUEUE)),
             full=cast("Full", table.get("full", "oldest")),
+            sources=sources,
+            on=str(table.get("on", "")),
         )
+
+    def sources(self, table: dict[str, Any], place: tuple[str | int, ...]) -> tuple[tuple[str, str], ...]:
+        """The address of each wire of a route that joins several."""
+        given = cast("dict[str, object]", table.get("sources", {}))
+        if "sources" in table and (not given or not all(isinstance(each, str) and "*" not in each for each in given.values())):
+            self.problems.append(words.bad_value(self.places.of(*place, "sources"), "sources", KINDS["sources"][1]))
+        if given and not ("mapping" in table or "decode_mapping" in table):
+            self.problems.append(words.missing_key(self.places.of(*place, "sources"), "this route", "a `mapping` of several wires"))
+        if "on" in table and table["on"] not in given:
+            self.problems.append(words.bad_value(self.places.of(*place, "on"), "on", "one of the names in `sources`"))
+        return tuple((wire, str(address)) for wire, address in given.items())
 
     def rpc(self, table: dict[str, Any], number: int) -> Rpc:
         place = ("rpc", number)

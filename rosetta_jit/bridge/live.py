@@ -12,7 +12,7 @@ from time import monotonic, perf_counter_ns
 from typing import TYPE_CHECKING
 
 from rosetta_jit.bridge.counting import RouteCounts
-from rosetta_jit.bridge.translating import Stateful, state_of
+from rosetta_jit.bridge.translating import Joining, Stateful, state_of
 from rosetta_jit.errors import MessageError, TransportError
 
 if TYPE_CHECKING:
@@ -33,13 +33,26 @@ LINGER_S = 5.0
 """How long a route that is closed waits for its target to take what waits."""
 
 
+class Inlet:
+    """What brings the messages of one wire to a route that joins several."""
+
+    def __init__(self, live: LiveRoute, wire: str) -> None:
+        self.live, self.wire = live, wire
+        self.lost, self.begin_anew = live.lost, live.begin_anew
+
+    def deliver(self, message: Message) -> None:
+        """Take a message from the wire's source."""
+        self.live.join(self.wire, message)
+
+
 class LiveRoute:
     """One route while it runs.
 
     Parameters
     ----------
     translate
-        What turns messages into those of the target; None leaves them as they are.
+        What turns messages into those of the target; None leaves them as they are. Where it joins several wires, messages come by
+        an `Inlet` for each of them.
     say
         Takes lines for people.
 
@@ -49,11 +62,14 @@ class LiveRoute:
         Why it does not run; empty while it does.
     """
 
-    def __init__(self, route: Route, translate: Translate | None, say: Say) -> None:
+    wire = ""
+
+    def __init__(self, route: Route, translate: Translate | Joining | None, say: Say) -> None:
         self.route = route
         self.counts = RouteCounts()
         self.problem = "not open yet"
-        self._translate = translate
+        self._joining = translate if isinstance(translate, Joining) else None
+        self.translate = None if isinstance(translate, Joining) else translate
         self._say = say
         self._sink: Sink | None = None
         self._caller: Caller | None = None
@@ -78,14 +94,20 @@ class LiveRoute:
         return self._sink if self._sink is not None else self._caller
 
     @property
+    def live(self) -> LiveRoute:
+        """Itself: see `Inlet`."""
+        return self
+
+    @property
     def state(self) -> Mapping[str, float | str]:
         """What its mappings keep from one message to the next."""
-        return state_of(self._translate)
+        return state_of(self._joining or self.translate)
 
     def begin_anew(self) -> None:
         """Let the next message be the first one for its mappings."""
-        if isinstance(self._translate, Stateful):
-            self._translate.reset()
+        kept = self._joining or self.translate
+        if isinstance(kept, Stateful | Joining):
+            kept.reset()
             self._say(f"{self.route.name}: its source came back, and the state of its mapping begins anew")
 
     @property
@@ -103,12 +125,36 @@ class LiveRoute:
                 self.lost("above its rate")
                 return
             self._due_ns = max(self._due_ns + self._interval_ns, begun)
-        if self._translate is not None:
+        if self.translate is not None:
             try:
-                data = self._translate(data)
+                data = self.translate(data)
             except MessageError as error:
                 self._failed(error)
                 return
+        self._go_on(message, data, begun)
+
+    def join(self, wire: str, message: Message) -> None:
+        """Take a message of one of several wires; what they have filled together goes on behind some of them."""
+        begun, counts, joining = perf_counter_ns(), self.counts, self._joining
+        assert joining is not None, "such a route has one source"
+        counts.taken += 1
+        counts.bytes_in += len(message.data)
+        try:
+            with joining.turn:
+                if not joining.take(wire, message.data):
+                    return
+                if begun < self._due_ns:
+                    self.lost("above its rate")
+                    return
+                self._due_ns = max(self._due_ns + self._interval_ns, begun) if self._interval_ns else 0
+                data = joining.message()
+        except MessageError as error:
+            self._failed(error)
+            return
+        self._go_on(message, data, begun)
+
+    def _go_on(self, message: Message, data: bytes | memoryview, begun: int) -> None:
+        """Send what has become of a message, or let it wait."""
         time = message.sent or message.time or None
         if self._caller is None and not self._waiting and not self._held and self._send(data, time, begun):
             return
@@ -119,7 +165,10 @@ class LiveRoute:
         if self._sender == threading.get_ident():
             self._refusal = reason  # of the message that is being sent, which may be sent again
             return
-        if count and self.counts.drop(reason, count):
+        if not count:  # a peer was refused, and tries again and again
+            if reason not in self.counts.dropped and self.counts.drop(reason, 0):
+                self._say(f"{self.route.name}: {reason}")
+        elif self.counts.drop(reason, count):
             self._say(f"{self.route.name}: {self.counts.dropped[reason]} dropped: {reason}")
 
     def _failed(self, error: MessageError) -> None:

@@ -7,12 +7,13 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.bridge.announcing import announced, served, wanted
 from rosetta_jit.bridge.configuration import Route
 from rosetta_jit.bridge.limits import MAX_FOUND, MAX_OPENING
-from rosetta_jit.bridge.live import LINGER_S, LiveRoute
+from rosetta_jit.bridge.live import LINGER_S, Inlet, LiveRoute
 from rosetta_jit.bridge.patterns import is_pattern, matching, place_to_list
 from rosetta_jit.bridge.services import LiveService
-from rosetta_jit.bridge.translating import translator
+from rosetta_jit.bridge.translating import translation_of, translator
 from rosetta_jit.errors import RosettaError
 from rosetta_jit.transports.opening import call, names, publish, serve, subscribe
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from rosetta_jit.transports.end import End
 
     Live = LiveRoute | LiveService
+    _Key = tuple[str, tuple[tuple[str, str], ...]]  # an address, and what is asked of it
 
 RETRY_S = 1.0
 """How long after a channel could not be opened it is tried again, and after which channels are listed again."""
@@ -41,8 +43,8 @@ class _Shared:
 
     source: Source | None = None
 
-    def __init__(self, first: LiveRoute) -> None:
-        self.routes: tuple[LiveRoute, ...] = (first,)
+    def __init__(self, first: LiveRoute | Inlet) -> None:
+        self.routes: tuple[LiveRoute | Inlet, ...] = (first,)
         self._sessions = 1
 
     def deliver(self, message: Message) -> None:
@@ -75,7 +77,7 @@ class Running:
         self.configuration = configuration
         self.live: dict[str, Live] = {}
         self._say = say
-        self._sources: dict[str, _Shared] = {}
+        self._sources: dict[_Key, _Shared] = {}
         self._lock = threading.RLock()
         self._stopping = threading.Event()
         self._patterns: set[str] = set()
@@ -140,8 +142,10 @@ class Running:
     def _ends_of(self, each: Live) -> tuple[End | None, End | None]:
         if isinstance(each, LiveService):
             return each.server, each.caller
-        shared = self._sources.get(each.route.source)
-        return None if shared is None else shared.source, each.target
+        source = next(
+            (shared.source for shared in tuple(self._sources.values()) if any(known.live is each for known in shared.routes)), None
+        )
+        return source, each.target
 
     # --- which routes there are ----------------------------------------------------------------------------------------
 
@@ -161,7 +165,7 @@ class Running:
 
     def _made(self, route: Route | Rpc, folders: tuple[str, ...]) -> Live:
         if isinstance(route, Route):
-            return LiveRoute(route, translator(route.translation, folders), self._say)
+            return LiveRoute(route, translation_of(route, folders), self._say)
         return LiveService(route, translator(route.request, folders), translator(route.reply, folders), self._say)
 
     def _drop(self, name: str) -> None:
@@ -172,12 +176,12 @@ class Running:
     def _forget(self, gone: Live) -> None:
         """Bring a route no more messages; where it was the last one of its source, close that."""
         with self._lock:
-            for address, shared in [*self._sources.items()]:
-                left = tuple(each for each in shared.routes if each is not gone)
+            for key, shared in [*self._sources.items()]:
+                left = tuple(each for each in shared.routes if each.live is not gone)
                 shared.routes = left
                 if not left:
                     shared.close()
-                    del self._sources[address]
+                    del self._sources[key]
 
     # --- opening -------------------------------------------------------------------------------------------------------
 
@@ -234,8 +238,8 @@ class Running:
             if isinstance(each, LiveRoute):
                 self._open_route(each)
             else:
-                each.open(call(each.route.call))
-                each.server = serve(each.route.serve, each.answer)
+                each.open(call(each.route.call, **announced(each.route.call, each.request)))
+                each.server = serve(each.route.serve, each.answer, **served(each.route.serve, each.request, each.reply))
         except RosettaError as error:
             if each.problem != str(error):
                 self._say(f"{name}: {error}")
@@ -250,24 +254,36 @@ class Running:
         route = each.route
         if each.target is None:
             if route.calls:
-                each.open(None, call(route.target))
+                each.open(None, call(route.target, **announced(route.target, each.translate)))
             else:
-                each.open(publish(route.target, lost=each.lost), None)
+                each.open(publish(route.target, lost=each.lost, **announced(route.target, each.translate)), None)
         self._listen(each)
         each.problem = ""
 
     def _listen(self, each: LiveRoute) -> None:
-        """Let a source bring its messages to this route, too."""
-        address = each.route.source
+        """Let its source bring its messages to this route, too; or those of all wires."""
+        inlets = [(address, Inlet(each, wire)) for wire, address in each.route.sources]
+        for address, inlet in inlets or [(each.route.source, each)]:
+            options = wanted(address, each.translate)
+            key = address, tuple(sorted(options.items()))
+            if not self._joins(key, inlet):
+                shared = _Shared(inlet)
+                shared.source = subscribe(address, shared.deliver, lost=shared.lost, **options)
+                with self._lock:
+                    first = self._sources.setdefault(key, shared)
+                if first is not shared:  # another route was quicker
+                    shared.close()
+                    self._joins(key, inlet)
+
+    def _joins(self, key: _Key, inlet: LiveRoute | Inlet) -> bool:
+        """Whether there is such a source already: it then brings its messages to this inlet, too."""
         with self._lock:
-            shared = self._sources.get(address)
-            if shared is not None:
-                shared.routes = (*shared.routes, each)
-                return
-        shared = _Shared(each)
-        shared.source = subscribe(address, shared.deliver, lost=shared.lost)
-        with self._lock:
-            self._sources[address] = shared
+            shared = self._sources.get(key)
+            if shared is None:
+                return False
+            if not any(known.live is inlet.live and known.wire == inlet.wire for known in shared.routes):
+                shared.routes = (*shared.routes, inlet)
+            return True
 
 
 def _is_pattern(route: Route | Rpc) -> bool:

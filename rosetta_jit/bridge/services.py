@@ -26,7 +26,7 @@ class LiveService:
         self.counts = RouteCounts()
         self.problem = "not open yet"
         self.server: Server | None = None
-        self._request, self._reply = request, reply
+        self.request, self.reply = request, reply
         self.caller: Caller | None = None
         self._say = say
 
@@ -38,7 +38,7 @@ class LiveService:
     @property
     def state(self) -> dict[str, float | str]:
         """What the mappings of requests and of replies keep from one message to the next."""
-        sides = (("request", self._request), ("reply", self._reply))
+        sides = (("request", self.request), ("reply", self.reply))
         return {f"{side}.{name}": value for side, translate in sides for name, value in state_of(translate).items()}
 
     def answer(self, message: Message) -> bytes:
@@ -47,10 +47,10 @@ class LiveService:
         counts.taken += 1
         counts.bytes_in += len(message.data)
         try:
-            data = message.data if self._request is None else self._request(message.data)
+            data = message.data if self.request is None else self.request(message.data)
             assert self.caller is not None
             answered = self.caller(data, timeout=self.route.timeout_s).data
-            reply = bytes(answered) if self._reply is None else self._reply(answered)
+            reply = bytes(answered) if self.reply is None else self.reply(answered)
         except (MessageError, TransportError) as error:
             if counts.fail(f"{error.kind}: {error.detail}"):
                 self._say(f"{self.route.name}: {error}")

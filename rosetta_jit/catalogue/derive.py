@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.limits import MAX_PLACES
 from rosetta_jit.catalogue.mapping import error, shorten
 
 if TYPE_CHECKING:
@@ -11,9 +12,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
-
-MAX_SHOWN = 5
-"""Fields that one report lists."""
 
 
 OTHER_PARTS = "the text has another number of parts than the mapping reads"
@@ -50,7 +48,7 @@ def changes(span: Span | None, function: str) -> Diagnostic:
 
 def several_fields(span: Span | None, places: Sequence[str]) -> Diagnostic:
     """A relation among more fields of the wire than one, some of which nothing else sets."""
-    listed = " and ".join(f"`{shorten(place)}`" for place in places[:MAX_SHOWN])
+    listed = " and ".join(f"`{shorten(place)}`" for place in places[:MAX_PLACES])
     message = f"one rule cannot set several fields of the wire: nothing else says what {listed} are"
     return error(
         "several-fields", message, span, help_=f"relate all but one of them to the holder by rules of their own, or {_by_hand(places)}"
@@ -121,5 +119,5 @@ def too_complex(span: Span | None) -> Diagnostic:
 
 def _by_hand(places: Sequence[str]) -> str:
     """What to write where nothing can be derived."""
-    rules = ", ".join(f"`{shorten(place)} = ...`" for place in places[:MAX_SHOWN])
+    rules = ", ".join(f"`{shorten(place)} = ...`" for place in places[:MAX_PLACES])
     return f"say in `pack-rules:` what the wire is to have: {rules}"

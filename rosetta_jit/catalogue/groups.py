@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def no_group(span: Span | None, called: str, known: Collection[str]) -> Diagnostic:
     """Several places, and a value that is no group of numbers; it may be the call of a function of several values, misspelt."""
-    meant = closest(called[:100], list(known)) if called else None
+    meant = closest(called, known) if called else None
     how = "functions of several values give one for each place: `.roll, .pitch, .yaw = euler(.q)`; so does a list: `.x, .y = [1.0, 2.0]`"
     help_ = f"did you mean `{meant}`?" if meant else how
     return error("no-group", "several places take a value of several numbers", span, "one value", help_=help_)

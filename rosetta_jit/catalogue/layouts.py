@@ -26,6 +26,13 @@ FORMS = {
     "number_bytes": "`number_bytes(numbers, float32)`, and behind it a condition: whether the high byte of each comes first",
     "upper_triangle": "`upper_triangle(array, size)`",
     "symmetric": "`symmetric(array, size)`",
+    "deltas": "`deltas(.ticks)`",
+    "running_sums": "`running_sums(.steps)`",
+    "repeated": "`repeated(.values, .counts)`",
+    "run_values": "`run_values(.cells)`",
+    "run_lengths": "`run_lengths(.cells)`",
+    "bits": "`bits(.mask)`, or `bits(.mask, true)` where the highest bit of each byte comes first",
+    "bit_bytes": "`bit_bytes(.flags)`, or `bit_bytes(.flags, true)` where the first is the highest bit of a byte",
 }
 """What a function of arrays takes."""
 
@@ -91,6 +98,11 @@ def other_filter(span: Span | None) -> Diagnostic:
         span,
         help_="write the same `where` in all rules for the elements of one array, so that they keep the same ones",
     )
+
+
+def whole_arrays(span: Span | None, function: str, takes: Sequence[str]) -> Diagnostic:
+    """Arguments of a function that makes an array of others."""
+    return error("arguments", f"`{function}` takes {' and '.join(takes)}, as a whole", span, help_=f"write {FORMS[function]}")
 
 
 def no_number_type(span: Span | None, types: Iterable[str]) -> Diagnostic:
@@ -210,7 +222,7 @@ def same_order(span: Span | None) -> Diagnostic:
 
 def one_value(span: Span | None, called: str = "", reductions: Sequence[str] = ()) -> Diagnostic:
     """Many elements for a place that holds one value; what is ``called`` with them may be a reduction, misspelt."""
-    meant = closest(called[:100], reductions) if called else None
+    meant = closest(called, reductions) if called else None
     help_ = f"did you mean `{meant}`?" if meant else "take one of them, `.n = .a[0]`, or one value of all: `.n = sum(.a[])`"
     return error("many-elements", "many elements are assigned to one value", span, "no array", help_=help_)
 

@@ -164,6 +164,13 @@ def several_types(name: str, topic: str, types: Iterable[str]) -> Diagnostic:
     )
 
 
+def wire_without_topic(name: str, wire: str) -> Diagnostic:
+    """A wire of a mapping whose messages nobody has named a topic for."""
+    return Diagnostic(
+        "error", "log-wire", f"{name}: it is not said which topic has the messages of wire `{wire}`", help=f'add `{{"{wire}": "/topic"}}`'
+    )
+
+
 def no_type(name: str, topic: str, details: str) -> Diagnostic:
     """A log that does not tell what its messages are."""
     return Diagnostic(

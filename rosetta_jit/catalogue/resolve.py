@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.limits import MAX_NAMES, MAX_QUOTED
 from rosetta_jit.catalogue.mapping import error, note, shorten, warning
 from rosetta_jit.catalogue.spelling import closest
 
@@ -14,15 +15,10 @@ if TYPE_CHECKING:
     from rosetta_jit.model.expr import Member
     from rosetta_jit.source import Span
 
-MAX_NAMES = 20
-MAX_CANDIDATES = 500
-MAX_QUOTED = 40
-
 
 def nearest(name: str, known: Collection[str]) -> str | None:
-    """The known name that somebody who wrote ``name`` may have meant; the work is bounded for hostile schemas."""
-    candidates = [other for other in sorted(known)[:MAX_CANDIDATES] if len(other) <= 100]
-    return closest(name[:100], candidates)
+    """The known name that somebody who wrote ``name`` may have meant."""
+    return closest(name, sorted(known))
 
 
 def did_you_mean(name: str, known: Collection[str]) -> str:

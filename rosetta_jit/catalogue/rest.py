@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.limits import MAX_REST
 from rosetta_jit.catalogue.mapping import error, note, shorten
 
 if TYPE_CHECKING:
@@ -11,8 +12,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
-
-MAX_REST = 200
 
 
 def no_same_names(span: Span | None, target: str, origin: str) -> Diagnostic:

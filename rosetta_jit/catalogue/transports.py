@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ def no_scheme(span: Span, known: Iterable[str]) -> Diagnostic:
 def unknown_scheme(span: Span, name: str, known: Iterable[str]) -> Diagnostic:
     """No transport of that name."""
     names = tuple(known)
-    near = get_close_matches(name, names, 1)
-    text = f"did you mean `{near[0]}:`?" if near else f"known are {', '.join(f'`{each}:`' for each in names)}"
+    near = closest(name, names)
+    text = f"did you mean `{near}:`?" if near else f"known are {', '.join(f'`{each}:`' for each in names)}"
     return Diagnostic("error", "unknown-transport", f"there is no transport `{name}`", span, "not known", help=text)
 
 
@@ -37,8 +37,8 @@ def cannot(span: Span, name: str, what: str) -> Diagnostic:
 def unknown_option(span: Span | None, name: str, known: Iterable[str]) -> Diagnostic:
     """A word behind the `?` that the transport does not have."""
     names = sorted(known)
-    near = get_close_matches(name, names, 1)
-    text = f"did you mean `{near[0]}`?" if near else f"known are {', '.join(f'`{each}`' for each in names)}"
+    near = closest(name, names)
+    text = f"did you mean `{near}`?" if near else f"known are {', '.join(f'`{each}`' for each in names)}"
     return Diagnostic("error", "unknown-option", f"there is no option `{name}`", span, "not known here", help=text)
 
 

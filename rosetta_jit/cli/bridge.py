@@ -86,6 +86,7 @@ class _Session:
     def run(self) -> int:
         self._listen_to_signals()
         self._serve_metrics(None)
+        before = sys.getswitchinterval()
         sys.setswitchinterval(SWITCH_S)
         try:
             self._bridge.start()
@@ -95,6 +96,7 @@ class _Session:
             self._bridge.stop()
             if self._metrics is not None:
                 self._metrics.close()
+            sys.setswitchinterval(before)
             self._show(self._bridge.snapshot())
         return 0
 

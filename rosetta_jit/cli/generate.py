@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_parameters, add_wire, encoding_of, parameters_of, wire_of
-from rosetta_jit.file_errors import whole
+from rosetta_jit.file_errors import named, whole
 
 if TYPE_CHECKING:
     import argparse
@@ -67,13 +68,16 @@ def _directions(text: str) -> tuple[str, ...]:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """All files are made before any is written, and each is whole or not there; one line says what each is."""
+    """All files are made before any is written, and none gets its name before all are whole; one line says what each is."""
     texts = _object(arguments) if arguments.emit == "object" else _source(arguments)
     folder = Path(cast("str", arguments.output))
-    for name, text in texts.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        with whole(folder / name) as path:
-            path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with ExitStack() as files:
+        for name, text in texts.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            path = files.enter_context(whole(folder / name))
+            with named(folder / name):
+                path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    for name in texts:
         print(f"wrote {folder / name}")
     return 0
 

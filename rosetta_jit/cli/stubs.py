@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
+from keyword import iskeyword
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,7 +30,7 @@ def add(commands: Commands) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Write the stub."""
     from rosetta_jit.api.options import request_of, type_request
-    from rosetta_jit.api.programs import holder_type_of
+    from rosetta_jit.api.programs import holder_type_of, wires_of
     from rosetta_jit.stubs.module import stub
 
     is_mapping = str(arguments.what).endswith(".mapping")
@@ -36,9 +38,18 @@ def run(arguments: argparse.Namespace) -> int:
     options["imports"] = arguments.imports
     what = str(arguments.what)
     request = request_of("decode", options, mapping=what) if is_mapping else type_request("decode", what, options)
-    text = stub(holder_type_of(request).family_, what, options, is_mapping=is_mapping)
+    wires = wires_of(request)
+    family = holder_type_of(replace(request, wire="") if wires else request).family_
+    text = stub(family, what, options, is_mapping=is_mapping, wires=_attributes(wires) if wires else None)
     if arguments.output is None:
         sys.stdout.write(text)
     else:
         arguments.output.write_text(text, encoding="ascii")
     return 0
+
+
+def _attributes(wires: list[str]) -> list[str]:
+    """The wires whose programs are attributes of `rosetta_jit.Decoders`: not those whose name another attribute has, or Python itself."""
+    from rosetta_jit.api.wires import Decoders
+
+    return [wire for wire in wires if not hasattr(Decoders, wire) and not iskeyword(wire)]

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import draft as words
 from rosetta_jit.draft.leaves import leaves_of, with_units
+from rosetta_jit.draft.limits import MAX_ROUNDS
 from rosetta_jit.draft.rules import decisions
 from rosetta_jit.draft.text import Sides, draft_text
 from rosetta_jit.errors import MappingError
@@ -33,8 +34,6 @@ NAME = "draft.mapping"
 
 UNITS = ("ros/sensor_msgs.units", "ros/geometry_msgs.units", "ros/nav_msgs.units", "rst/rst.units")
 """Side files that say in what the shipped types measure."""
-
-MAX_ROUNDS = 8
 
 
 def draft(

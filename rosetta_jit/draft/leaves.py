@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.draft.limits import MAX_DEPTH, MAX_LEAVES
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Struct
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -13,9 +14,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.language.scope import Message
     from rosetta_jit.model.types import Field, Type
-
-MAX_LEAVES = 2_000
-MAX_DEPTH = 8
 
 Names = tuple[str, ...]
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.draft.conversions import converted, kind
+from rosetta_jit.draft.limits import MAX_FIELDS
 from rosetta_jit.draft.moments import best_clock, clocks, numbers, of_clock, of_number
 from rosetta_jit.draft.pairs import FAMILIES, around, fit, pairs
 from rosetta_jit.draft.words import tokens
@@ -23,9 +24,6 @@ GUESS = 0.25
 
 STRIDES = frozenset(("step", "stride", "pitch", "quantum"))
 """Words for how far the rows of an image are apart."""
-
-MAX_FIELDS = 64
-"""Fields that one array may hold."""
 
 
 @dataclass(frozen=True, slots=True)

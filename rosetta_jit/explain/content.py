@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.errors import ReportError
 from rosetta_jit.explain.cost import Cost, cost_of
-from rosetta_jit.explain.lines import MAX_LINES, Line, Lines
+from rosetta_jit.explain.limits import MAX_RULES
+from rosetta_jit.explain.lines import Line, Lines
 from rosetta_jit.explain.nodes import nodes
 from rosetta_jit.explain.rows import Row, rows
 from rosetta_jit.frameworks.installed import Readers, installed
@@ -123,7 +124,7 @@ def _direction(name: Literal["unpack", "pack"], written: Mapping, checked: Check
     if not rules or not derived:
         return None
     source, target = (checked.wire, checked.holder) if name == "unpack" else (checked.holder, checked.wire)
-    lines = tuple(islice(Lines.of(written, name, rules, checked.uses).lines(derived), MAX_LINES))
+    lines = tuple(islice(Lines.of(written, name, rules, checked.uses).lines(derived), MAX_RULES))
     refusals = [rule.text for rule in rules_within(rules) if isinstance(rule, typed.Reject)]
     refusals += [node.reason for node in nodes(rules) if isinstance(node, typed.Choice) and node.otherwise is None]
     losses = tuple(_losses(rules, lines, source, target))
@@ -134,7 +135,7 @@ def _cost_in(checked: Checked, name: str, request: Request) -> KernelCost | str:
     """The cost of the kernel; of several wires, that of the one that is named."""
     wires = [each.name for each in checked.mapping.wires]
     if wires and request.wire is None:
-        return f"each wire has its own: add `--wire` with one of {', '.join(wires)}"
+        return f"each wire has one of its own: `--wire {wires[0]}` shows what it costs"
     return _cost(name, request, _field_names(checked))
 
 

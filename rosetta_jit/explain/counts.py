@@ -10,6 +10,7 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.explain.limits import MAX_COUNT_DEPTH, MAX_COUNT_TEXT
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.printer import SYMBOL
 from rosetta_jit.kernel.rewrite import locals_in
@@ -17,11 +18,6 @@ from rosetta_jit.kernel.shape import statements
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-
-MAX_DEPTH = 12
-"""Definitions that are followed."""
-
-MAX_TEXT = 120
 
 ROUNDS = "round of a loop"
 """How often a loop runs of which no more is known."""
@@ -57,7 +53,7 @@ def named_counts(block: ir.Block, sites: Sequence[ir.Site]) -> dict[str, str]:
 def factored(expr: ir.Expr, values: Mapping[str, ir.Expr]) -> tuple[ir.Expr, int]:
     """A count, and by which constant it is multiplied."""
     factor = 1
-    for _ in range(MAX_DEPTH):
+    for _ in range(MAX_COUNT_DEPTH):
         match expr:
             case ir.Local(_, name) if name in values and _is_product(values[name]):
                 expr = values[name]
@@ -75,12 +71,12 @@ def _is_product(value: ir.Expr) -> bool:
 
 
 def count_text(expr: ir.Expr, values: Mapping[str, ir.Expr], names: Mapping[str, str]) -> str:
-    """A count as text, at most `MAX_TEXT` long; `ROUNDS` where it is no product of fields, lengths and what is made of them."""
+    """A count as text, at most `MAX_COUNT_TEXT` long; `ROUNDS` where it is no product of fields, lengths and what is made of them."""
     text = _text(expr, values, names, 0).replace(" + -", " - ")
     bare = OWN.sub("", text)
     if re.search(r"[A-Za-z_]", bare) and (text.isidentifier() or re.search(r" [-+&] |\(", bare)):
         return ROUNDS
-    return text if len(text) <= MAX_TEXT else f"{text[: MAX_TEXT - 1]}…"
+    return text if len(text) <= MAX_COUNT_TEXT else f"{text[: MAX_COUNT_TEXT - 1]}…"
 
 
 def _text(expr: ir.Expr, values: Mapping[str, ir.Expr], names: Mapping[str, str], depth: int) -> str:
@@ -89,7 +85,7 @@ def _text(expr: ir.Expr, values: Mapping[str, ir.Expr], names: Mapping[str, str]
             return str(value)
         case ir.Local(_, name) if name in names:
             return names[name]
-        case ir.Local(_, name) if name in values and depth < MAX_DEPTH and _is_made(values[name]):
+        case ir.Local(_, name) if name in values and depth < MAX_COUNT_DEPTH and _is_made(values[name]):
             return _text(values[name], values, names, depth + 1)
         case ir.Local(_, name):
             stem = re.sub(r"_[0-9]+$", "", name)

@@ -28,9 +28,6 @@ if TYPE_CHECKING:
 
 Names = tuple[str, ...]
 
-MAX_LINES = 2_000
-"""Rules that are shown."""
-
 
 @dataclass(frozen=True, slots=True)
 class Line:
@@ -208,12 +205,17 @@ def _own(rule: Untyped, found: list[Rule]) -> list[Rule]:
     match rule:
         case Assign(Path(steps=steps)) | SetLength(Path(steps=steps)):
             wanted = tuple(step.name for step in steps if isinstance(step, Member))
-            own = [each for each in found if any(names_of(place)[-len(wanted) :] == wanted for place in _set_by(each))]
+            own = [each for each in found if _is_filter(each) or any(names_of(place)[-len(wanted) :] == wanted for place in _set_by(each))]
         case Reject():
             own = [each for each in found if not _set_by(each)]
         case _:
             own = found
     return own or found
+
+
+def _is_filter(rule: Rule) -> bool:
+    """Whether a rule is a loop of which some rounds are kept: the rules in it may be those of another mapping."""
+    return isinstance(rule, typed.For) and rule.kept is not None
 
 
 def _set_by(rule: Rule) -> list[Place]:

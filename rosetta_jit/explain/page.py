@@ -11,6 +11,7 @@ from string import Template
 from typing import TYPE_CHECKING
 
 from rosetta_jit.diagnostics import render
+from rosetta_jit.explain.limits import MAX_LINKS
 from rosetta_jit.explain.phrases import cost, heading, kind, loss, missing, shown
 
 if TYPE_CHECKING:
@@ -24,8 +25,6 @@ ROW, HEAD = 26, 38
 
 APART = {"unpack": -2, "pack": 2}
 """How far from the middle of a field the lines of each direction end, so that neither hides the other."""
-
-MAX_LINKS = 1_000
 
 
 def as_page(explanation: Explanation) -> str:

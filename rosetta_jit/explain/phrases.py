@@ -5,18 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.explain.content import KernelCost
+from rosetta_jit.explain.limits import MAX_LOOPS, MAX_TEXT
 from rosetta_jit.terminal import printable
 
 if TYPE_CHECKING:
     from rosetta_jit.explain.content import Direction, Explanation, Loss
     from rosetta_jit.explain.cost import Cost
     from rosetta_jit.explain.rows import Row
-
-MAX_TEXT = 400
-"""Characters of one text of a mapping or schema that are shown."""
-
-MAX_REPEATED = 20
-"""Loops of a kernel that are told."""
 
 
 def shown(text: str) -> str:
@@ -55,7 +50,7 @@ def cost(found: KernelCost | str) -> list[str]:
         return [f"there is no kernel: {shown(found)}"]
     more = f"; the first of {found.attempts} forms that it tries" if found.attempts > 1 else ""
     lines = [f"{_counted(found.cost)} ({found.encoding}{more})", *_repeated(found.cost, 1)]
-    return lines if len(lines) <= MAX_REPEATED else [*lines[:MAX_REPEATED], f"and {len(lines) - MAX_REPEATED} more loops"]
+    return lines if len(lines) <= MAX_LOOPS else [*lines[:MAX_LOOPS], f"and {len(lines) - MAX_LOOPS} more loops"]
 
 
 def _repeated(found: Cost, depth: int) -> list[str]:

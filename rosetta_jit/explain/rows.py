@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from rosetta_jit.explain.limits import MAX_FIELD_DEPTH, MAX_FIELDS
 from rosetta_jit.language.places import shown_names
 from rosetta_jit.model.printer import show_expr, show_type, show_way
 from rosetta_jit.model.types import Array, Optional, Struct, Union
@@ -15,11 +16,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.language.scope import Message
     from rosetta_jit.model.types import Field, Type
-
-MAX_ROWS = 200
-"""Fields of a type that are shown."""
-
-MAX_DEPTH = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +31,8 @@ class Row:
 
 def rows(message: Message) -> tuple[tuple[Row, ...], bool]:
     """The fields of a message, and whether there are more than are shown."""
-    found = tuple(islice(_rows(message, message.root, (), (message.root.name,)), MAX_ROWS + 1))
-    return found[:MAX_ROWS], len(found) > MAX_ROWS
+    found = tuple(islice(_rows(message, message.root, (), (message.root.name,)), MAX_FIELDS + 1))
+    return found[:MAX_FIELDS], len(found) > MAX_FIELDS
 
 
 def _rows(message: Message, struct: Struct | Union, names: tuple[str, ...], around: tuple[str, ...]) -> Iterator[Row]:
@@ -45,7 +41,7 @@ def _rows(message: Message, struct: Struct | Union, names: tuple[str, ...], arou
         here = (*names, field.name)
         yield Row(here, shown_names(here, message), show_type(message.value_type(field.type)), field.unit, tuple(_notes(field, message)))
         inner = _inner(message, field.type)
-        if isinstance(inner, Struct | Union) and inner.name not in around and len(here) < MAX_DEPTH:
+        if isinstance(inner, Struct | Union) and inner.name not in around and len(here) < MAX_FIELD_DEPTH:
             yield from _rows(message, inner, here, (*around, inner.name))
 
 

@@ -75,6 +75,14 @@ class Define(Protocol):
         ...
 
 
+class Announce(Protocol):
+    """A function from a struct to what others are told of it where it is published."""
+
+    def __call__(self, struct: Struct, schema: Schema) -> dict[str, str]:
+        """By the names that options of transports have: ``type``, and ``md5``, ``definition`` or ``hash``."""
+        ...
+
+
 class Infer(Protocol):
     """A function from captured messages to a schema that describes them."""
 
@@ -125,6 +133,8 @@ class Framework:
         A function that drafts a schema from captured messages. Empty where their bytes do not tell where a field begins.
     definition
         A function from a struct and its schema to its `Definition`; empty where logs carry none.
+    announcement
+        A function from a struct and its schema to what a publisher says of it; empty where that is nothing.
     """
 
     name: str
@@ -150,6 +160,7 @@ class Framework:
         return cast("TreeOf", _found(self.transcoding))(source, target) if self.transcoding else None
 
     definition: str = ""
+    announcement: str = ""
 
     def probes(self) -> Probes:
         """The probes of its features, none where it offers none."""
@@ -158,6 +169,10 @@ class Framework:
     def definition_of(self, struct: Struct, schema: Schema) -> Definition | None:
         """The definition of a struct as logs carry it; None where that cannot be had."""
         return cast("Define", _found(self.definition))(struct, schema) if self.definition else None
+
+    def announced(self, struct: Struct, schema: Schema) -> dict[str, str]:
+        """What a publisher says of a struct, by the names of transports' options."""
+        return cast("Announce", _found(self.announcement))(struct, schema) if self.announcement else {}
 
     def encoding(self, name: str) -> Encoder:
         """The encoding of a name."""

@@ -68,10 +68,33 @@ def _zero(elements: Elements) -> Const:
 
 def _lower_sum(elements: Elements) -> Expr:
     """The sum from the first value to the last; of integers it never wraps."""
+    if _has_few_bits(elements.reduce):
+        return _lower_blocks(elements)
     writer, values = elements.writer, elements.values
     total = writer.var("sum", _zero(elements))
     with elements.each() as value:
         writer.assign(total, binary(writer, "+", total, value, values.where, values.line))
+    return total
+
+
+def _has_few_bits(reduce: typed.Reduce) -> bool:
+    """Whether values are integers of an array that many of can be added without a check."""
+    match reduce:
+        case typed.Reduce(count=typed.LenOf(), value=typed.Convert(operand=typed.Access(type=Int(bits)), type=Int(), rule="widen")):
+            return bits <= 32
+        case _:
+            return False
+
+
+def _lower_blocks(elements: Elements) -> Expr:
+    """The sums of blocks, each without a check, and of these."""
+    writer, values = elements.writer, elements.values
+    total = writer.var("sum", index(0))
+    with elements.blocks() as (first, size):
+        part = writer.var("part", index(0))
+        with elements.each_of(first, size) as value:
+            writer.assign(part, Binary("add", part, value))
+        writer.assign(total, binary(writer, "+", total, part, values.where, values.line))
     return total
 
 

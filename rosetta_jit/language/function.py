@@ -50,6 +50,7 @@ OURS = (
     "angles",
     "numbers",
     "reductions",
+    "sequences",
     "division",
     "counting",
     "clock",
@@ -216,7 +217,7 @@ Operation = OneOf[
 
 # --- the record ----------------------------------------------------------------------------------------------------------
 
-Table = OneOf["numbers", "groups", "elements", "texts", "bytes", "images"]
+Table = OneOf["numbers", "groups", "elements", "arrays", "texts", "bytes", "images"]
 """The tables of the reference."""
 
 

@@ -65,6 +65,13 @@ class Extent:
     end_ns: int
 
 
+def widened(extent: Extent | None, first_ns: int, last_ns: int) -> Extent:
+    """The extent of a log in which messages of such times were found, too."""
+    if extent is None:
+        return Extent(first_ns, last_ns)
+    return Extent(min(extent.start_ns, first_ns), max(extent.end_ns, last_ns))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Block:
     """Some messages, in the order in which the log has them.

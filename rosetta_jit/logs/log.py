@@ -9,7 +9,7 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.diagnostics import render
-from rosetta_jit.errors import LogError, LogWarning
+from rosetta_jit.errors import LogError, LogWarning, MappingError
 from rosetta_jit.logs.base import Wanted
 from rosetta_jit.logs.channel import Channel
 from rosetta_jit.logs.file import LogFile
@@ -19,11 +19,13 @@ from rosetta_jit.logs.table import formats
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from rosetta_jit.api.options import Options
+    from rosetta_jit.api.wires import WireOptions
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.base import Block, Connection, Format
+    from rosetta_jit.logs.joining import Joined
     from rosetta_jit.logs.parts import OnError
     from rosetta_jit.logs.storage import Storage
 
@@ -140,6 +142,56 @@ class Log(LogFile):
             for row in order.tolist():
                 if row in found and int(block.rows.channels[row]) in by_number:
                     yield Message(int(block.rows.log_ns[row]), by_number[int(block.rows.channels[row])].topic, found[row])
+
+    def joined(
+        self,
+        mapping: str | os.PathLike[str],
+        topics: Mapping[str, str],
+        *,
+        on: str | None = None,
+        start: Moment | None = None,
+        end: Moment | None = None,
+        on_error: Literal["raise", "skip"] = "raise",
+        **options: Unpack[WireOptions],
+    ) -> Iterator[Joined]:
+        """Messages of several topics in one holder, by a mapping of several wires: the holder behind each message, once it is complete.
+
+        Parameters
+        ----------
+        mapping
+            One of several wires: see `rosetta_jit.Decoders`.
+        topics
+            The topic of each wire.
+        on
+            The wire behind whose messages the holder is given; by default behind all.
+        start, end
+            As of `messages`.
+        on_error
+            What becomes of messages that their wire does not allow; skipped, nothing is given until the next one of the wire.
+        **options
+            Of the decoders: see `rosetta_jit.api.wires.WireOptions`. The encodings are those of the log.
+
+        Raises
+        ------
+        DecodeError
+            A message is not what its type promises.
+        LogError
+            A topic is not there, or a wire has none.
+        MappingError, SchemaError
+            The mapping is wrong, or has no such wire.
+        """
+        from rosetta_jit.api.wires import Decoders
+        from rosetta_jit.catalogue.wires import unknown as unknown_wire
+        from rosetta_jit.logs.joining import check_topics, joined
+
+        channels = {wire: self.channel(topic) for wire, topic in topics.items()}
+        encodings = {wire: channel.encoding for wire, channel in channels.items()} | dict(options.pop("encodings", {}))
+        decoders = Decoders(mapping, encodings=encodings, **cast("Options", {**self._options, **options}))
+        check_topics(self.name, decoders, topics)
+        if on is not None and on not in decoders:
+            raise MappingError((unknown_wire(None, on, list(decoders)),))
+        messages = self.messages(dict.fromkeys(topics.values()), start=start, end=end, raw=True)
+        return joined(messages, decoders, topics, on, on_error)
 
     def _later(self, known: dict[int, Channel]) -> dict[int, Channel]:
         """Channels that were defined behind the index, or without one."""

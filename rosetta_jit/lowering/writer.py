@@ -343,11 +343,6 @@ def integer(value: Expr) -> Expr:
             return value if type_of(value) == "i64" else Convert("i64", value)
 
 
-def remaining(position: Expr) -> Expr:
-    """Bytes between a position and the end of the message."""
-    return Binary("sub", END, position)
-
-
 def block(statements: list[Stmt]) -> Block:
     """Statements as a block."""
     return tuple(statements)

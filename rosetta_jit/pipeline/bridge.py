@@ -49,7 +49,7 @@ class BridgeBuild:
         decode, encode = self.request.decode, self.request.encode
         if is_open(decode) and is_open(encode):
             raise MappingError((words.half_a_bridge(),))
-        first, second = Build(_closed(decode, encode)), Build(_closed(encode, decode))
+        first, second = Build(closed(decode, encode)), Build(closed(encode, decode))
         if first.wires:
             raise MappingError((not_here(first.checked.mapping.wire_span, "a bridge"),))
         filled, packed = first.types.holder, second.types.holder
@@ -164,7 +164,7 @@ def is_open(request: Request) -> bool:
     return request.mapping is None and request.type is None and request.plain is None
 
 
-def _closed(request: Request, other: Request) -> Request:
+def closed(request: Request, other: Request) -> Request:
     """The request itself, or that for the type at which the other one ends."""
     if not is_open(request):
         return request

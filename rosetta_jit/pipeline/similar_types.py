@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.errors import ReportError
 from rosetta_jit.language.imports.search import refusal, shipped_folders
 from rosetta_jit.model.types import name_parts
+from rosetta_jit.pipeline.limits import MAX_FILES, MAX_GUESSES, MAX_READ
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -16,12 +17,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.language.imports.search import SearchPath
     from rosetta_jit.parsing.idl import FrontEnds
-
-MAX_FILES = 5000
-"""Files of a folder that are looked at; a search path may have any number."""
-
-MAX_GUESSES = 50
-MAX_READ = 8
 
 
 def similar_types(asked: str, front_ends: FrontEnds, search: SearchPath) -> list[str]:

@@ -95,9 +95,8 @@ class DecoderBase(Program):
         if quick is not None:
             return quick(message)
         family = self._loaded.holder_type.family_
-        whole = family.wholes[object_type]
-        if whole is not None and len(self._quick) < MAX_CLASSES:
-            self._quick[object_type] = decoding(self.builtin, self.new, whole.make)
+        if types is None and not self._loaded.borrow and len(self._quick) < MAX_CLASSES:
+            self._quick[object_type] = decoding(self.builtin, self.new, family.givers.maker(object_type))
         givers = family.givers if types is None else self._givers_of(types)
         holder = self._borrow()
         try:

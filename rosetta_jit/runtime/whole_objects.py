@@ -46,7 +46,7 @@ def encoding_by_steps(
 
     Holders are emptied in between nevertheless: texts and arrays that are assigned again and again would leave gaps.
     """
-    take, table, spares = functions()["take_anew"], steps.table, list[tuple[Any, bytes]]()
+    take, spares = functions()["take_anew"], list[tuple[Any, bytes]]()
 
     def call(value: object, *more: object) -> Any:
         try:
@@ -56,7 +56,7 @@ def encoding_by_steps(
             spare = made, made.lanes_.plan.fresh
         holder, fresh = spare
         try:
-            taken = take(table, holder, value, fresh)
+            taken = take(steps.table, holder, value, fresh)
         except LEFT:
             taken = False
         if not taken:

@@ -11,7 +11,7 @@ from rosetta_jit.stubs.fields import Shapes, path
 from rosetta_jit.stubs.names import class_names
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosetta_jit.runtime.holder import Family
     from rosetta_jit.runtime.holder.record import Node
@@ -22,7 +22,7 @@ HEAD = """\
 #
 #     import rosetta_jit
 #
-#     decoder, encoder = {made}
+#     {names} = {made}
 
 import builtins
 import collections.abc
@@ -52,9 +52,31 @@ class Encoder(rosetta_jit.Encoder):
     def new(self) -> {name}: ...
     @builtins.property
     def holder_type(self) -> type[{name}]: ...
+"""
 
+OF_ONE = """
 decoder: Decoder
 encoder: Encoder
+"""
+
+OF_WIRES = """
+class Decoders(rosetta_jit.Decoders):
+{decoders}    def __getitem__(self, wire: str) -> Decoder: ...
+    def new(self) -> {name}: ...
+    @builtins.property
+    def holder(self) -> {name}: ...
+    @builtins.property
+    def holder_type(self) -> type[{name}]: ...
+
+class Encoders(rosetta_jit.Encoders):
+{encoders}    def __getitem__(self, wire: str) -> Encoder: ...
+    def __call__(self, holder: {name}) -> dict[str, bytes]: ...
+    def new(self) -> {name}: ...
+    @builtins.property
+    def holder_type(self) -> type[{name}]: ...
+
+decoders: Decoders
+encoders: Encoders
 """
 
 SEQUENCE = """\
@@ -77,22 +99,34 @@ class {name}({base}):
 """
 
 
-def stub(family: Family, what: str, options: Mapping[str, object], *, is_mapping: bool) -> str:
-    """The text of a stub of a holder class; ``what`` is the mapping or the type that was asked for, with these options."""
+def stub(family: Family, what: str, options: Mapping[str, object], *, is_mapping: bool, wires: Sequence[str] | None = None) -> str:
+    """The text of a stub of a holder class; ``what`` is the mapping or the type that was asked for, with these options.
+
+    ``wires`` are those of a mapping of several whose programs are attributes.
+    """
     structs = list(dict.fromkeys([family.struct.name, *_structs(family.tree.root, set())]))
     shapes = Shapes(class_names(structs))
     families = [family.of_struct(struct).family_ for struct in structs]
     classes = "\n".join(line for each in families for line in class_text(each, shapes))
-    parts = [_head(what, options, is_mapping=is_mapping, modules=_modules(families, shapes)), *_containers(shapes), classes]
-    programs = PROGRAMS.format(name=shapes.classes[family.struct.name])
+    made = ("Decoder", "Encoder") if wires is None else ("Decoders", "Encoders")
+    parts = [_head(what, options, made, is_mapping=is_mapping, modules=_modules(families, shapes)), *_containers(shapes), classes]
+    name = shapes.classes[family.struct.name]
+    programs = PROGRAMS.format(name=name) + (OF_ONE if wires is None else _of_wires(name, wires))
     aliases = [f"{alias}: typing.TypeAlias = {name}" for name, alias in sorted(shapes.aliases.items())]
     return "\n".join((*parts, programs, *aliases)).rstrip("\n") + "\n"
 
 
-def _head(what: str, options: Mapping[str, object], *, is_mapping: bool, modules: Iterable[str]) -> str:
+def _of_wires(name: str, wires: Sequence[str]) -> str:
+    """The programs of all wires, each also as an attribute."""
+    decoders, encoders = ("".join(f"    {wire}: {kind}\n" for wire in wires) for kind in ("Decoder", "Encoder"))
+    return OF_WIRES.format(name=name, decoders=decoders, encoders=encoders)
+
+
+def _head(what: str, options: Mapping[str, object], made: tuple[str, str], *, is_mapping: bool, modules: Iterable[str]) -> str:
     make = "rosetta_jit.{0}({1})" if is_mapping else "rosetta_jit.{0}.of({1})"
     given = escaped(", ".join((repr(what), *(f"{name}={value!r}" for name, value in options.items() if value))))
-    head = HEAD.format(what=escaped(what), made=", ".join(make.format(program, given) for program in ("Decoder", "Encoder")))
+    names, programs = ", ".join(map(str.lower, made)), ", ".join(make.format(program, given) for program in made)
+    head = HEAD.format(what=escaped(what), names=names, made=programs)
     return head + "".join(f"import {module}\n" for module in sorted(modules))
 
 

@@ -335,6 +335,10 @@ class Transport:
         ``(address, options) -> list of (channel, type or None)``: which channels there are, for patterns in configurations.
     options
         By name; `COMMON` are added.
+    types
+        For schemes whose options tell of a type, the framework of such types: ``{"ros1": "ros1"}``.
+    asks
+        Those of these options by which a subscriber can ask for one type alone.
     extra
         The extra of rosetta_jit that it takes, and the module whose absence tells: ``("zenoh", "zenoh")``.
     """
@@ -348,6 +352,8 @@ class Transport:
     serve: str = ""
     names: str = ""
     options: Mapping[str, Option] = field(default_factory=dict[str, "Option"])
+    types: Mapping[str, str] = field(default_factory=dict[str, str])
+    asks: tuple[str, ...] = ()
     extra: tuple[str, str] = ("", "")
 
     def function(self, direction: str) -> Callable[..., Any]:

@@ -39,6 +39,8 @@ class Stream:
         The other end's address.
     cut : bool
         Whether it ended in the middle of a message.
+    unsent : int
+        Once it has ended: how often `send` took something that was not sent any more.
     """
 
     def __init__(
@@ -54,6 +56,7 @@ class Stream:
         self.socket = sock
         self.peer = _name(sock)
         self.cut = False
+        self.unsent = 0
         self.closed = False
         self._ended = ended
         self._machine = machine
@@ -61,7 +64,7 @@ class Stream:
         self._most = max_waiting
         self._waiting: deque[memoryview] = deque()
         self._waiting_bytes = 0
-        self._turn = threading.Lock()
+        self._turn = threading.RLock()  # a signal may interrupt a sender, and its handler send, too
         self._room = threading.Condition(self._turn)
         self._finishing = False
         self._paused = False
@@ -139,6 +142,8 @@ class Stream:
             return
         with self._room:
             self.closed = True
+            self.unsent = len(self._waiting)
+            self._waiting.clear()
             self._room.notify_all()
         self.in_time()
         loop().unwatch(self.socket.fileno())

@@ -179,6 +179,18 @@ def test_types_of_two_frameworks_meet_if_they_have_the_same_fields():
     assert bridge(rj.Encoder.of("geometry_msgs/Twist", encoding="ros1")(twist)) == rj.Encoder.of("geometry_msgs/msg/Twist")(twist)
 
 
+def test_what_a_publisher_says_of_the_type_that_is_written():
+    there = rj.Bridge.of("geometry_msgs/Twist", "geometry_msgs/msg/Twist", decode={"encoding": "ros1"}, encode={"encoding": "cdr"})
+    back = rj.Bridge.of("geometry_msgs/msg/Twist", "geometry_msgs/Twist", decode={"encoding": "cdr"}, encode={"encoding": "ros1"})
+    hash_ = "RIHS01_9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a"
+    assert there.announced("ros2") == {"type": "geometry_msgs/msg/Twist", "hash": hash_}
+    told = back.announced("ros1")
+    assert (told["type"], told["md5"]) == ("geometry_msgs/Twist", "9f195f881246fdfa2798d1d3eebca84a")
+    assert "MSG: geometry_msgs/Vector3" in told["definition"]
+    assert (there.announced("ros1"), back.announced("ros2"), rj.Bridge.between("yarp3", "yarp4").announced("ros1")) == ({}, {}, {})
+    assert rj.Bridge(TORSO, decode={"encoding": "yarp4"}).announced("protobuf") == {"type": ".rst.kinematics.JointAngles"}
+
+
 def test_a_pickle_is_its_recipe(bridge, bottle):
     assert pickle.loads(pickle.dumps(bridge))(bottle) == bridge(bottle)  # noqa: S301 - our own bytes
     assert repr(bridge) == "<Bridge from yarp/icub/torso_state.mapping, yarp4 to the same message>"

@@ -279,3 +279,61 @@ def test_threads_encode_objects_of_one_class(encoder, classes):
     for each in threads:
         each.join()
     assert not wrong
+
+
+class Kept:
+    """Objects that a class makes without arguments: with tuples, lists and arrays, and messages within."""
+
+    def __init__(self):
+        self.count, self.word, self.good, self.octets = 0, "", False, b""
+        self.numbers, self.three, self.shorts, self.names = (), [0.0] * 3, np.zeros(0, np.int16), []
+        self.place, self.header = Point(), None
+
+
+class Point:
+    __slots__ = ("x", "y", "z")
+
+
+class Header:
+    def __init__(self):
+        self.seq, self.stamp, self.frame_id = 0, Time(), ""
+
+
+class Time:
+    __slots__ = ("nsecs", "secs")
+
+
+def shown(made):
+    place, header = made.place, made.header
+    return (
+        *(made.count, made.word, made.good, made.octets, made.numbers, made.three, list(made.shorts), made.names),
+        *(place.x, place.y, place.z),
+        *(header.seq, header.stamp.secs, header.stamp.nsecs, header.frame_id),
+    )
+
+
+def test_objects_are_made_one_like_another(encoder):
+    decode = rj.Decoder.of("test_msgs/Steps", encoding="ros1", schema=SCHEMA)
+    types = {"std_msgs/Header": Header}
+    messages = [encoder(values() | {"count": number, "numbers": [float(number)] * number}) for number in range(5)]
+    made = [decode.to(each, Kept, types=types) for each in messages]
+    again = [decode.to(each, Kept, types=types) for each in reversed(messages)]
+    for number, each in enumerate(made):
+        wanted = (number, "hello", True, b"ab", (float(number),) * number, [1.0, 2.0, 3.0], [1, 2], ["one", "zwei"])
+        assert shown(each) == shown(again[-1 - number]) == (*wanted, 1.0, 2.0, 3.0, 1, 2, 3, "base")
+    assert isinstance(made[0].shorts, np.ndarray)
+    assert len({id(each.place) for each in made}) == len(made)
+
+
+def test_a_message_that_is_wrong_spoils_no_other_object():
+    made = make_dataclass("Made", [(name, Any, None) for name in ("x", "y", "z")])
+    decode, encode = (each.of("geometry_msgs/Point", encoding="ros1") for each in (rj.Decoder, rj.Encoder))
+    message = encode({"x": 1.0, "y": 2.0, "z": 3.0})
+    for object_type in (Point, made):
+        for _ in range(3):
+            found = decode.to(message, object_type)
+            assert (found.x, found.y, found.z) == (1.0, 2.0, 3.0)
+            with pytest.raises(RosettaError):
+                decode.to(message[:-1], object_type)
+            with pytest.raises(TypeError):
+                decode.to(1, object_type)

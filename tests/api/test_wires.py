@@ -474,7 +474,7 @@ def test_the_command_line(tmp_path, capsysbinary):
     assert main(["decode", mapping, str(data)]) == 1
     assert b"`--wire left` that of one" in capsysbinary.readouterr().err
     assert main(["explain", mapping]) == 0
-    assert b"each wire has its own" in capsysbinary.readouterr().out
+    assert b"each wire has one of its own: `--wire left` shows" in capsysbinary.readouterr().out
     assert main(["explain", mapping, "--wire", "right"]) == 0
     assert main(["prove", mapping, "--summary"]) == 0
     assert main(["compile", mapping, "--direction", "decode"]) == 0

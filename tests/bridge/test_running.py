@@ -17,6 +17,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.bridge import metrics as asking
+from rosetta_jit.bridge.announcing import announced
 from rosetta_jit.bridge.checking import checked
 from rosetta_jit.bridge.counting import Latencies, RouteCounts
 from rosetta_jit.bridge.limits import MAX_CAUSES
@@ -25,6 +26,7 @@ from rosetta_jit.bridge.running import Running
 from rosetta_jit.bridge.table import rows
 from tests.transports.free import answers, free_port, until
 from tests.transports.name_server import NameServer
+from tests.transports.ros_master import Master
 
 TORSO = "yarp/icub/torso_state.mapping"
 
@@ -127,7 +129,7 @@ def test_state_is_shown_and_begins_anew_with_the_source_and_with_the_route(run, 
         shown = text(bridge.snapshot())
         assert 'rosetta_jit_bridge_state{route="a",variable="decode.last"} 15.0\n' in shown
         assert 'rosetta_jit_bridge_state{route="a",variable="decode.seen"} 1.0\n' in shown
-        until(lambda: not next(iter(bridge._sources.values())).source.connections)
+        until(lambda: not bridge.snapshot()[0]["connections"]["source"])
         bridge.reload(bridge.configuration)
         assert bridge.snapshot()[0]["state"]["decode.last"] == 15  # a route that did not change goes on
         assert turned(3, 4) == [0, 1]
@@ -136,6 +138,92 @@ def test_state_is_shown_and_begins_anew_with_the_source_and_with_the_route(run, 
         bridge.reload(checked(str(tmp_path / "bridge.toml")))
         assert bridge.snapshot()[0]["state"]["decode.last"] == 0
         assert turned(9, 10) == [0, 1]
+
+
+TO_ROS1 = 'decode_type = "std_msgs/msg/Bool"\nencode_type = "std_msgs/Bool"\ndecode = { encoding = "cdr" }\nencode = { encoding = "ros1" }'
+BOOL = "8b94c1b53db61fb6aed406028ad6332a"
+"""The md5 sum of std_msgs/Bool, as `rosmsg md5` says it."""
+
+
+def test_the_target_gets_to_know_the_type(run):
+    """Its name, md5 sum and text come from what the route writes: a subscriber of ROS 1 that asks for them is served."""
+    master, source = Master(), free_port()
+    at = f"ros1:/{{}}?master={master.uri}"
+    try:
+        with rj.subscribe(at.format("on") + f"&type=std_msgs/Bool&md5={BOOL}&name=/reader") as there:
+            run(f'[[route]]\nsource = "tcp:{source}"\ntarget = "{at.format("on")}"\n{TO_ROS1}\n')
+            with rj.publish(f"tcp:{source}") as robot:
+                until(lambda: there.connections)
+                robot.send(b"\0\1\0\0\1")
+                message = there.take(5)
+            assert (message.data, message.type, message.attributes["md5"]) == (b"\1", "std_msgs/Bool", BOOL)
+            assert message.attributes["definition"] == "bool data\n"
+        assert not there.lost
+    finally:
+        master.close()
+
+
+def test_a_source_of_another_type_is_refused_and_said(run):
+    """Its messages could be read, as something that they are not."""
+    master, target = Master(), free_port()
+    at = f"ros1:/on?master={master.uri}"
+    mapping = (
+        'decode_type = "std_msgs/Bool"\nencode_type = "std_msgs/msg/Bool"\ndecode = { encoding = "ros1" }\nencode = { encoding = "cdr" }'
+    )
+    try:
+        with (
+            rj.publish(f"{at}&type=std_msgs/UInt8&md5=7c8164229e7d2c17eb95e9231617fdee&name=/other") as other,
+            rj.subscribe(f"tcp:{target}"),
+        ):
+            bridge, said = run(f'[[route]]\nname = "a"\nsource = "{at}"\ntarget = "tcp:{target}"\n{mapping}\n')
+            until(lambda: said)
+            other.send(b"\1")
+            (shown,) = bridge.snapshot()
+            assert "the publisher refuses: another" in said[0]
+            assert (shown["taken"], list(shown["dropped"].values())) == (0, [0])
+            bridge.stop(0.2)
+    finally:
+        master.close()
+
+
+SET = "bool data\n---\nbool success\nstring message\n"
+SUM = "09fb03525b03e7ea1fd3992bafd87e16"
+"""The md5 sum of such a service, as `rossrv md5 std_srvs/SetBool` says it."""
+
+
+def test_who_asks_a_service_gets_to_know_its_type(run, tmp_path):
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "Set.srv").write_text(SET)
+    master, inner = Master(), free_port()
+    half = '{ encoding = "ros1", imports = ["own/Set.srv"] }'
+    at = f"ros1:/set?master={master.uri}"
+    try:
+        with rj.serve(f"tcp:{inner}", lambda message: bytes(message.data) + bytes(4)):
+            request = f'{{ decode_type = "own/SetRequest", decode = {half}, encode = {half} }}'
+            bridge, _ = run(f'[[rpc]]\nserve = "{at}"\ncall = "tcp:{inner}"\nrequest = {request}\n')
+            with rj.call(f"{at}&md5={SUM}&name=/one") as ask:
+                assert ask(b"\1").data == b"\1" + bytes(4)
+            with rj.call(f"{at}&md5={'0' * 32}&name=/two") as ask, pytest.raises(rj.TransportError, match="another md5"):
+                ask(b"\1")
+            bridge.stop(0.2)
+    finally:
+        master.close()
+
+
+@pytest.mark.parametrize(
+    ("target", "told"),
+    [
+        ("ros1:/on", {"type", "md5", "definition"}),
+        ("ros1:/on?type=std_msgs/Bool", {"md5", "definition"}),
+        ("ros1:/on?type=own/Bool", set()),  # of which nothing is known
+        ("ros2-dds:/on", set()),  # it is a type of ROS 1
+        ("tcp:9000", set()),
+    ],
+)
+def test_what_an_address_says_goes_first(target, told):
+    bridge = rj.Bridge.of("std_msgs/msg/Bool", "std_msgs/Bool", decode={"encoding": "cdr"}, encode={"encoding": "ros1"})
+    assert announced(target, bridge).keys() == told
+    assert announced(target, None) == {}
 
 
 def test_a_rate(run):

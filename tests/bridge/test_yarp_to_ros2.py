@@ -23,7 +23,7 @@ def test_the_robot_is_seen_by_ros_2(tmp_path):
     server = f"?server=127.0.0.1:{names.port}"
     (mapping,), (text,) = re.findall(r'MAPPING = """\n(.*?)"""', page, re.DOTALL), re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
     (tmp_path / "torso.mapping").write_text(mapping)
-    text = text.replace("state:o", f"state:o{server}").replace('msg/JointState"', f'msg/JointState{DOMAIN}"').replace("rate = 50", "")
+    text = text.replace("state:o", f"state:o{server}").replace('/joint_states"', f'/joint_states?{DOMAIN[1:]}"').replace("rate = 50", "")
     (tmp_path / "robot.toml").write_text(text)
     said = []
     bridge = Running(checked(str(tmp_path / "robot.toml")), said.append)

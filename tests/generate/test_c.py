@@ -161,16 +161,26 @@ def test_the_command_writes_both_files(tmp_path, capsys):
     assert "joint_state_encode(" not in text
 
 
-def test_a_full_disk_leaves_nothing_behind(tmp_path, capsys, monkeypatch):
-    def full(path, data):
-        with path.open("wb") as file:
-            file.write(data[:10])
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+def test_a_full_disk_leaves_all_files_as_they_were(tmp_path, capsys, monkeypatch):
+    """Also those that were written before the one for which there was no room."""
+    command = ["generate", "sensor_msgs/JointState", "--encoding", "ros1", "-o", str(tmp_path)]
+    write_bytes = Path.write_bytes
 
-    monkeypatch.setattr(Path, "write_bytes", full)
-    assert main(["generate", "sensor_msgs/JointState", "--encoding", "ros1", "-o", str(tmp_path)]) == 1
-    assert "joint_state.h" in capsys.readouterr().err
-    assert not [*tmp_path.iterdir()]
+    def full(path, data):
+        write_bytes(path, data if ".h." in path.name else data[:10])
+        if ".h." not in path.name:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as disk:
+        disk.setattr(Path, "write_bytes", full)
+        assert main(command) == 1
+        assert "joint_state.c" in capsys.readouterr().err
+        assert not [*tmp_path.iterdir()]
+    (tmp_path / "joint_state.h").write_text("/* older */")
+    with monkeypatch.context() as disk:
+        disk.setattr(Path, "write_bytes", full)
+        assert main(command) == 1
+    assert [(each.name, each.read_text()) for each in tmp_path.iterdir()] == [("joint_state.h", "/* older */")]
 
 
 def test_the_lines_of_the_mapping_stand_beside_what_comes_from_them():

@@ -1,4 +1,4 @@
-"""Filters in generated source: C, C++, Python and Lisp keep the elements that the library keeps."""
+"""Filters, and arrays made of others, in generated source: C, C++, Python and Lisp make what the library makes."""
 
 from __future__ import annotations
 
@@ -15,12 +15,19 @@ from tests.generate.driver import answers, driver, expected, harmed, needs_gcc, 
 from tests.generate.test_python import answer
 
 FILES = {
-    "m.bottle-schema": '"m" (("a" (:list :double)) ("n" (:list :int)) ("names" (:list :string)))',
-    "m.proto": 'syntax = "proto2"; package lab; message M { repeated double a = 1; repeated int32 n = 2; repeated string names = 3; }',
+    "m.bottle-schema": """"m" (("a" (:list :double)) ("n" (:list :int)) ("names" (:list :string)) ("steps" (:list :int))
+("cells" (:list :int)) ("counts" (:list :int)) ("mask" :blob))""",
+    "m.proto": """syntax = "proto2"; package lab;
+message M { repeated double a = 1; repeated int32 n = 2; repeated string names = 3; repeated int64 ticks = 4; repeated int32 cells = 5;
+  repeated bool flags = 6; }""",
     "m.mapping": """import "m.bottle-schema"
 import "m.proto"
 data-holder: lab.M
 wire-schema: m
+rules:
+  .ticks <-> running_sums(.steps)
+  .cells <-> repeated(.cells, .counts)
+  .flags <-> bits(.mask)
 unpack-rules:
   .a = .a where isfinite(.a[]) and .a[] < 2.0
   .n = .n where index() % 2 == 0
@@ -45,7 +52,9 @@ def programs():
 def messages():
     of = rj.Encoder.of("m", schema=FILES, imports=["m.bottle-schema"], encoding="yarp4")
     full = {"a": [0.5, float("nan"), 3.0, float("-inf"), 1.0], "n": [1, 2, -3, 4, 5], "names": ["on", "off", "", "off", "x"]}
-    good = [of(of.holder_type.from_dict(values)) for values in ({"a": [], "n": [], "names": []}, full, {**full, "a": [9.0]})]
+    full |= {"steps": [1, -5, 2**31 - 1], "cells": [-1, 0, 100], "counts": [2, 0, 3], "mask": b"\x01\xf0"}
+    none = {"a": [], "n": [], "names": [], "steps": [], "cells": [], "counts": [], "mask": b""}
+    good = [of(of.holder_type.from_dict(values)) for values in (none, full, {**full, "counts": [2, -1, 3]})]
     return [*good, *harmed(good, 4, "filters")]
 
 

@@ -265,6 +265,24 @@ def test_what_rounds_count_is_no_more_than_there_were():
     refused(*load[:-1], Var("found", index(0)), For("i", n, (kernels.Assign("found", add(found, index(2))),)), DONE, match="wrap")
 
 
+def test_sums_of_so_many_integers_of_few_bits_do_not_wrap():
+    """Those of any number of them may."""
+    part, n = i64("part"), i64("n")
+    load = (need(BEGIN, 16), Let("n", Load("i64", BEGIN)), expect(compare("ge", n, 0)), Var("part", index(0)))
+
+    def adds(value):
+        return (kernels.Assign("part", Binary("add", part, kernels.Convert("i64", value))),)
+
+    few = Binary("min", n, index(1 << 16))
+    for scalar in ("i32", "u32", "i8"):
+        verify(kernel((*load, For("i", few, adds(Load(scalar, add(BEGIN, 8)))), DONE)))
+        refused(*load, For("i", n, adds(Load(scalar, add(BEGIN, 8)))), DONE, match="wrap")
+    refused(*load, For("i", few, (For("j", n, adds(Load("i32", add(BEGIN, 8)))),)), DONE, match="wrap")
+    refused(*load, For("i", few, (*adds(Load("i32", BEGIN)), *adds(Load("i32", BEGIN)), *adds(part))), DONE, match="wrap")
+    wide = For("i", few, adds(Binary("mul", kernels.Convert("i64", Load("i32", BEGIN)), index(1 << 20))))
+    refused(*load, wide, DONE, match="wrap")
+
+
 def test_a_body_that_the_usual_guesses_do_not_prove_is_walked_with_all(monkeypatch):
     at = i64("at")
     body = (need(at, 1), kernels.Assign("at", add(at, 1)))

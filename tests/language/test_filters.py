@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.cli import main
 from rosetta_jit.explain.operations import operations
 
 SCHEMAS = {
@@ -242,3 +243,8 @@ def test_crops_a_cloud():
 
 def test_counts_as_an_operation():
     assert "predicate assignment" in operations("ros1/point_cloud_crop.mapping")
+
+
+def test_is_explained(capsys):
+    assert main(["explain", "ros1/point_cloud_crop.mapping"]) == 0
+    assert "elements for which the condition does not hold are dropped" in capsys.readouterr().out

@@ -200,6 +200,16 @@ def test_is_computed_once_for_all_elements():
     assert run(a=[1.0] * size, n=[1] * size, b=[2.0] * size)["a"][-1] == 1 / size + 2
 
 
+@pytest.mark.parametrize("backend", ["llvm", "python"])
+def test_many_integers_are_added_in_blocks(backend):
+    """At the ends of blocks, and where sums need more than 32 bits."""
+    run = decoder([".n = sum(.i[]) - sum(.d[])"], backend)
+    for count in (1, 65535, 65536, 65537, 140_001):
+        numbers, octets = np.full(count, -(2**31), np.int32), np.full(count, 255, np.uint8)
+        numbers[::3] = 2**31 - 1
+        assert run(i=numbers, d=octets.tobytes())["n"] == int(numbers.sum(dtype=np.int64)) - 255 * count
+
+
 BOTH = """rules:
   .a[] <-> .a[] * 2
   .n <-> count(.a[] > 3)

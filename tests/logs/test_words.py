@@ -37,6 +37,7 @@ EXAMPLES = {
     "promised": 20,
     "found": 18,
     "time_ns": -1,
+    "wire": "pose",
 }
 
 

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.catalogue.limits import MAX_CANDIDATES, MAX_COMPARED
+from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.language.imports import search
 from rosetta_jit.lowering.limits import MAX_STATEMENTS
 from rosetta_jit.model.expansion import excess
@@ -249,6 +251,12 @@ def test_texts_have_a_size_one_by_one_and_together(monkeypatch):
     monkeypatch.setattr(search, "MAX_TEXT_BYTES", 1_000)
     texts = {"p/B.msg": "int32 a # " + "x" * 600, "p/A.msg": "B b # " + "x" * 600}
     refused("p/A", texts, "file-too-large")
+
+
+def test_of_hostile_names_few_are_compared():
+    assert closest("speeed", ["speed"]) == "speed"
+    assert closest("speeed", [*map(str, range(MAX_CANDIDATES)), "speed"]) is None
+    assert closest("s" * MAX_COMPARED + "peeed", ["s" * MAX_COMPARED + "peed"]) is None
 
 
 def test_a_folder_that_was_removed(tmp_path, monkeypatch):

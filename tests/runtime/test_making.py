@@ -157,6 +157,35 @@ def test_classes_and_memory_are_let_go_of(decoder, quaternion):
     assert lanes() is None, "what somebody has a weak reference to is no other holder's"
 
 
+def test_holders_that_the_collector_of_garbage_ends(decoder, joint_state):
+    """Their lanes are garbage, too, until they are kept for others."""
+    for _ in range(3):
+        for new in (decoder.new, joint_state):
+            circle = [filled(new()) for _ in range(2 * MAX_ENDED)]
+            circle.append(circle)
+            del circle
+            gc.collect()
+            made = [new() for _ in range(2 * MAX_ENDED)]
+            assert not any(len(each.name) or len(each.position) for each in made)
+            assert all(filled(each).name[1] == "bc" for each in made)
+            assert all(gc.is_tracked(each.lanes_) for each in made)
+
+
+def test_holder_classes_that_end_with_their_programs():
+    for number in range(4):
+        schema = f"int32 a{number}\nstring text\ngeometry_msgs/Point place"
+        decode, encode = (each.of(f"test_msgs/Ending{number}", encoding="ros1", schema=schema) for each in (rj.Decoder, rj.Encoder))
+        plain = {f"a{number}": 1, "text": "abc", "place": {"x": 1.0, "y": 2.0, "z": 3.0}}
+        kept = [decode.holder_type.from_dict(plain), decode.holder_type(), decode.new(), decode.new]
+        assert decode(encode(kept[0])) == kept[0]
+        circle = [decode, encode, kept, kept[0].place]
+        circle.append(circle)
+        gone = weakref.ref(decode)
+        del decode, encode, kept, circle
+        gc.collect()
+        assert gone() is None
+
+
 def test_new_takes_nothing(decoder):
     with pytest.raises(TypeError, match="no arguments"):
         decoder.new(1)

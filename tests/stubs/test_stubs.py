@@ -140,3 +140,24 @@ def test_names_of_schemas_stay_names():
 def test_what_is_not_there_is_an_error(capsys):
     assert main(["stubs", "no/such.mapping"]) == 1
     assert "no/such.mapping" in capsys.readouterr().err
+
+
+def test_programs_of_several_wires(tmp_path):
+    for name, text in {"t.proto": SCHEMA, "two.mapping": WIRES}.items():
+        (tmp_path / name).write_text(text)
+    assert main(["stubs", str(tmp_path / "two.mapping"), "-o", str(tmp_path / "two.pyi")]) == 0
+    text = (tmp_path / "two.pyi").read_text()
+    assert "decoders, encoders = rosetta_jit.Decoders(" in text
+    decoders = next(each for each in ast.parse(text).body if isinstance(each, ast.ClassDef) and each.name == "Decoders")
+    assert [each.target.id for each in decoders.body if isinstance(each, ast.AnnAssign)] == ["left"]  # `holder` is a property
+
+
+WIRES = """import "t.proto"
+data-holder: t.Inner
+wire-schema left: t.Inner
+wire-schema holder: t.Inner
+unpack-rules:
+  .a = .left.a
+  .s = .holder.s
+  ignore rest
+"""

@@ -33,7 +33,7 @@ def addresses(stack):
     yield "Unix socket", f"unix:/tmp/rj-{one}", f"unix:/tmp/rj-{two}", f"unix:/tmp/rj-{one}", f"unix:/tmp/rj-{two}"
     yield "UDP", f"udp:{one}", f"udp:{two}", f"udp:{one}", f"udp:{two}"
     names = stack.enter_context(closing(NameServer()))
-    for carrier in ("tcp", "fast_tcp"):
+    for carrier in ("tcp", "fast_tcp", "udp", "mcast"):
         at = f"?server=127.0.0.1:{names.port}&carrier={carrier}"
         there, back = f"yarp:/{carrier}{at}", f"yarp:/{carrier}/back{at}"
         yield f"YARP, {carrier}", f"{there}&wait=yes", back, there, f"{back}&wait=yes"

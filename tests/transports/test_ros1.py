@@ -255,6 +255,24 @@ def test_garbage_and_a_hundred_connections_cost_nobody_else(at, master):
         assert source.take(5).data == text(b"still")
 
 
+def test_a_slow_subscriber_loses_its_own_messages_with_a_counter(at, master):
+    with rj.publish(at("/chat", STRING)) as sink, rj.subscribe(at("/chat")) as source:
+        until(lambda: sink.connections)
+        place = ask_node(next(iter(master.publishers["/chat"])), "requestTopic", "/x", "/chat", [["TCPROS"]])
+        with socket.create_connection((place[1], place[2])) as slow:
+            slow.sendall(header({"callerid": "/slow", "topic": "/chat", "type": "std_msgs/String", "md5sum": "*"}))
+            until(lambda: sink.connections == 2)
+            message = text(bytes(1 << 20))
+            for _ in range(60):
+                sink.send(message)
+                assert source.take(5).data == message
+            dropped = sink.lost["the subscriber is too slow"]
+            assert dropped > 10
+        until(lambda: sink.connections == 1)
+        until(lambda: sink.lost["the subscriber went away"])
+        assert 10 <= sink.lost["the subscriber went away"] <= 60 - dropped  # 16 MiB waited
+
+
 def test_names_that_ros_does_not_have():
     for wrong in ("chat", "/a b", "/1", "/a//b", "/a/"):
         with pytest.raises(AddressError, match="a name of ROS 1"):

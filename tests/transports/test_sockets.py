@@ -203,6 +203,8 @@ def test_a_slow_reader_makes_the_sender_wait_or_drop():
             assert time.monotonic() - began < 3
             assert 16 <= taken < 40
             assert sink.lost == {"the peer is too slow": 40 - taken}
+        until(lambda: not sink.connections)
+        assert 10 <= sink.lost["the peer went away"] <= taken  # what waited for it
 
 
 def test_a_sender_waits_for_a_reader_that_comes_later():

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from itertools import islice
 from typing import TYPE_CHECKING, Protocol
 
 from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
-from rosetta_jit.frameworks.lcm.limits import MAX_COMPARED, MAX_SHOWN
+from rosetta_jit.frameworks.lcm.limits import MAX_SHOWN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -51,7 +50,7 @@ def _cut(word: str) -> str:
 
 
 def _nearest(word: str, known: Iterable[str]) -> str:
-    found = closest(word[:MAX_SHOWN], list(islice(known, MAX_COMPARED)))
+    found = closest(word, known)
     return f"Is `{found}` meant?" if found else ""
 
 

@@ -20,8 +20,5 @@ MAX_DIGITS = 400
 MAX_PROBLEMS = 100
 """reports of one text, after which the rest is not explained"""
 
-MAX_COMPARED = 100
-"""names among which the one is looked for that was meant: comparing is slow"""
-
 MAX_SHOWN = 60
 """characters of a hostile word that a report repeats"""

@@ -11,6 +11,7 @@ FRAMEWORK = Framework(
     "protobuf",
     features=f"{HERE}.features:PROBES",
     definition=f"{HERE}.definition:definition",
+    announcement=f"{HERE}.announcement:announcement",
     idl={".proto": f"{HERE}.idl:parse"},
     encodings={"protobuf": ENCODING, "protobuf-partial": ENCODING},
     infer=f"{HERE}.infer:infer",

@@ -27,9 +27,6 @@ MAX_SYNTAX_ERRORS = 20
 MAX_REPORTED = 100
 """problems that one report lists"""
 
-MAX_COMPARED = 500
-"""names among which the one is looked for that was meant: comparing is slow"""
-
 MAX_SHOWN = 40
 """characters of a wrong name that a report repeats"""
 

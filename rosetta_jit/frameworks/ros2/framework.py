@@ -22,6 +22,7 @@ FRAMEWORK = Framework(
     "ros2",
     features=f"{HERE}.features:PROBES",
     definition=f"{HERE}.definition:definition",
+    announcement=f"{HERE}.announcement:announcement",
     texts="rosetta_jit.frameworks.ros.texts:file_of",
     idl=dict.fromkeys((".msg", ".srv", ".action"), f"{HERE}.idl:parse") | {".idl": f"{HERE}.idl:parse_idl"},
     several={

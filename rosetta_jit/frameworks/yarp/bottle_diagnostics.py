@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from itertools import islice
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
-from rosetta_jit.frameworks.yarp.limits import MAX_COMPARED, MAX_SHOWN
+from rosetta_jit.frameworks.yarp.limits import MAX_SHOWN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -24,7 +23,7 @@ def _cut(name: str) -> str:
 
 
 def _nearest(name: str, known: Iterable[str]) -> str:
-    found = closest(name[:MAX_SHOWN], sorted(islice(known, MAX_COMPARED)))
+    found = closest(name, sorted(known))
     return f"did you mean `{found}`?" if found else ""
 
 

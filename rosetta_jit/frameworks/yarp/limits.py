@@ -25,9 +25,6 @@ MAX_KEY = 80
 MAX_PROBLEMS = 50
 """reports of one bottle schema, after which reading stops: nobody mends more at once"""
 
-MAX_COMPARED = 500
-"""names among which the one is looked for that was meant: comparing is slow"""
-
 MAX_SHOWN = 100
 """characters of a hostile name that a report repeats"""
 

@@ -68,14 +68,6 @@ YARP4 = Dialect("yarp4", MappingProxyType({**_NEWER, "float32": 10, "float64": 2
 DIALECTS: Mapping[str, Dialect] = MappingProxyType({dialect.name: dialect for dialect in (YARP2012, YARP3, YARP4)})
 
 
-def unit_mask(dialect: Dialect) -> int:
-    """The bits in which the codes of scalars lie: 0x7F in YARP 4, 0xFF in YARP 3."""
-    mask = 0
-    for code in dialect.tags.values():
-        mask |= code
-    return mask
-
-
 def list_code(dialect: Dialect, unit: str | None) -> int:
     """Code of a list of ``unit``, or of a general one where that is None."""
     return LIST if unit is None else LIST | dialect.tags[unit]

@@ -37,7 +37,7 @@ def nesting(span: Span, most: int) -> Diagnostic:
 
 def unknown_type(span: Span, name: str, known: Iterable[str]) -> Diagnostic:
     """A name that nothing declares."""
-    near = closest(name, list(known))
+    near = closest(name, known)
     help_ = f"did you mean `{near}`?" if near else "declare it, or include the file that does"
     return Diagnostic("error", "unknown-type", f"there is no type `{name}`", span, "not declared", help=help_)
 
@@ -72,7 +72,7 @@ def union(span: Span) -> Diagnostic:
 
 def unknown_service(span: Span, name: str, known: Iterable[str]) -> Diagnostic:
     """A service that extends what nothing declares."""
-    near = closest(name, list(known))
+    near = closest(name, known)
     help_ = f"did you mean `{near}`?" if near else "declare it, or include the file that does"
     return Diagnostic("error", "unknown-service", f"there is no service `{name}`", span, "not declared", help=help_)
 

@@ -123,20 +123,19 @@ class Make:
                 assert isinstance(inner, String)
                 return self._texts(inner, slot, start, count)
             case Array(inner):
-                self.depth += 1
-                index = f"i_{self.depth}"
-                text = f"[{self.row(inner, slot.lane, index)} for {index} in range({start}, {start} + {count})]"
-                self.depth -= 1
-                return text
+                return f"[{self._each(lambda index: self.row(inner, slot.lane, index), start, count)}]"
             case Map(key, value):
-                self.depth += 1
-                index, entry = f"i_{self.depth}", map_entry(key, value)
                 assert isinstance(element, Row)
-                parts = [
-                    self.value(each.type, member.slot, slot.lane, index) for each, member in zip(entry.fields, element.members, strict=True)
-                ]
-                self.depth -= 1
-                return f"{{{parts[0]}: {parts[1]} for {index} in range({start}, {start} + {count})}}"
+                pair = [(each.type, member.slot) for each, member in zip(map_entry(key, value).fields, element.members, strict=True)]
+                return f"{{{self._each(lambda index: ': '.join(self.value(*each, slot.lane, index) for each in pair), start, count)}}}"
+
+    def _each(self, text: Callable[[str], str], start: str, count: str) -> str:
+        """The text of each element by the name of its index, in a comprehension."""
+        self.depth += 1
+        index = f"i_{self.depth}"
+        found = f"{text(index)} for {index} in range({start}, {start} + {count})"
+        self.depth -= 1
+        return found
 
     def _numbers(self, numbers: str, scalar: str) -> str:
         """An array of a list, or of a view of memory."""

@@ -57,6 +57,10 @@ def reuse(kernel: Kernel) -> Kernel:
 
 
 def _body(body: Block, taken: set[str], written: Mapping[str, set[int]]) -> Block:
+    reads = [part for stmt, _ in statements(body) for expr in expressions_of(stmt) for part in subexpressions(expr)]
+    reads = [part for part in reads if isinstance(part, Load | Get)]
+    if len(set(reads)) == len(reads):
+        return body
     names = _Names(changed_names(body), taken, written)
     named = _block(body, {}, names)
     parts = (part for stmt, _ in statements(named) for expr in expressions_of(stmt) for part in subexpressions(expr))

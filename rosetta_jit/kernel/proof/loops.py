@@ -1,7 +1,7 @@
 """What is true in every round of a loop: guessed at the entry, kept as long as each round keeps it.
 
-The relations guessed are few: a position stays within the message, nothing falls below its first value or below zero, what a round adds
-one to at most has grown by no more than there were rounds. One that a
+The relations guessed are few: a position stays within the message, nothing falls below its first value or below zero, what each
+round adds an integer of few bits to has grown by no more than so many times the largest. One that a
 round breaks is dropped for good, so that for all its loops together a kernel is walked at most once for each guess. To walk a loop again
 is to walk all loops in it again: what can hardly hold is not tried.
 """
@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.arithmetic import FLOATS
-from rosetta_jit.kernel.ir import Advance, Assign, Binary, Const, Convert, If, Let, Local, Select
+from rosetta_jit.kernel.arithmetic import FLOATS, limits
+from rosetta_jit.kernel.ir import WIDTH, Advance, Assign, Binary, Const, Convert, If, Let, Local, Select
 from rosetta_jit.kernel.limits import MAX_LOOP_ROUNDS
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import All, Any
@@ -33,8 +33,11 @@ if TYPE_CHECKING:
 
 ZERO = Linear(0)
 
+FEW_BYTES = 4
+"""Integers of so many are added up without a check in each round."""
+
 ROUNDS = 4
-"""The anchor that is a variable's first value and as many as there were rounds before."""
+"""The anchor that is a variable's first value and a ``step`` for each round before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +47,7 @@ class Guess:
     name: str
     anchor: int
     sign: int
+    step: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +78,7 @@ def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
     """Walk any round of a loop, and go to the place after it, with the same guesses known."""
     names, lanes = changed_names(loop.body), advanced_lanes(loop.body)
     at_entry = Entry(scope.mark(), list(scope.used), {name: scope.locals[name] for name in sorted(names & scope.locals.keys())})
-    counted = [Guess(name, ROUNDS, -1) for name in counters(loop, scope)]
-    kept = [guess for guess in (*guesses(scope, names), *counted) if guess not in dropped]
+    kept = [guess for guess in (*guesses(scope, names), *counted(loop, scope)) if guess not in dropped]
     while True:
         written = 0 if scope.record is None else scope.record.mark()
         lost = _round(scope, loop, at_entry, kept)
@@ -190,14 +193,22 @@ def guesses(scope: Scope, names: set[str]) -> list[Guess]:
     return found
 
 
-def counters(loop: Loop, scope: Scope) -> list[str]:
-    """The variables to which a round adds one at most, as its text shows, in a loop that does not run a negative number of times."""
+def counted(loop: Loop, scope: Scope) -> list[Guess]:
+    """How far variables may get to which each round adds an integer of few bits, in a loop that runs no negative number of times."""
     named = {stmt.name: stmt.value for stmt in _once(loop.body) if isinstance(stmt, Let)}
-    once = [stmt for stmt in _once(loop.body) if isinstance(stmt, Assign)]
     every = [stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, Assign)]
-    found = [each.name for each in once if every.count(each.name) == 1 and _adds_one(each.value, each.name, named)]
-    known = [name for name in found if scope.locals.get(name, ("", None))[0] == "i64" and isinstance(scope.locals[name][1], Linear)]
-    return known if loop.variable and known and scope.facts.proves(loop.count) else []
+    found: list[Guess] = []
+    for stmt in _once(loop.body):
+        added = _added(stmt.value, stmt.name, named) if isinstance(stmt, Assign) and every.count(stmt.name) == 1 else None
+        if added is None or not isinstance(stmt, Assign) or not _is_integer(scope.locals.get(stmt.name)):
+            continue
+        low, high = added
+        found += [Guess(stmt.name, ROUNDS, -1, high), *([Guess(stmt.name, ROUNDS, 1, low)] if low < 0 else [])]
+    return found if loop.variable and found and scope.facts.proves(loop.count) else []
+
+
+def _is_integer(known: Typed | None) -> bool:
+    return known is not None and known[0] == "i64" and isinstance(known[1], Linear)
 
 
 def _once(body: Block) -> Iterator[Stmt]:
@@ -208,25 +219,28 @@ def _once(body: Block) -> Iterator[Stmt]:
             yield from _once((*stmt.then, *stmt.otherwise))
 
 
-def _adds_one(value: Expr, name: str, named: Mapping[str, Expr]) -> bool:
-    """Whether a value is that of a variable, or one more."""
+def _added(value: Expr, name: str, named: Mapping[str, Expr]) -> tuple[int, int] | None:
+    """The least and the most that a value is beyond that of a variable, where it is a sum with it."""
     match _written(value, named):
         case Binary("add", Local("i64", first), step) if first == name:
-            return _is_bit(_written(step, named), named)
+            return _range(_written(step, named), named)
         case _:
-            return False
+            return None
 
 
-def _is_bit(value: Expr, named: Mapping[str, Expr]) -> bool:
+def _range(value: Expr, named: Mapping[str, Expr]) -> tuple[int, int] | None:
+    """The bounds of an integer of few bits."""
     match value:
-        case Const(value=0 | 1):
-            return True
+        case Const(value=int(number)) if abs(number) <= 1:
+            return int(number), int(number)
         case Select(_, then, otherwise):
-            return all(_is_bit(_written(each, named), named) for each in (then, otherwise))
-        case Convert(_, operand):
-            return type_of(operand) == "bool"
+            ranges = [_range(_written(each, named), named) for each in (then, otherwise)]
+            known = [each for each in ranges if each is not None]
+            return (min(low for low, _ in known), max(high for _, high in known)) if len(known) == len(ranges) else None
+        case Convert(_, operand) if (type_ := type_of(operand)) not in FLOATS and (type_ == "bool" or WIDTH[type_] <= FEW_BYTES):
+            return (0, 1) if type_ == "bool" else limits(type_)
         case _:
-            return False
+            return None
 
 
 def _written(value: Expr, named: Mapping[str, Expr]) -> Expr:
@@ -236,7 +250,7 @@ def _written(value: Expr, named: Mapping[str, Expr]) -> Expr:
 
 def instance(scope: Scope, guess: Guess, at_entry: Typed, value: Linear, rounds: Linear) -> Linear:
     """A guess about a value, as a fact; ``at_entry`` is the variable before the first round, and so many ``rounds`` were before."""
-    marks = [*anchors(scope, at_entry), plus(linear(at_entry[1]), rounds)]
+    marks = [*anchors(scope, at_entry), plus(linear(at_entry[1]), times(rounds, guess.step))]
     return times(minus(value, marks[guess.anchor]), guess.sign)
 
 

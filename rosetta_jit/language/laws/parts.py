@@ -35,6 +35,8 @@ def simplified(expr: Expr, truth: Truth) -> Expr | None:
             return None if found is None or found[2].value != divisor.value else found[0 if function == "floor_divide" else 1]
         case Call(("seconds" | "fraction") as function, (Call("iso8601", (whole, behind)),)):
             return whole if function == "seconds" else behind
+        case Call("repeated", (Call("run_values", (array,)), Call("run_lengths", (other,)))) if array == other:
+            return array
         case Call("nanoseconds", (whole, behind)):
             return _whole(bare(whole), bare(behind), SECOND)
         case Call("iso8601" | "timestamp", (whole, behind)):

@@ -54,7 +54,7 @@ def declared(mapping: model.Mapping, problems: list[Diagnostic]) -> Declared:
             problems.append(words.repeated(each.span, each.name, other))
         elif each.type not in TYPES:
             problems.append(words.unknown_type(each.span, each.type, TYPES))
-            initial[each.name], types[each.name] = 0, closest(each.type[:100], list(TYPES)) or "float64"  # what is probably meant
+            initial[each.name], types[each.name] = 0, closest(each.type, TYPES) or "float64"  # what is probably meant
         else:
             initial[each.name], types[each.name] = _initial(each, problems), each.type
     return Declared(initial, types)

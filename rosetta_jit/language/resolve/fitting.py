@@ -38,6 +38,8 @@ def fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
         return value
     if isinstance(value, Call) and value.function == "split" and _holds_texts(target, scope):
         return value
+    if isinstance(value, Call) and isinstance(value.type, Array) and _holds(value.type.element, target, scope):
+        return value
     if isinstance(value, Call) and is_textual(value.type) and not is_image:
         if is_textual(target):
             return value
@@ -49,6 +51,17 @@ def fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     if fitting is None:
         scope.problems.append(_mismatch(value, target))
     return fitting
+
+
+def _holds(element: Type, target: Type, scope: Scope) -> bool:
+    """Whether a type is an array that takes the elements that a function makes: integers are checked one by one."""
+    message = scope.messages[scope.target]
+    wanted = (
+        Int(8, signed=False) if isinstance(target, Bytes) else message.value_type(target.element) if isinstance(target, Array) else None
+    )
+    return wanted is not None and (
+        same(element, wanted) or widens(element, wanted) or (isinstance(element, Int) and isinstance(wanted, Int))
+    )
 
 
 def _holds_texts(target: Type, scope: Scope) -> bool:

@@ -18,14 +18,14 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.logs.bag.grammar import EMPTY_MD5, header_of, number
-from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
+from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted, widened
 from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.limits import MAX_HEADER_BYTES
 from rosetta_jit.logs.records import PEEK
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.storage import Storage
@@ -55,12 +55,13 @@ class OldBagReader:
         self._definitions: dict[tuple[bytes, bytes], bytes] = {}
         self._numbers: dict[tuple[bytes, bytes, bytes], int] = {}
         self._check_index()
-        counts, self._extent = dict[int, int](), None
+        self.extent: Extent | None = None
+        self.facts, self.pieces = {"version": "1.2"}, (Piece(storage.size),)
+        counts = dict[int, int]()
         for channel, time_ns, _, _ in self._messages():
             counts[channel] = counts.get(channel, 0) + 1
-            known = self._extent or Extent(time_ns, time_ns)
-            self._extent = Extent(min(known.start_ns, time_ns), max(known.end_ns, time_ns))
-        self._connections = {each: replace(self._defined(key), count=counts[each]) for key, each in self._numbers.items()}
+            self.extent = widened(self.extent, time_ns, time_ns)
+        self.connections = {each: replace(self._defined(key), count=counts[each]) for key, each in self._numbers.items()}
 
     def _check_index(self) -> None:
         """Say if the bag has none of the index that its first record tells of: its writer was stopped, or it is cut."""
@@ -73,22 +74,6 @@ class OldBagReader:
             self._tell(words.unfinished(self._storage.name))
         elif at >= self._storage.size:
             self._tell(words.bad_index(self._storage.name, "it is outside of the file"))
-
-    @property
-    def connections(self) -> Mapping[int, Connection]:
-        return self._connections
-
-    @property
-    def extent(self) -> Extent | None:
-        return self._extent
-
-    @property
-    def facts(self) -> Mapping[str, str]:
-        return {"version": "1.2"}
-
-    @property
-    def pieces(self) -> tuple[Piece]:
-        return (Piece(self._storage.size),)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         return blocks_of(

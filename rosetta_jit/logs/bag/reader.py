@@ -11,7 +11,7 @@ from rosetta_jit.errors import LogError
 from rosetta_jit.logs.bag.grammar import CHUNK_INFO, CONNECTION, BagGrammar, header_of, number, time_ns
 from rosetta_jit.logs.bag.old import MAGIC as OLD_MAGIC
 from rosetta_jit.logs.bag.old import OldBagReader
-from rosetta_jit.logs.base import Extent
+from rosetta_jit.logs.base import Extent, widened
 from rosetta_jit.logs.limits import MAX_INDEX_BYTES
 from rosetta_jit.logs.records import PEEK, Chunk, Records, Region, Scanned, pieces_of, segments_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -148,7 +148,4 @@ def _chunk_info(header: dict[bytes, bytes], data: bytes) -> Chunk:
 
 
 def _wider(extent: Extent | None, chunk: Chunk) -> Extent | None:
-    if chunk.times is None or not chunk.counts:
-        return extent
-    first, last = chunk.times
-    return Extent(first, last) if extent is None else Extent(min(first, extent.start_ns), max(last, extent.end_ns))
+    return extent if chunk.times is None or not chunk.counts else widened(extent, *chunk.times)

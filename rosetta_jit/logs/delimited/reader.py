@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
-from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
+from rosetta_jit.logs.base import Block, Connection, Piece, Wanted
 from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES, MAX_VARINT_BYTES
 from rosetta_jit.logs.varints import varint
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.storage import Storage
@@ -25,23 +25,9 @@ class DelimitedReader:
     def __init__(self, storage: Storage, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
         del check  # it has no checksums
         self._storage, self._tell = storage, tell
-        self._count = sum(len(block.rows) for block in self.blocks(Wanted()))
-
-    @property
-    def connections(self) -> Mapping[int, Connection]:
-        return {0: Connection(0, self._storage.path.name.partition(".")[0], "", "protobuf", count=self._count)}
-
-    @property
-    def extent(self) -> Extent | None:
-        return None
-
-    @property
-    def facts(self) -> Mapping[str, str]:
-        return {}
-
-    @property
-    def pieces(self) -> tuple[Piece]:
-        return (Piece(self._storage.size),)
+        count = sum(len(block.rows) for block in self.blocks(Wanted()))
+        self.connections = {0: Connection(0, storage.path.name.partition(".")[0], "", "protobuf", count=count)}
+        self.extent, self.facts, self.pieces = None, dict[str, str](), (Piece(storage.size),)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         del wanted

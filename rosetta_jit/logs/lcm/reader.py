@@ -11,13 +11,13 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
-from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
+from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted, widened
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
 from rosetta_jit.logs.records import WINDOW, add_counts
 from rosetta_jit.logs.walking import Rows, Why, walk
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -42,28 +42,17 @@ class LcmReader:
         self._storage, self._tell = storage, tell
         self._seed = secrets.randbits(64)
         self._numbers: dict[int, int] = {}
-        self._known: dict[int, Connection] = {}
+        self.connections: dict[int, Connection] = {}
         counts: dict[int, int | None] = {}
-        self._extent: Extent | None = None
+        self.extent: Extent | None = None
+        self.facts = dict[str, str]()
         self._marks = [0]
         for at, block in self._walked(0, storage.size):
             if at - self._marks[-1] >= PIECE:
                 self._marks.append(at)
             add_counts(counts, block.rows)
-            self._time(int(block.rows.log_ns.min()), int(block.rows.log_ns.max()))
-        self._known = {number: replace(each, count=counts.get(number, 0)) for number, each in self._known.items()}
-
-    @property
-    def connections(self) -> Mapping[int, Connection]:
-        return self._known
-
-    @property
-    def extent(self) -> Extent | None:
-        return self._extent
-
-    @property
-    def facts(self) -> Mapping[str, str]:
-        return {}
+            self.extent = widened(self.extent, int(block.rows.log_ns.min()), int(block.rows.log_ns.max()))
+        self.connections = {number: replace(each, count=counts.get(number, 0)) for number, each in self.connections.items()}
 
     @property
     def pieces(self) -> Sequence[Piece]:
@@ -113,7 +102,7 @@ class LcmReader:
 
     def _number(self, key: int, data: NDArray[np.uint8], rows: Rows, row: int) -> int:
         number = self._numbers.setdefault(key, len(self._numbers))
-        if number not in self._known:
+        if number not in self.connections:
             begin, end = int(rows.begins[row]), int(rows.ends[row])
             before = int(rows.ends[row - 1]) if row else 0
             head = data[before:begin].tobytes()
@@ -121,9 +110,5 @@ class LcmReader:
             name = head[len(head) - size :].decode("utf-8", "replace")
             fingerprint = data[begin : min(begin + 8, end)].tobytes().hex()
             details = {"fingerprint": f"0x{fingerprint}"} if len(fingerprint) == 16 else {}
-            self._known[number] = Connection(number, name, "", "lcm", details=details)
+            self.connections[number] = Connection(number, name, "", "lcm", details=details)
         return number
-
-    def _time(self, first: int, last: int) -> None:
-        known = self._extent or Extent(first, last)
-        self._extent = Extent(min(first, known.start_ns), max(last, known.end_ns))

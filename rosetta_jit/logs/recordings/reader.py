@@ -9,7 +9,7 @@ from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.recording import RecordingError, read_messages
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.storage import Storage
@@ -22,24 +22,10 @@ class RecordingReader:
         del check  # xz has its own checksums
         self._path, self._tell = storage.path, tell
         times = [(int(block.rows.log_ns.min()), int(block.rows.log_ns.max()), len(block.rows)) for block in self.blocks(Wanted())]
-        self._extent = Extent(min(each[0] for each in times), max(each[1] for each in times)) if times else None
-        self._count = sum(each[2] for each in times)
-
-    @property
-    def connections(self) -> Mapping[int, Connection]:
-        return {0: Connection(0, self._path.name.partition(".")[0], "", "yarp", count=self._count)}
-
-    @property
-    def extent(self) -> Extent | None:
-        return self._extent
-
-    @property
-    def facts(self) -> Mapping[str, str]:
-        return {}
-
-    @property
-    def pieces(self) -> tuple[Piece]:
-        return (Piece(0),)
+        self.extent = Extent(min(each[0] for each in times), max(each[1] for each in times)) if times else None
+        count = sum(each[2] for each in times)
+        self.connections = {0: Connection(0, self._path.name.partition(".")[0], "", "yarp", count=count)}
+        self.facts, self.pieces = dict[str, str](), (Piece(0),)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         del wanted

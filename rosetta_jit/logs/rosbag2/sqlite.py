@@ -15,7 +15,7 @@ from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.storage import Storage
@@ -30,32 +30,17 @@ class SqliteReader:
 
     def __init__(self, storage: Storage, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
         del check  # it has no checksums
-        self._name, self._tell, self._size = storage.name, tell, storage.size
+        self._name, self._tell = storage.name, tell
+        self.facts, self.pieces = {"storage": "sqlite3"}, (Piece(storage.size),)
         try:
             self._database = sqlite3.connect(f"{storage.path.resolve().as_uri()}?mode=ro", uri=True, check_same_thread=False)
             self._database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_RECORD_BYTES)
             self._check_tables()
-            self._connections = self._defined()
+            self.connections = self._defined()
             first, last = self._database.execute("SELECT MIN(timestamp), MAX(timestamp) FROM messages").fetchone()
         except (sqlite3.Error, ValueError, OverflowError) as error:
             raise LogError((words.unreadable(storage.name, str(error)),)) from error
-        self._extent = Extent(first, last) if isinstance(first, int) and isinstance(last, int) else None
-
-    @property
-    def connections(self) -> Mapping[int, Connection]:
-        return self._connections
-
-    @property
-    def extent(self) -> Extent | None:
-        return self._extent
-
-    @property
-    def facts(self) -> Mapping[str, str]:
-        return {"storage": "sqlite3"}
-
-    @property
-    def pieces(self) -> tuple[Piece]:
-        return (Piece(self._size),)
+        self.extent = Extent(first, last) if isinstance(first, int) and isinstance(last, int) else None
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         return blocks_of(self._messages(wanted))

@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
-from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
+from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted, widened
 from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.fields import Fields
 from rosetta_jit.logs.limits import MAX_DEFINITION_BYTES, MAX_RECORD_BYTES
 from rosetta_jit.logs.varints import fields
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.storage import Storage
@@ -46,33 +46,17 @@ class TideReader:
         if head[HEAD]:
             raise LogError((words.old_version(storage.name, f"TIDE {head[HEAD]}.{head[HEAD + 1]}"),))
         self._storage, self._tell = storage, tell
-        self._connections: dict[int, Connection] = {}
+        self.connections: dict[int, Connection] = {}
         self._data_fields: dict[int, int] = {}
         self._chunks: list[tuple[int, int]] = []
-        self._extent: Extent | None = None
+        self.extent: Extent | None = None
         self._scan()
-        counts = dict.fromkeys(self._connections, 0)
+        counts = dict.fromkeys(self.connections, 0)
         for channel, time_ns, _, _ in self._entries():
             counts[channel] = counts.get(channel, 0) + 1
-            known = self._extent or Extent(time_ns, time_ns)
-            self._extent = Extent(min(known.start_ns, time_ns), max(known.end_ns, time_ns))
-        self._connections = {number: replace(each, count=counts[number]) for number, each in self._connections.items()}
-
-    @property
-    def connections(self) -> Mapping[int, Connection]:
-        return self._connections
-
-    @property
-    def extent(self) -> Extent | None:
-        return self._extent
-
-    @property
-    def facts(self) -> Mapping[str, str]:
-        return {"chunks": str(len(self._chunks))}
-
-    @property
-    def pieces(self) -> tuple[Piece]:
-        return (Piece(self._storage.size),)
+            self.extent = widened(self.extent, time_ns, time_ns)
+        self.connections = {number: replace(each, count=counts[number]) for number, each in self.connections.items()}
+        self.facts, self.pieces = {"chunks": str(len(self._chunks))}, (Piece(storage.size),)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         return blocks_of(self._messages(wanted))
@@ -117,13 +101,13 @@ class TideReader:
             return
         event = EVENT.fullmatch(type_)
         if event is None:
-            self._connections[number] = Connection(number, name, type_, "", details={"source": source})
+            self.connections[number] = Connection(number, name, type_, "", details={"source": source})
             return
         schema = event[2]
         self._data_fields[number] = 8 if event[1] in ("4", "5") else 9
         encoding = "protobuf" if schema.startswith(".") else schema
         topic = name.removesuffix(f":{schema}")
-        self._connections[number] = Connection(number, topic, schema.removeprefix("."), encoding, details={"source": source})
+        self.connections[number] = Connection(number, topic, schema.removeprefix("."), encoding, details={"source": source})
 
     def _entries(self) -> Iterator[tuple[int, int, int, int]]:
         """Channel, time and place of the bytes of each entry."""
@@ -141,7 +125,7 @@ class TideReader:
                     self._tell(words.chunk_damaged(self._storage.name, begin, f"its entries break off at byte {at}"))
                     break
                 channel, time_ns, _ = ENTRY_HEAD.unpack(entry)
-                if channel in self._connections:
+                if channel in self.connections:
                     yield channel, min(time_ns, (1 << 63) - 1), at + ENTRY_HEAD.size, size
                 else:
                     self._tell(words.unknown_channel(self._storage.name, channel))

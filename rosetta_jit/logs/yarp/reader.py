@@ -17,7 +17,7 @@ from rosetta_jit.errors import EncodeError, LogError
 from rosetta_jit.frameworks.yarp import bottle
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.frameworks.yarp.text import parse_text
-from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
+from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted, widened
 from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.limits import MAX_INFO_BYTES, MAX_LINE_BYTES
 from rosetta_jit.logs.yarp.images import ImageError, image_message
@@ -68,13 +68,14 @@ class DumperReader:
         if not folders:
             raise LogError((words.not_a(storage.name, "folder of yarpdatadumper: it has no data.log"),))
         self._ports = [_port(folder, tell) for folder in folders]
-        self._counts, self._extent = dict[int, int](), None
+        self.extent: Extent | None = None
+        self.facts, self.pieces = {"ports": str(len(self._ports))}, (Piece(0),)
+        self._counts = dict[int, int]()
         for block in self.blocks(Wanted()):
             times = block.rows.log_ns
             for number in block.rows.channels.tolist():
                 self._counts[number] = self._counts.get(number, 0) + 1
-            known = self._extent or Extent(int(times[0]), int(times[0]))
-            self._extent = Extent(min(known.start_ns, int(times.min())), max(known.end_ns, int(times.max())))
+            self.extent = widened(self.extent, int(times.min()), int(times.max()))
 
     @property
     def connections(self) -> Mapping[int, Connection]:
@@ -82,18 +83,6 @@ class DumperReader:
             number: Connection(number, port.name, port.type, "yarp3", count=self._counts.get(number, 0), details={"kind": port.kind})
             for number, port in enumerate(self._ports)
         }
-
-    @property
-    def extent(self) -> Extent | None:
-        return self._extent
-
-    @property
-    def facts(self) -> Mapping[str, str]:
-        return {"ports": str(len(self._ports))}
-
-    @property
-    def pieces(self) -> tuple[Piece]:
-        return (Piece(0),)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         for number, port in enumerate(self._ports):

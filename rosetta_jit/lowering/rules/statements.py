@@ -18,11 +18,13 @@ from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.calls import lowered
 from rosetta_jit.lowering.codec.wire_fields import NotInPlaceError
+from rosetta_jit.lowering.filling import UINT8
 from rosetta_jit.lowering.rules.copies import copy, is_endless
 from rosetta_jit.lowering.rules.filters import filtered
 from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
 from rosetta_jit.lowering.rules.look_ahead import look_ahead
 from rosetta_jit.lowering.rules.packed_values import place_of
+from rosetta_jit.lowering.rules.putting import Putting
 from rosetta_jit.lowering.rules.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.rules.state import remember
 from rosetta_jit.lowering.rules.wire_side import WireSide, wire_key
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
     from rosetta_jit.kernel.ir import Block
+    from rosetta_jit.lowering.filling import Filling
     from rosetta_jit.lowering.rules.values import Values
     from rosetta_jit.lowering.texts.views import View
 
@@ -149,6 +152,8 @@ class Runner:
                 self.assign_bytes(place, origin, values)
             case Array(), typed.Call("split"):
                 self.assign_parts(place, value, values)
+            case ((Array() | Bytes()), typed.Call(type=Array())):
+                self.assign_filling(place, value, values)
             case ((String() | Bytes() | Array()), typed.Call()):
                 self.assign_computed(place, value, values)
             case ((Struct() | Map() | Union() | Array(element=Ref() | Struct() | Map() | Union())), typed.Access(origin)):
@@ -202,6 +207,20 @@ class Runner:
         size = self.count(view.size)
         self.take(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), view.address, size))
+
+    def assign_filling(self, place: typed.Place, call: typed.Call, values: Values) -> None:
+        """An array that a function makes of others. On the wire there is no place for it before it is known how long it is."""
+        if isinstance(self.target, WireSide):
+            raise NotInPlaceError
+        made = cast("Filling", lowered(call, values))
+        self.take(place, self.count(made.count), values)
+        variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
+        type_ = place.type.element if isinstance(place.type, Array) else UINT8
+        element = typed.Place(place.side, (*place.steps, typed.IndexStep(variable)), type_)
+        put = Putting(self.target, element, variable, values)
+        with self.forgetting():
+            made.fill(put)
+        put.check()
 
     def assign_parts(self, place: typed.Place, call: typed.Call, values: Values) -> None:
         """The parts of a text, each as an element. What is between separators is whole characters."""

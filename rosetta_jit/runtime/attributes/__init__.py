@@ -4,6 +4,7 @@
     code         that text as code: compiled once a machine, then from the cache
     places       what they must know of each field of a record: a table of words
     descriptors  attributes of a class that run them
+    names        attributes by their names, found without asking all classes above
     sequences    arrays that are shown by them
     methods      methods that serialise, as calls of programs
     makers       what makes holders

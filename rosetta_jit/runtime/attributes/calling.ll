@@ -1,7 +1,9 @@
-; Calls that make holders: of their class without arguments, and of a decoder's `new`.
+; What needs to know what stands behind a holder class (PyTypeObject with what belongs to it, $HEAP_TYPE_BYTES bytes): the calls that make holders, and
+; attributes by their names.
 ;
-; Behind a holder class (PyTypeObject with what belongs to it, $HEAP_TYPE_BYTES bytes) stands its recipe (`making.ll`), null where the class must
-; be called as any other. Of a maker (`attributes.makers`): 16 a list of the plan that its family's holders have, 24 the holder class, 40 the recipe,
+; First stands the recipe of the class (`making.ll`), null where it must be called as any other; $NAMES_AT its names, null where CPython must look
+; up all attributes: 0 mask, and from 8 on, at the first free place from that which the name's address selects, four words an attribute: the name, what
+; reads it, what writes it, and what these are given. Of a maker (`attributes.makers`): 16 a list of the plan that its family's holders have, 24 the holder class, 40 the recipe,
 ; 48 the plan that stood in the list when it was made, 56 the Python function that makes it, and a holder.
 
 @PyType_Type = external global i8
@@ -175,3 +177,67 @@ no:
   ret i1 false
 }
 @PyExc_Exception = external global ptr
+
+; The attributes of messages: what the class has for a name, without a look into the dicts of all classes above it. What is none of them, and all
+; of classes that somebody has derived or changed, is left to CPython.
+declare ptr @PyObject_GenericGetAttr(ptr, ptr)
+
+define ptr @get_attribute(ptr %self, ptr %name) {
+  %place = call ptr @named(ptr %self, ptr %name)
+  %known = icmp ne ptr %place, null
+  br i1 %known, label %read, label %generic, !prof !0
+read:
+  %getter = call ptr @pointer(ptr %place, i64 8)
+  %closure = call ptr @pointer(ptr %place, i64 24)
+  %value = tail call ptr %getter(ptr %self, ptr %closure)
+  ret ptr %value
+generic:
+  %found = tail call ptr @PyObject_GenericGetAttr(ptr %self, ptr %name)
+  ret ptr %found
+}
+
+define i32 @set_attribute(ptr %self, ptr %name, ptr %value) {
+  %place = call ptr @named(ptr %self, ptr %name)
+  %known = icmp ne ptr %place, null
+  br i1 %known, label %write, label %generic, !prof !0
+write:
+  %setter = call ptr @pointer(ptr %place, i64 16)
+  %closure = call ptr @pointer(ptr %place, i64 24)
+  %written = tail call i32 %setter(ptr %self, ptr %value, ptr %closure)
+  ret i32 %written
+generic:
+  %set = tail call i32 @set_any(ptr %self, ptr %name, ptr %value)
+  ret i32 %set
+}
+
+; Where the names of an object's class have one, by its address; null if they do not.
+define internal ptr @named(ptr %self, ptr %name) alwaysinline {
+  %class = call ptr @pointer(ptr %self, i64 8)
+  %names = call ptr @pointer(ptr %class, i64 $NAMES_AT)
+  %has.names = icmp ne ptr %names, null
+  br i1 %has.names, label %begin, label %no
+begin:
+  %mask = load i64, ptr %names
+  %address = ptrtoint ptr %name to i64
+  %start = lshr i64 %address, 4
+  br label %head
+head:
+  %number = phi i64 [ %start, %begin ], [ %next, %again ]
+  %next = add i64 %number, 1
+  %index = and i64 %number, %mask
+  %distance = shl i64 %index, 5
+  %from = add i64 %distance, 8
+  %place = getelementptr i8, ptr %names, i64 %from
+  %its = load ptr, ptr %place
+  %is.it = icmp eq ptr %its, %name
+  br i1 %is.it, label %found, label %look, !prof !0
+look:
+  %free = icmp eq ptr %its, null
+  br i1 %free, label %no, label %again
+again:
+  br label %head
+found:
+  ret ptr %place
+no:
+  ret ptr null
+}

@@ -6,7 +6,7 @@ import warnings
 from functools import cache
 from pathlib import Path
 from string import Template
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.runtime.cache.texts import kept
 from rosetta_jit.runtime.callable import is_native
@@ -29,7 +29,7 @@ WRITERS = ("set_python", "set_utf8", "set_bytes", "set_numbers", "set_texts", "s
 FUNCTIONS = ("begin", "bind", "restart", "spawn", "equip", "same", "extend_texts", "take", "take_anew")
 SEQUENCES = ("length", "subscript", "iterate", "itself", "next", "end_iterator")
 METHODS = ("method_encode", "method_write", "method_decode", "method_parse", "method_make", "method_build")
-HOLDERS = ("end_holder", "call_class", "call_maker")
+HOLDERS = ("end_holder", "call_class", "call_maker", "get_attribute")
 SYMBOLS = (
     *(f"{verb}_{scalar}" for scalar in SCALARS for verb in ("get", "set")),
     *READERS,
@@ -40,6 +40,9 @@ SYMBOLS = (
     *HOLDERS,
 )
 """What the library defines."""
+
+HEAP_TYPE_BYTES: int = cast("Any", type).__basicsize__
+"""The size of a class that a class statement makes, in bytes. Behind it lies what a class of its own class has besides."""
 
 CELLS = {"bool": "i8", "f32": "float", "f64": "double"}
 """LLVM's type of a scalar in memory, where it is not an integer of that size."""
@@ -78,7 +81,7 @@ def _assembled(whole: str) -> bytes:
 
 def text() -> str:
     """The module."""
-    calling = Template(_read("calling.ll")).substitute(HEAP_TYPE_BYTES=type.__basicsize__)
+    calling = Template(_read("calling.ll")).substitute(HEAP_TYPE_BYTES=HEAP_TYPE_BYTES, NAMES_AT=HEAP_TYPE_BYTES + 8)
     return "\n".join([*(_read(file) for file in FILES), calling, *_scalars()])
 
 

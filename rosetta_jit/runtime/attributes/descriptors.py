@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.attributes.names import Names
 from rosetta_jit.runtime.attributes.places import PLACE_BYTES, KeptFields
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Pairs, Record, Scalar, Text
@@ -68,7 +69,9 @@ def assignable(base: type) -> type:
     return with_attributes(created, names)
 
 
-def describe(made: type, entries: Mapping[str, Entry], shown: Sequence[str], kept: KeptFields, *, plain_arrays: bool) -> None:
+def describe(
+    made: type, entries: Mapping[str, Entry], shown: Sequence[str], kept: KeptFields, *, plain_arrays: bool, has_methods: bool
+) -> None:
     """Give a class an attribute for each field that is shown."""
     code = library()
     assert code is not None, "there are accessors"
@@ -82,11 +85,19 @@ def describe(made: type, entries: Mapping[str, Entry], shown: Sequence[str], kep
         get, set_ = accessors(entries[name], plain_arrays=plain_arrays)
         definition.name, definition.get, definition.set = _c_name(name), code[get], code[set_]
         definition.closure = PLACE_BYTES * numbers[name]
-    made._attributes = slots, table  # noqa: SLF001 # pyright: ignore[reportAttributeAccessIssue] - the class is ours; they live as long as it
+    names = Names({name: (each.get, each.set, each.closure or 0) for name, each in zip(others, table, strict=True)})
+    made._attributes = slots, table, names  # noqa: SLF001 # pyright: ignore[reportAttributeAccessIssue] - the class is ours; they live as long as it
     for name, definition in zip(members, slots, strict=True):
         setattr(made, name, member_of(made, definition))
     for name, definition in zip(others, table, strict=True):
         setattr(made, name, attribute_of(made, definition))
+    names.give(made, reads=not kept.offsets and not has_methods)
+
+
+def describe_view(made: type, holder_type: Any, kept: KeptFields | None) -> None:
+    """Give a class of views the attributes of its holder class by their names."""
+    if kept is not None:
+        holder_type._attributes[2].give(made, reads=not kept.offsets)  # noqa: SLF001 - the class is ours
 
 
 def _c_name(name: str) -> bytes:

@@ -7,6 +7,7 @@
 ; 24 items. Of a class (PyTypeObject): 32 size of objects, 48 dealloc, 256 base, 320 free, 392 finalize.
 
 declare void @PyObject_GC_UnTrack(ptr)
+declare void @PyObject_GC_Track(ptr)
 declare void @PyObject_ClearWeakRefs(ptr)
 declare i32 @PyObject_CallFinalizerFromDealloc(ptr)
 
@@ -118,6 +119,8 @@ search:
   %is.room = icmp ne ptr %place, null
   br i1 %is.room, label %put, label %no
 put:
+  ; else the collector of garbage, if the holder ends because of it, would go on to empty them
+  call void @PyObject_GC_UnTrack(ptr %lanes)
   call void @put_pointer(ptr %lanes, i64 128, ptr null)
   store ptr %lanes, ptr %place
   call void @Py_DecRef(ptr @_Py_NoneStruct)
@@ -141,6 +144,7 @@ take:
   store ptr @_Py_NoneStruct, ptr %place
   call void @keep(ptr %spares)
   call void @put_pointer(ptr %lanes, i64 128, ptr %spares)
+  call void @PyObject_GC_Track(ptr %lanes)
   ret ptr %lanes
 no:
   ret ptr null

@@ -6,7 +6,7 @@ import ctypes
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
-from rosetta_jit.runtime.attributes.code import functions, library
+from rosetta_jit.runtime.attributes.code import HEAP_TYPE_BYTES, functions, library
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.specs import (
     BASETYPE,
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.plan import Plan
 
 ENTRY, MAKER_BYTES = 64, 72
-HEAP_TYPE_BYTES: int = cast("Any", type).__basicsize__
-"""The size of a class that a class statement makes, in bytes. Behind it lies what a class of its own class has besides."""
 DEALLOC, FLAGS, CLASS_CALL = 48, 168, 400
 """Where in a class (PyTypeObject of Include/cpython/object.h) stand what ends its objects, its flags, and what calls it."""
 
@@ -86,7 +84,7 @@ def class_of_holder_classes() -> type:
     """A class to derive the class of holder classes from, with room behind each for what compiled code makes its objects of."""
     if not is_native():
         return type("HolderClassBase", (type,), {"__module__": __name__})
-    return from_spec("HolderClassBase", type, HEAP_TYPE_BYTES + 8, DEFAULT | BASETYPE, ())
+    return from_spec("HolderClassBase", type, HEAP_TYPE_BYTES + 16, DEFAULT | BASETYPE, ())
 
 
 def let_call(metaclass: type) -> None:
@@ -99,7 +97,8 @@ def make_quickly(holder_type: type) -> None:
     """Let compiled code end the objects of a holder class, and make them once it has a recipe (`set_recipe`)."""
     code = library()
     assert code is not None, "there is code for it"
-    write_word(id(holder_type) + DEALLOC, code["end_holder"])
+    if not holder_type.__dictoffset__:  # whose base, which is not ours, has forgotten its slots: CPython lets go of the dict
+        write_word(id(holder_type) + DEALLOC, code["end_holder"])
     write_word(id(holder_type) + CLASS_CALL, code["call_class"])
 
 

@@ -90,6 +90,31 @@ none:
   ret ptr null
 }
 
+; The same with the common case as part of the caller.
+define internal ptr @row_at_once(ptr %self) alwaysinline {
+  %state = call ptr @pointer(ptr %self, i64 16)
+  %is.made = icmp ne ptr %state, null
+  br i1 %is.made, label %look, label %search, !prof !0
+look:
+  %valid = load i64, ptr %state
+  %epoch = call i64 @word(ptr %state, i64 8)
+  %found = call i64 @word(ptr %self, i64 32)
+  %is.valid = icmp ne i64 %valid, 0
+  %current = icmp eq i64 %found, %epoch
+  %fixed = icmp eq i64 %found, -9223372036854775808
+  %known = or i1 %current, %fixed
+  %free = icmp sge i64 %epoch, 0
+  %one = and i1 %is.valid, %known
+  %easy = and i1 %one, %free
+  br i1 %easy, label %take, label %search, !prof !0
+take:
+  %quick = call ptr @row_found(ptr %self, ptr %state)
+  ret ptr %quick
+search:
+  %row = call ptr @row(ptr %self)
+  ret ptr %row
+}
+
 ; Where the row begins that was found; null if it is not in use.
 define internal ptr @row_found(ptr %self, ptr %state) alwaysinline {
   %lane.at = call i64 @word(ptr %self, i64 40)
@@ -173,6 +198,18 @@ look:
   %bits = call i64 @word(ptr %row, i64 %offset)
   %masked = and i64 %bits, %mask
   %is = icmp eq i64 %masked, %wanted
+  ret i1 %is
+yes:
+  ret i1 true
+}
+
+; The same, where most fields are always there.
+define internal i1 @is_there(ptr %place, ptr %row) alwaysinline {
+  %mask = call i64 @word(ptr %place, i64 24)
+  %always = icmp eq i64 %mask, 0
+  br i1 %always, label %yes, label %look, !prof !0
+look:
+  %is = call i1 @is_present(ptr %place, ptr %row)
   ret i1 %is
 yes:
   ret i1 true

@@ -262,7 +262,7 @@ declare i32 @PyErr_ExceptionMatches(ptr)
 declare void @PyErr_Fetch(ptr, ptr, ptr)
 declare void @PyErr_Restore(ptr, ptr, ptr)
 
-define i32 @set_attribute(ptr %self, ptr %name, ptr %value) {
+define internal i32 @set_any(ptr %self, ptr %name, ptr %value) noinline {
   %set = call i32 @PyObject_GenericSetAttr(ptr %self, ptr %name, ptr %value)
   %good = icmp eq i32 %set, 0
   br i1 %good, label %done, label %look, !prof !0

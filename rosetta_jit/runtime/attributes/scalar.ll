@@ -2,11 +2,11 @@
 
 define ptr @get_$NAME(ptr %self, ptr %field) {
   %place = call ptr @place(ptr %self, ptr %field)
-  %row = call ptr @row(ptr %self)
+  %row = call ptr @row_at_once(ptr %self)
   %has.row = icmp ne ptr %row, null
   br i1 %has.row, label %look, label %python, !prof !0
 look:
-  %present = call i1 @is_present(ptr %place, ptr %row)
+  %present = call i1 @is_there(ptr %place, ptr %row)
   br i1 %present, label %read, label %python, !prof !0
 read:
   %offset = load i64, ptr %place
@@ -22,7 +22,7 @@ python:
 
 define i32 @set_$NAME(ptr %self, ptr %value, ptr %field) {
   %place = call ptr @place(ptr %self, ptr %field)
-  %row = call ptr @row(ptr %self)
+  %row = call ptr @row_at_once(ptr %self)
   %has.row = icmp ne ptr %row, null
   %given = icmp ne ptr %value, null
   %can = and i1 %has.row, %given

@@ -49,13 +49,17 @@ def run_passes(passes: binding.ModulePassManager, module: binding.ModuleRef, bui
     passes.detach()
 
 
-def run_few_passes(module: binding.ModuleRef, machine: binding.TargetMachine) -> None:
-    """Run the passes without which code is poor, all of which take time in proportion to it."""
+def run_few_passes(module: binding.ModuleRef, machine: binding.TargetMachine, *, branches: bool = True) -> None:
+    """Run the passes without which code is poor, all of which take time in proportion to it.
+
+    Without ``branches``, that which makes fewer of them is left out.
+    """
     few = binding.create_new_module_pass_manager()
     few.add_always_inliner_pass()
     few.add_sroa_pass()
     few.add_instruction_combine_pass()
-    few.add_simplify_cfg_pass()
+    if branches:
+        few.add_simplify_cfg_pass()
     run_passes(few, module, binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=0)))
 
 

@@ -10,6 +10,7 @@ from rosetta_jit.errors import InUse
 from rosetta_jit.kernel.state import CLEAN, VALID, WASTED
 from rosetta_jit.runtime.attributes.code import functions
 from rosetta_jit.runtime.attributes.makers import call_as_any, class_of_holder_classes, let_call
+from rosetta_jit.runtime.attributes.names import take_names
 from rosetta_jit.runtime.holder import arena, grid, values
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import Message, View, in_row, place
@@ -46,7 +47,12 @@ class HolderClass(_HolderClassBase, type):  # noqa: D101 - its __doc__ is that o
     def __setattr__(cls, name: str, value: Any) -> None:
         if name in ("__init__", "__new__"):
             call_as_any(cls)
+        take_names(cls, name)
         super().__setattr__(name, value)
+
+    def __delattr__(cls, name: str) -> None:
+        take_names(cls, name)
+        super().__delattr__(name)
 
 
 let_call(HolderClass)

@@ -165,7 +165,7 @@ class Family:
             each.holder_type = made
         if code is not None:
             self._kept = descriptors.take_slots(made, list(entries.values()))
-            descriptors.describe(made, entries, shown, self._kept, plain_arrays=self.array_type is np.ndarray)
+            descriptors.describe(made, entries, shown, self._kept, plain_arrays=self.array_type is np.ndarray, has_methods=len(methods) > 1)
             make_quickly(made)
             self._begins_alike = made.__init__ is Holder.__init__ or made.begins_alike_ is True
         return made
@@ -205,6 +205,7 @@ class Family:
         if view is None:
             base = self.of_struct(struct)
             view = _class(struct, (View, base), {"__slots__": ("_is_view",), **base.family_.described})
+            descriptors.describe_view(view, base, base.family_.kept_of(struct))
             self._views[struct] = view
         return view
 

@@ -71,7 +71,7 @@ def building_method(family: Family) -> Any:
     def bind(made: Any) -> None:
         steps = family.takers.steps_of(dict)
         if steps is not None and steps.covers:
-            made.program = steps.table
+            made.needed, made.program = steps, steps.table
 
     return method("build", found.__func__, bind)
 

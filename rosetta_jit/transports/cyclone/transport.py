@@ -15,6 +15,8 @@ TRANSPORTS = (
         subscribe=f"{HERE}:subscribe",
         publish=f"{HERE}:publish",
         extra=("cyclonedds", "cyclonedds"),
+        types={"ros2-dds": "ros2"},
+        asks=("type",),
         options={
             "type": Option("text", "", "the type's name: `std_msgs/msg/String` for ros2-dds, as DDS has it for dds"),
             "struct": Option(

@@ -225,7 +225,9 @@ class RosSink(Sink):
         """A subscriber is gone."""
         self._streams.discard(stream)
         self.connections = len(self._streams)
-        if why:
+        if stream.unsent:
+            self.lose("closed before it was sent" if self._closed else "the subscriber went away", stream.unsent)
+        elif why:
             self.lose(why, 0)
 
     def send(self, data: bytes | bytearray | memoryview, *, time: int | None = None, attributes: Mapping[str, Any] | None = None) -> bool:

@@ -17,6 +17,8 @@ TRANSPORTS = (
         call=f"{HERE}.calls:call",
         serve=f"{HERE}.calls:serve",
         names=f"{HERE}.streaming:topics",
+        types={"ros1": "ros1"},
+        asks=("type", "md5"),
         options={
             "type": Option("text", "*", "the type's name, `sensor_msgs/Imu`; `*` takes any"),
             "md5": Option("text", "*", "the md5 sum of the type; `*` takes any"),

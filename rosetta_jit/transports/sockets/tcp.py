@@ -96,7 +96,9 @@ class Links:
     def _gone(self, stream: Stream, why: str) -> None:
         self.streams.discard(stream)
         self._counts.connections = len(self.streams)
-        if stream.cut or why:
+        if stream.unsent:
+            self._counts.lose("closed before it was sent" if self._closed else "the peer went away", stream.unsent)
+        elif stream.cut or why:
             self._counts.lose(why or "the connection ended in the middle of a message")
         if self.dialer is not None and self._again and not self._closed:
             self.dialer.lost()

@@ -98,7 +98,8 @@ class Output:
     def gone(self) -> int:
         """The connection is gone; gives the number of messages that waited."""
         with self._changed:
-            left = len(self._waiting) + self._unanswered
+            unsent = 0 if self.stream is None else self.stream.unsent
+            left = len(self._waiting) + (self._unanswered or unsent)
             self._waiting.clear()
             self._bytes = 0
             self._changed.notify_all()

@@ -35,6 +35,7 @@ TRANSPORTS = (
         publish=f"{HERE}.ros2:publish",
         names=f"{HERE}.ros2:topics",
         extra=("zenoh", "zenoh"),
+        types={"ros2-zenoh": "ros2"},
         options=SESSION
         | {
             "domain": Option("number", 0, "ROS_DOMAIN_ID"),

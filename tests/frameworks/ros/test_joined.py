@@ -30,7 +30,7 @@ def messages(x=2.0):
 
 def test_an_odometry_of_a_pose_and_a_velocity():
     decode, encode = rj.Decoders(ODOMETRY), rj.Encoders(ODOMETRY)
-    whole = rj.Encoder.of("nav_msgs/Odometry", encoding="ros1")
+    whole = decode.encoder(encoding="ros1")
     pose, _ = messages()
     decode.pose(pose)
     assert decode.missing == ("velocity",)
@@ -40,6 +40,14 @@ def test_an_odometry_of_a_pose_and_a_velocity():
         assert whole(holder) == raw(odometry)
     assert encode.pose(holder) == pose
     assert decode.ages == {"pose": 2, "velocity": 0}
+
+
+def test_a_bridge_writes_one_wire():
+    odometry = theirs("nav_msgs/Odometry", header=header(5, "map"), child_frame_id="base", pose=certain(0.5), twist=velocity())
+    bridge = rj.Bridge(None, ODOMETRY, encode={"wire": "pose"}, decode={"encoding": "ros1"})
+    assert bridge(raw(odometry)) == messages()[0]
+    with pytest.raises(rj.MappingError, match="several wires"):
+        rj.Bridge(None, ODOMETRY)
 
 
 def joints(names, first, sec=5):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
-from rosetta_jit.frameworks.protobuf.limits import MAX_COMPARED, MAX_REPORTED
+from rosetta_jit.frameworks.protobuf.limits import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
 from rosetta_jit.frameworks.protobuf.proto.symbols import ALL_KINDS, TYPES, Kind, Symbols, join, package_of
 from rosetta_jit.frameworks.protobuf.proto.tree import (
@@ -175,5 +175,5 @@ class _Resolver:
         """A declaration whose name ends in the same way, or almost so."""
         known = {full.rpartition(".")[2]: full for full, symbol in self.symbols.table.items() if symbol.kind in kinds}
         last = name.rpartition(".")[2]
-        close = last if last in known else closest(last, list(known)[:MAX_COMPARED])
+        close = last if last in known else closest(last, known)
         return None if close is None else known[close]

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import Family
     from rosetta_jit.runtime.holder.record import Choice, Entry, Node
 
+INLINED = 3
+"""How deep messages lie in others that one function fills."""
+
 Types = Mapping[str, type]
 """Classes by the names of their structs."""
 
@@ -60,10 +63,12 @@ class Givers:
 
     def make(self, object_type: type, holder: Any) -> Any:
         """A new object with the values of a holder. Raises as `fill`."""
+        return self.maker(object_type)(holder)
+
+    def maker(self, object_type: type) -> Callable[[Any], Any]:
+        """What makes an object of a class, given a holder. Raises as `fill`, now or then."""
         whole = self._family.wholes[object_type]
-        if whole is not None:
-            return whole.make(holder)
-        return self._maker(self._family.tree.root, "")[object_type](holder)
+        return self._maker(self._family.tree.root, "")[object_type] if whole is None else whole.make
 
     def _filler(self, record: Record, path: str) -> ByClass:
         return self._fillers.setdefault(id(record), ByClass(lambda each: self._written_filler(record, each, path)))
@@ -71,28 +76,59 @@ class Givers:
     def _maker(self, record: Record, path: str) -> ByClass:
         return self._makers.setdefault(id(record), ByClass(lambda each: self._written_maker(record, each, path)))
 
-    def _written_filler(self, record: Record, object_type: type, path: str) -> Callable[[Any, Any], None]:
-        """The function that fills objects of a class: one assignment a field."""
+    def _written_filler(self, record: Record, object_type: type, path: str, like: object = None) -> Callable[[Any, Any], None]:
+        """The function that fills objects of a class: one assignment a field.
+
+        It fills messages within, as an object that is ``like`` those has them, by itself.
+        """
         source = Source("fill")
+        self._add_fields(source, record, object_type, path, like)
+        return source.made("target, source")
+
+    def _add_fields(self, source: Source, record: Record, object_type: type, path: str, like: object, depth: str = "") -> None:
+        target = f"target{depth}"
         for entry, name in self._attributes(record, object_type, path):
-            read = self._reads(record, entry.name)
+            read = self._reads(record, entry.name, f"source{depth}")
             if entry.presence is None and isinstance(entry.node, Scalar | Text) and not isinstance(entry.node.type, Enum):
-                source.add(assignment("target", name, read))
+                source.add(assignment(target, name, read))
                 continue
             given = source.name_of(self._given(entry, object_type, name, path))
-            source.add(f"old = getattr(target, {name!r}, None)")
+            source.add(f"old = getattr({target}, {name!r}, None)")
             if entry.presence is None and isinstance(entry.node, Record) and unions.discriminator_of(entry.node) is None:
-                fillers, kind = source.name_of(self._filler(entry.node, f"{path}.{entry.name}")), source.name_of(type)
-                source.add(f"if old is not None: {fillers}[{kind}(old)](old, {read})")
-                source.add(f"else: {assignment('target', name, f'{given}({read}, None)')}")
+                self._add_message(source, entry.node, f"{path}.{entry.name}", read, getattr(like, name, None), depth)
+                source.add(f"else: {assignment(target, name, f'{given}({read}, None)')}")
+            elif (
+                entry.presence is None
+                and isinstance(entry.node, Numbers)
+                and shapes.kind_in(shapes.annotation(object_type, name)) != "ndarray"
+            ):
+                kind, exact = source.name_of(type), source.name_of(list)
+                source.add(assignment(target, name, f"{read}.tolist() if {kind}(old) is {exact} else {given}({read}, old)"))
             else:
-                source.add(assignment("target", name, self._if_there(source, entry, f"{given}({read}, old)")))
-        return source.made("target, source")
+                source.add(assignment(target, name, self._if_there(source, entry, f"{given}({read}, old)", f"source{depth}")))
+
+    def _add_message(self, source: Source, record: Record, path: str, read: str, like: object, depth: str) -> None:
+        """Lines that fill the message that was there, ``old``, if there was one."""
+        fillers, kind = source.name_of(self._filler(record, path)), source.name_of(type)
+        known: Any = type(like)
+        if (
+            len(depth) < INLINED
+            and like is not None
+            and shapes.has_messages(known)
+            and self._family.of_struct(record.struct).family_.wholes[known] is None
+        ):
+            source.add(f"if {kind}(old) is {source.name_of(known)}:")
+            with source.indented():
+                source.add(f"target{depth}_, source{depth}_ = old, {read}")
+                self._add_fields(source, record, known, path, like, f"{depth}_")
+            source.add(f"elif old is not None: {fillers}[{kind}(old)](old, {read})")
+        else:
+            source.add(f"if old is not None: {fillers}[{kind}(old)](old, {read})")
 
     def _written_maker(self, record: Record, object_type: type, path: str) -> Callable[[Any], Any]:
         """The function that makes objects of a class: by its constructor if that is a dataclass's, else filling an empty one."""
         if not shapes.fields_of(object_type):
-            filler = self._filler(record, path)[object_type]
+            filler = self._written_filler(record, object_type, path, object_type())
 
             def make(holder: Any) -> Any:
                 made = object_type()
@@ -118,11 +154,11 @@ class Givers:
             if names:
                 yield entry, _spelled(object_type, names, f"{path}.{entry.name}")
 
-    def _if_there(self, source: Source, entry: Entry, value: str) -> str:
-        return value if entry.presence is None else f"{value} if {source.name_of(_has)}(source, {entry.name!r}) else None"
+    def _if_there(self, source: Source, entry: Entry, value: str, of: str = "source") -> str:
+        return value if entry.presence is None else f"{value} if {source.name_of(_has)}({of}, {entry.name!r}) else None"
 
-    def _reads(self, record: Record, name: str) -> str:
-        return attribute("source", name) if name in self._family.shown(record) else f"source.access_.getters[{name!r}](source)"
+    def _reads(self, record: Record, name: str, of: str = "source") -> str:
+        return attribute(of, name) if name in self._family.shown(record) else f"{of}.access_.getters[{name!r}]({of})"
 
     def _given(self, entry: Entry, owner: type, name: str, path: str) -> Callable[[Any, Any], Any]:
         """What makes a value for an attribute, given the holder's and the one that is there."""

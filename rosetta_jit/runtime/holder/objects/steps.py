@@ -6,7 +6,6 @@ value that lies in the message's own row, or in a lane of its own: there is none
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
@@ -88,8 +87,6 @@ class Steps:
     ----------
     table : int
         Its address.
-    take : callable
-        Given a message and an object, whether the object was taken; False where it is another one, and some of it may have been taken then.
     covers : bool
         Whether it sets all that a message has, so that the message need not have been empty.
 
@@ -107,7 +104,11 @@ class Steps:
         self._alive: list[Any] = []
         self._classes: list[tuple[type, int]] = []
         self.table = self._table(record, like)
-        self.take: Callable[[Any, Any], bool] = partial(functions()["take"], self.table)
+        self._take = functions()["take"]
+
+    def take(self, message: Any, value: object) -> bool:
+        """Whether an object was taken; False where it is another one than these steps are for, and some of it may have been taken then."""
+        return self._take(self.table, message, value)
 
     def is_stale(self) -> bool:
         """Whether one of the classes has changed since."""

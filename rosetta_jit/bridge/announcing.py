@@ -1,0 +1,44 @@
+"""What a route knows of the types of its messages, and the ends of channels want to know, where addresses do not say it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+from rosetta_jit.api.bridges import Bridge
+from rosetta_jit.bridge.translating import Stateful
+from rosetta_jit.transports.address import parse
+from rosetta_jit.transports.installed import installed
+
+if TYPE_CHECKING:
+    from rosetta_jit.bridge.translating import Joining, Translate
+
+
+def announced(target: str, translate: Translate | Joining | None) -> dict[str, Any]:
+    """Options for a publisher: the name, md5 sum, hash and text of the type that is written, whichever it takes."""
+    return _known(target, translate, "encode")
+
+
+def wanted(source: str, translate: Translate | Joining | None) -> dict[str, Any]:
+    """Options for a subscriber: what the type that is read must be, so that messages of another one are refused and not misread."""
+    return _known(source, translate, "decode")
+
+
+def served(place: str, request: Translate | None, reply: Translate | None) -> dict[str, Any]:
+    """Options for a server: the service of ROS 1 whose requests are read, or the type of what RSB is answered."""
+    return wanted(place, request) or announced(place, reply)
+
+
+def _known(place: str, translate: Translate | Joining | None, half: Literal["decode", "encode"]) -> dict[str, str]:
+    """Nothing where messages are not translated, or where their type is none of the middleware's; nor of a type that the address says."""
+    known = installed()
+    address = parse(place, known)
+    transport = known[address.scheme]
+    bridge = translate.bridge if isinstance(translate, Stateful) else translate
+    framework = transport.types.get(address.scheme)
+    names = transport.asks if half == "decode" else tuple(transport.options)
+    if framework is None or not names or not isinstance(bridge, Bridge):
+        return {}
+    found = bridge.announced(framework, half)
+    if "type" in address.options and address.options["type"][0] != found.get("type"):
+        return {}
+    return {name: value for name, value in found.items() if name in names and name not in address.options}

@@ -1,0 +1,20 @@
+"""What a node of ROS 2 tells others of a type that it publishes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.ros2.type_hash import rihs01
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.types import Schema, Struct
+
+
+def announcement(struct: Struct, schema: Schema) -> dict[str, str]:
+    """Its name, and its hash, which types that ROS 2 cannot describe do not have."""
+    told = {"type": struct.name.replace("::", "/")}
+    try:
+        return {**told, "hash": rihs01(struct, schema)}
+    except SchemaError:
+        return told
