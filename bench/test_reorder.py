@@ -149,3 +149,32 @@ def by_numpy(job, pixels):
     if job.mapping.endswith("planar.mapping"):
         return pixels.reshape(-1, 3, job.pixel // 3).transpose(1, 0, 2)
     return pixels.reshape(-1, 2)[:, ::-1] if job.pixel == 2 else pixels
+
+
+COLOURS = ("bayer_rggb8", "yuv422", "nv12")
+
+
+@pytest.mark.parametrize("encoding", COLOURS)
+def test_colours_against_opencv(encoding, effort, compare, record):
+    """In one thread; a message to an image of RST against one array to another."""
+    cv2 = pytest.importorskip("cv2")
+    cv2.setNumThreads(1)
+    code = {"bayer_rggb8": cv2.COLOR_BayerRGGB2RGB, "yuv422": cv2.COLOR_YUV2RGB_UYVY, "nv12": cv2.COLOR_YUV2RGB_NV12}[encoding]
+    width, height = SIZES[0]
+    shape = {"bayer_rggb8": (height, width), "yuv422": (height, width, 2), "nv12": (height * 3 // 2, width)}[encoding]
+    pixels = np.random.default_rng(0).integers(0, 256, shape, np.uint8)
+    fields = {"height": height, "width": width, "encoding": encoding, "step": pixels.size // shape[0], "data": pixels.tobytes()}
+    write = rj.Encoder.of("sensor_msgs/Image", imports=["ros1/sensor_msgs/Image.msg"], encoding="ros1")
+    message, target = write(write.holder_type.from_dict(fields)), np.empty((height, width, 3), np.uint8)
+
+    def ours():
+        return effort.call(rj.Decoder("ros1/image_rgb.mapping", encoding="ros1"), anew(message))
+
+    contenders = [
+        Contender(OURS, "ours", "an RST image, used again", effort.placed(ours)),
+        Contender(
+            "OpenCV", "peer", "an array, from another", effort.placed(lambda: effort.call(lambda: cv2.cvtColor(pixels, code, target)))
+        ),
+    ]
+    outcome = compare(CHAPTER, f"image, {encoding} to RGB, {width}x{height}", contenders)
+    record(f"{encoding} to RGB, {width}x{height}", outcome.ratio(OURS, "OpenCV"), 2.0, "x OpenCV", took(outcome))

@@ -27,7 +27,7 @@ RUNTIME = {"runtime", "runtime.limits", "runtime.code", "runtime.cache", "runtim
 COMPILER = REPORTS | LANGUAGE | KERNEL | LOWERING | BACKENDS | RUNTIME | {"model", "parsing", "wire", "frameworks"}
 API = {"api", "api.options", "api.cacheable"}
 FUNCTIONS = REPORTS | {"model", "kernel", "language", "language.functions"}
-FUNCTIONS |= {"lowering", "lowering.codec", "lowering.texts"}
+FUNCTIONS |= {"lowering", "lowering.codec", "lowering.texts", "lowering.colours"}
 ANYTHING = (
     COMPILER
     | API
@@ -80,6 +80,7 @@ MAY_IMPORT = {
     "lowering": LOWERS,
     "lowering.codec": LOWERS,
     "lowering.texts": LOWERS,
+    "lowering.colours": LOWERS | {"lowering.texts"},
     "lowering.rules": LOWERS | {"lowering.codec", "lowering.texts"},
     "lowering.staging": LOWERS | {"lowering.codec"},
     "lowering.lower": LOWERS | LOWERING,

@@ -13,7 +13,10 @@ if TYPE_CHECKING:
 
     from rosetta_jit.source import Span
 
-FORMS = {"compress": '`compress(pixels, "png", width, height, channels)`, and behind it a level or quality'}
+FORMS = {
+    "compress": '`compress(pixels, "png", width, height, channels)`, and behind it a level or quality',
+    "rgb_of": '`rgb_of(pixels, "bayer_rggb8", width, height)`, and behind it how many bytes apart rows begin',
+}
 
 
 def arguments(span: Span | None, function: str, found: int) -> Diagnostic:
@@ -31,6 +34,12 @@ def unknown_format(span: Span | None, found: str | None, known: Sequence[str]) -
     """A format that cannot be written."""
     message = "a format is written in quotes" if found is None else f"images cannot be compressed as `{shorten(found)}`"
     return error("image-format", message, span, help_=f"choose one of {', '.join(known)}")
+
+
+def unknown_encoding(span: Span | None, found: str | None, known: Sequence[str]) -> Diagnostic:
+    """An encoding of pixels that is not made RGB."""
+    message = "an encoding is written in quotes" if found is None else f"pixels in `{shorten(found)}` cannot be made RGB"
+    return error("image-encoding", message, span, help_=f"choose one of {', '.join(known)}")
 
 
 def no_integer(span: Span | None, found: str) -> Diagnostic:

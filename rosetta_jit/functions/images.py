@@ -77,15 +77,21 @@ def _type_compressed(call: model.Call, arguments: list[typed.Expr], scope: Scope
     if not isinstance(named, str) or named not in DEFAULTS:
         scope.problems.append(words.unknown_format(format_.span, named if isinstance(named, str) else None, FORMATS))
         return None
+    known = typed_integers(numbers, scope)
+    if known is None:
+        return None
+    given = known if len(known) == 4 else [*known, typed.Const(DEFAULTS[named], INT64)]
+    return typed.Call("compress", (pixels, typed.Const(named, String()), *given), Bytes(), call.span)
+
+
+def typed_integers(numbers: list[typed.Expr], scope: Scope) -> list[typed.Expr] | None:
+    """Sizes of an image, each as an int64; None, and reported, where one is no integer."""
     whole = [as_int64(number) for number in numbers]
     for number, integer in zip(numbers, whole, strict=True):
         if integer is None:
             scope.problems.append(words.no_integer(number.span, describe(number.type)))
     known = [number for number in whole if number is not None]
-    if len(known) < len(whole):
-        return None
-    given = known if len(known) == 4 else [*known, typed.Const(DEFAULTS[named], INT64)]
-    return typed.Call("compress", (pixels, typed.Const(named, String()), *given), Bytes(), call.span)
+    return known if len(known) == len(whole) else None
 
 
 # --- kernels -------------------------------------------------------------------------------------------------------------
@@ -94,18 +100,18 @@ def _type_compressed(call: model.Call, arguments: list[typed.Expr], scope: Scope
 def _lower_measure(call: typed.Call, values: Evaluation) -> Expr:
     """A number of a compressed image."""
     what = index(MEASURES.index(call.function))
-    return _asked(MEASURE, (what,), (_bytes_of(call.arguments[0], values),), values)
+    return _asked(MEASURE, (what,), (bytes_of(call.arguments[0], values),), values)
 
 
 def _lower_image(call: typed.Call, values: Evaluation) -> View:
     """An image, or its pixels, in the hidden lane."""
-    made = _bytes_of(call, values)
+    made = bytes_of(call, values)
     assert isinstance(made.address, Place)
     after = values.writer.let("after", Binary("add", made.address.row, made.size))
     return sound(values.writer, View(made.address.lane, made.address.row, after))
 
 
-def _bytes_of(value: typed.Expr, values: Evaluation) -> Extent:
+def bytes_of(value: typed.Expr, values: Evaluation) -> Extent:
     """Bytes that lie in a field, or that are computed."""
     match value:
         case typed.Access(place):
@@ -115,11 +121,11 @@ def _bytes_of(value: typed.Expr, values: Evaluation) -> Extent:
                 values.writer.require(size, values.where, at=address.at)  # known to be there: said again where the proof may have lost it
             return Extent(address, size)
         case typed.Call("decompress", (image,)):
-            source = _bytes_of(image, values)
+            source = bytes_of(image, values)
             size = _asked(MEASURE, (index(SIZE),), (source,), values)
             return _filled(DECOMPRESS, (), source, size, values)
         case typed.Call("compress", (pixels, typed.Const(str(format_)), *given)):
-            source = _bytes_of(pixels, values)
+            source = bytes_of(pixels, values)
             numbers = (index(FORMATS.index(format_)), *(values.writer.let("number", values.of(each)) for each in given))
             size = _asked(COMPRESSED, numbers, (source,), values)
             return _filled(COMPRESS, numbers, source, size, values)

@@ -63,6 +63,7 @@ OURS = (
     "octets",
     "checksums",
     "images",
+    "colours",
     *GROUPS,
 )
 """Modules of `rosetta_jit.functions` with a tuple `FUNCTIONS`, in the order of the reference."""

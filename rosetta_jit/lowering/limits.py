@@ -27,6 +27,9 @@ MAX_ABSENT = 1 << 16
 MAX_ABSENT_EACH = 1 << 6
 """the same where the member is in an element of an array, of which a message has many"""
 
+MAX_COLOUR_SIDE = 65_500
+"""pixels of a row or a column that are made RGB: more is an error of kind `image`"""
+
 MAX_EXPONENT = 10**12
 """the exponent of a number in a text: a larger one means the same, infinity or 0"""
 

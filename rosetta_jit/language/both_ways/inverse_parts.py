@@ -114,6 +114,8 @@ def _digits(expr: Binary, value: Expr, type_of: TypeOf) -> Parted:
             value = Binary("-", value, known, expr.span)
         else:
             terms.append(_term(each))
+    if terms[0].value is expr:
+        raise NoInverseError(expr, "one field is subtracted from the other, and nothing says what each of them is")
     terms.sort(key=lambda term: -term.factor)
     settings: list[Solution] = []
     digits: list[Digit] = []

@@ -1,0 +1,68 @@
+"""Pixels as cameras send them, made RGB: `rgb_of(bytes, encoding, width, height [, step])` (`rosetta_jit.lowering.colours`)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import images as words
+from rosetta_jit.functions.images import bytes_of, typed_integers
+from rosetta_jit.kernel.ir import Wire
+from rosetta_jit.kernel.terms import add
+from rosetta_jit.language import typed
+from rosetta_jit.language.conversions import describe
+from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
+from rosetta_jit.language.functions.texts import is_bytes
+from rosetta_jit.language.typed import INT64
+from rosetta_jit.lowering.colours import ENCODINGS, PACKED, Picture, to_rgb
+from rosetta_jit.lowering.texts.views import View, sound
+from rosetta_jit.model.types import Bytes, String
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.scope import Scope
+    from rosetta_jit.lowering.evaluation import Evaluation
+    from rosetta_jit.model import expr as model
+
+
+def _type_rgb(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> typed.Expr | None:
+    """A call: bytes that lie in a field or are decompressed, an encoding in quotes, integers."""
+    if len(arguments) not in (4, 5):
+        scope.problems.append(words.arguments(call.span, call.function, len(arguments)))
+        return None
+    pixels, encoding, *numbers = arguments
+    if not (isinstance(pixels, typed.Access) and is_bytes(pixels.type)):
+        scope.problems.append(words.no_bytes(pixels.span, call.function, describe(pixels.type)))
+        return None
+    named = encoding.value if isinstance(encoding, typed.Const) and isinstance(encoding.value, str) else None
+    if named not in ENCODINGS:
+        scope.problems.append(words.unknown_encoding(encoding.span, named, ENCODINGS))
+        return None
+    known = typed_integers(numbers, scope)
+    if known is None:
+        return None
+    if len(known) == 2:  # rows lie end to end
+        width = known[0]
+        known.append(typed.Binary("*", width, typed.Const(2, INT64), INT64, width.span) if named in PACKED else width)
+    return typed.Call(call.function, (pixels, typed.Const(named, String()), *known), Bytes(), call.span)
+
+
+def _lower_rgb(call: typed.Call, values: Evaluation) -> View:
+    pixels, encoding, *numbers = call.arguments
+    assert isinstance(encoding, typed.Const)
+    extent, writer = bytes_of(pixels, values), values.writer
+    width, height, step = (writer.let("number", values.of(each)) for each in numbers)
+    lane, first = (None, extent.address.at) if isinstance(extent.address, Wire) else (extent.address.lane, extent.address.row)
+    first = writer.let("first", first)
+    view = sound(writer, View(lane, first, writer.let("after", add(first, extent.size))))
+    return to_rgb(writer, str(encoding.value), Picture(view, width, height, step), values.where, values.line)
+
+
+ROW = Row(
+    "images",
+    '`rgb_of(b, "nv12", w, h)`, `rgb_of(b, "nv12", w, h, step)`',
+    (
+        "pixels, their encoding, and as integers their width, their height, and how many bytes apart rows begin: end to end, unless told",
+        "the pixels as RGB, as bytes",
+    ),
+)
+
+FUNCTIONS = (Function("rgb_of", _type_rgb, _lower_rgb, SEVERAL, NOT_FOLLOWED, (ROW,), kept=False),)
