@@ -36,7 +36,7 @@ class End:
 
     def __init__(self, address: str, lost: Lost | None = None) -> None:
         self.address = address
-        self.messages = 0
+        self.messages: int = 0
         self.bytes = 0
         self.lost: Counter[str] = Counter()
         self.reconnects = 0

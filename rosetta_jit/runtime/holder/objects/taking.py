@@ -101,8 +101,9 @@ class Takers:
 
     def take_plain(self, holder: Any, plain: Any) -> None:
         """The same of plain values, as `Holder.from_dict` is given them."""
+        value: object = plain
         try:
-            steps = self._steps.get(dict) if type(plain) is dict else None
+            steps = self._steps.get(dict) if type(value) is dict else None
             if steps is None or not steps.take(holder, plain):
                 self._take_dict(holder, plain)
         except LEFT:
