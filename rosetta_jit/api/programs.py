@@ -56,6 +56,13 @@ class _Made:
         build = _build(self._request)
         return build.holder_framework.definition_of(build.types.holder, build.types.schema)
 
+    def announced(self, framework: str) -> dict[str, str]:
+        """What a publisher says of the type on the wire, by the names of transports' options; as of a bridge. It is made anew."""
+        build = _build(self._request)
+        if build.wire_framework.name != framework:
+            return {}
+        return build.wire_framework.announced(build.types.wire, build.types.schema)
+
     def stage(self, stage: StageName | str) -> str:
         """What the program became, as text: ``model``, ``codec``, ``kernel``, ``python``, ``llvm`` or ``asm``."""
         return _build(self._request).stage(stage)

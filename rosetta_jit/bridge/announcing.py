@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 from rosetta_jit.api.bridges import Bridge
-from rosetta_jit.bridge.translating import Stateful
+from rosetta_jit.bridge.translating import Joining, Stateful
 from rosetta_jit.transports.address import parse
 from rosetta_jit.transports.installed import installed
 
 if TYPE_CHECKING:
-    from rosetta_jit.bridge.translating import Joining, Translate
+    from rosetta_jit.bridge.translating import Translate
 
 
 def announced(target: str, translate: Translate | Joining | None) -> dict[str, Any]:
@@ -33,12 +33,18 @@ def _known(place: str, translate: Translate | Joining | None, half: Literal["dec
     known = installed()
     address = parse(place, known)
     transport = known[address.scheme]
-    bridge = translate.bridge if isinstance(translate, Stateful) else translate
     framework = transport.types.get(address.scheme)
     names = transport.asks if half == "decode" else tuple(transport.options)
-    if framework is None or not names or not isinstance(bridge, Bridge):
+    if framework is None or not names:
         return {}
-    found = bridge.announced(framework, half)
+    found = _of(translate, framework, half)
     if "type" in address.options and address.options["type"][0] != found.get("type"):
         return {}
     return {name: value for name, value in found.items() if name in names and name not in address.options}
+
+
+def _of(translate: Translate | Joining | None, framework: str, half: Literal["decode", "encode"]) -> dict[str, str]:
+    if isinstance(translate, Joining):
+        return translate.encode.announced(framework) if half == "encode" else {}
+    bridge = translate.bridge if isinstance(translate, Stateful) else translate
+    return bridge.announced(framework, half) if isinstance(bridge, Bridge) else {}

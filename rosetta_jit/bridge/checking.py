@@ -88,7 +88,8 @@ def _checked(text: str, direction: str, span: Span, found: list[Diagnostic]) -> 
 
 def _lacks_type(text: str, transport: Transport) -> bool:
     """Whether who is sent to must be told a type, and is not."""
-    return "type" in transport.options and transport.options["type"].default == "" and "type" not in parse(text, installed()).options
+    option = transport.options.get("type")  # `*` is for subscribers, who take any
+    return option is not None and option.default in ("", "*") and "type" not in parse(text, installed()).options
 
 
 def _example(direction: str) -> str:

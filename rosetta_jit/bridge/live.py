@@ -101,11 +101,16 @@ class LiveRoute:
     @property
     def state(self) -> Mapping[str, float | str]:
         """What its mappings keep from one message to the next."""
-        return state_of(self._joining or self.translate)
+        return state_of(self.translation)
+
+    @property
+    def translation(self) -> Translate | Joining | None:
+        """What turns messages into those of the target."""
+        return self._joining or self.translate
 
     def begin_anew(self) -> None:
         """Let the next message be the first one for its mappings."""
-        kept = self._joining or self.translate
+        kept = self.translation
         if isinstance(kept, Stateful | Joining):
             kept.reset()
             self._say(f"{self.route.name}: its source came back, and the state of its mapping begins anew")

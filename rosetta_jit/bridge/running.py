@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from rosetta_jit.transports.end import End
 
     Live = LiveRoute | LiveService
-    _Key = tuple[str, tuple[tuple[str, str], ...]]  # an address, and what is asked of it
+    Key = tuple[str, tuple[tuple[str, str], ...]]
+    """Of a source: its address, and the options that are not in it."""
 
 RETRY_S = 1.0
 """How long after a channel could not be opened it is tried again, and after which channels are listed again."""
@@ -77,7 +78,7 @@ class Running:
         self.configuration = configuration
         self.live: dict[str, Live] = {}
         self._say = say
-        self._sources: dict[_Key, _Shared] = {}
+        self._sources: dict[Key, _Shared] = {}
         self._lock = threading.RLock()
         self._stopping = threading.Event()
         self._patterns: set[str] = set()
@@ -143,7 +144,7 @@ class Running:
         if isinstance(each, LiveService):
             return each.server, each.caller
         source = next(
-            (shared.source for shared in tuple(self._sources.values()) if any(known.live is each for known in shared.routes)), None
+            (shared.source for shared in tuple(self._sources.values()) if any(inlet.live is each for inlet in shared.routes)), None
         )
         return source, each.target
 
@@ -254,9 +255,9 @@ class Running:
         route = each.route
         if each.target is None:
             if route.calls:
-                each.open(None, call(route.target, **announced(route.target, each.translate)))
+                each.open(None, call(route.target, **announced(route.target, each.translation)))
             else:
-                each.open(publish(route.target, lost=each.lost, **announced(route.target, each.translate)), None)
+                each.open(publish(route.target, lost=each.lost, **announced(route.target, each.translation)), None)
         self._listen(each)
         each.problem = ""
 
@@ -264,7 +265,7 @@ class Running:
         """Let its source bring its messages to this route, too; or those of all wires."""
         inlets = [(address, Inlet(each, wire)) for wire, address in each.route.sources]
         for address, inlet in inlets or [(each.route.source, each)]:
-            options = wanted(address, each.translate)
+            options = wanted(address, each.translation)
             key = address, tuple(sorted(options.items()))
             if not self._joins(key, inlet):
                 shared = _Shared(inlet)
@@ -275,7 +276,7 @@ class Running:
                     shared.close()
                     self._joins(key, inlet)
 
-    def _joins(self, key: _Key, inlet: LiveRoute | Inlet) -> bool:
+    def _joins(self, key: Key, inlet: LiveRoute | Inlet) -> bool:
         """Whether there is such a source already: it then brings its messages to this inlet, too."""
         with self._lock:
             shared = self._sources.get(key)

@@ -46,7 +46,7 @@ class Joining:
     """What turns messages of several wires into messages of the holder that they fill; threads take it in turn."""
 
     def __init__(self, decoders: Decoders, encode: Encoder, on: str) -> None:
-        self._decoders, self._encode, self._on = decoders, encode, on
+        self._decoders, self.encode, self._on = decoders, encode, on
         self._holder = decoders.new()
         self._missing = set(decoders)
         self.turn = threading.Lock()
@@ -60,7 +60,7 @@ class Joining:
 
     def message(self) -> bytes:
         """The holder as the target has it. In one's `turn`."""
-        return self._encode(self._holder)
+        return self.encode(self._holder)
 
     def reset(self) -> None:
         """Let the next message be the first one."""
@@ -74,7 +74,7 @@ class Joining:
         with self.turn:
             variables = {f"decode.{name}": _shown(value) for name, value in self._decoders.state.items()}
             ages = {f"age.{wire}": age for wire, age in self._decoders.ages.items() if age is not None}
-            return {**variables, **{f"encode.{name}": _shown(value) for name, value in self._encode.state.items()}, **ages}
+            return {**variables, **{f"encode.{name}": _shown(value) for name, value in self.encode.state.items()}, **ages}
 
 
 def state_of(translate: Translate | Joining | None) -> dict[str, float | str]:

@@ -11,6 +11,7 @@ from rosetta_jit.catalogue import generate as words
 from rosetta_jit.catalogue.wires import not_here
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.generate.bounds import bounds_of_type, least, reserved
+from rosetta_jit.generate.inner_types import with_inner_types
 from rosetta_jit.generate.languages import installed
 from rosetta_jit.generate.origins import origins_of
 from rosetta_jit.generate.unit import Unit, UserFunction
@@ -108,7 +109,7 @@ def unit_of(
         functions,
         wishes.freestanding,
         first.types.holder.name,
-        first.types.schema,
+        with_inner_types(first.types.schema, first.types.holder.name),
         wishes.holder,
         wishes.include,
         _origins(builds),

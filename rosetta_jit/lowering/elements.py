@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Binary, For, Local
 from rosetta_jit.kernel.terms import add, index, mul
+from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import inside
 from rosetta_jit.lowering.writer import block
 from rosetta_jit.startup.dataclass import dataclass
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
     from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language import typed
     from rosetta_jit.lowering.evaluation import Evaluation
     from rosetta_jit.lowering.writer import Writer
 
@@ -41,7 +41,9 @@ class Elements:
         """Around what is done with each value, from the first to the last."""
         writer, number = self.writer, Local("i64", self.writer.fresh("element"))
         self.values.look_ahead((self.reduce.value,))
-        writer.certain |= {inside(number, count) for count in (self.count, self.values.of(self.reduce.count))}
+        writer.certain.add(inside(number, self.count))
+        if isinstance(self.reduce.count, typed.LenOf):
+            writer.certain.add(inside(number, self.values.of(self.reduce.count)))
         with self.values.source.forgetting(), writer.nested() as body:
             yield self.values.with_local(self.reduce.variable.name, number).of(self.reduce.value)
         writer.emit(For(number.name, self.count, block(body)))

@@ -187,6 +187,8 @@ def test_what_a_publisher_says_of_the_type_that_is_written():
     told = back.announced("ros1")
     assert (told["type"], told["md5"]) == ("geometry_msgs/Twist", "9f195f881246fdfa2798d1d3eebca84a")
     assert "MSG: geometry_msgs/Vector3" in told["definition"]
+    encode = rj.Encoder.of("geometry_msgs/Twist", encoding="ros1")
+    assert (encode.announced("ros1"), encode.announced("ros2")) == (told, {})
     assert (there.announced("ros1"), back.announced("ros2"), rj.Bridge.between("yarp3", "yarp4").announced("ros1")) == ({}, {}, {})
     assert rj.Bridge(TORSO, decode={"encoding": "yarp4"}).announced("protobuf") == {"type": ".rst.kinematics.JointAngles"}
 

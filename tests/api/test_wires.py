@@ -169,7 +169,18 @@ class Model:
 @settings(max_examples=12, deadline=None)
 @given(ARRIVALS)
 def test_messages_fill_their_parts_and_no_others(backend, arrivals):
-    programs = begun(backend)
+    compare(begun(backend), arrivals)
+
+
+@pytest.mark.campaign
+@settings(max_examples=2000, deadline=None)
+@given(ARRIVALS)
+def test_many_messages_fill_their_parts_and_no_others(arrivals):
+    compare(begun(), arrivals)
+
+
+def compare(programs, arrivals):
+    """What the holder has behind each message, and what it means in plain Python."""
     model, broken = Model(), set()
     for wire, values, is_cut in arrivals:
         data = message(wire, values)

@@ -101,6 +101,7 @@ def read_one(text):
             ":6:6",
         ),
         ('[[route]]\nsource = "tcp:1"\ntarget = "rsb:/a"\n', "add ?type=…, the wire schema", ":3:10"),
+        ('[[route]]\nsource = "tcp:1"\ntarget = "ros1:/a"\n', "add ?type=…, the type's name", ":3:10"),
         ('[[rpc]]\nserve = "tcp:1"\n', "lacks `serve` or `call`", ":1:1"),
         ('[[rpc]]\nserve = "tcp:1"\ncall = "tcp:2"\nrequest = 5\n', "`request` is the mapping", ":4:11"),
         ("route = 5\n", "written as [[route]]", ":1:9"),

@@ -173,6 +173,18 @@ def test_objects_that_cannot_be_written(module):
         unit.encode(unit.JointState(header=unit.Header(seq=-1)))
 
 
+@pytest.mark.parametrize("type_", ["rj.Scalars", "rj3.All"])
+@pytest.mark.parametrize("value", [2**40, -(2**40), 1.0, "1"])
+def test_integers_that_their_fields_cannot_hold(type_, value, module):
+    """Also where they are written in as many bytes as they need."""
+    (corpus,) = [each for each in corpora() if each.name == f"protobuf {type_}"]
+    unit = module(corpus.request, ("encode",))
+    made = getattr(unit, type_.partition(".")[2])
+    for name in ("i32", "u32", "s32", "fx32", "sf32", "e"):
+        with pytest.raises(unit.EncodeError, match="range"):
+            unit.encode(made(**{name: value}))
+
+
 def test_classes_are_the_modules_own():
     with pytest.raises(SchemaError, match="unknown-holder"):
         generated(TORSO, "python", BOTH, "torso", Wishes(holder="protobuf"))

@@ -362,6 +362,12 @@ def _bits(target: Scalar, source: Scalar, value: str) -> str:
     return _convert(target, source, value)
 
 
+def within(text: str, scalar: str) -> str:
+    """An integer, which is looked at first."""
+    bits, signed = 8 * WIDTH[scalar], scalar[0] == "i"
+    return f"_within({bare(text)}, {-(1 << bits - 1) if signed else 0}, {(1 << bits - signed) - 1})"
+
+
 def location(scope: Scope, address: Address) -> tuple[str, str]:
     """Memory, and the number of a byte in there."""
     match address:

@@ -14,6 +14,7 @@ from rosetta_jit.generate.python.expressions import CODES, Scope, bare, expressi
 from rosetta_jit.generate.python.groups import not_negative, undamaged
 from rosetta_jit.generate.python.statements import Attempt, Function, print_block
 from rosetta_jit.kernel.ir import (
+    Capacity,
     Const,
     Copy,
     Fill,
@@ -115,7 +116,7 @@ def print_kernel(
 ) -> tuple[str, tuple[Attempt, ...]]:
     """The functions of a kernel as text, and how they are called."""
     writer, routines = Writer(), dict[str, Attempt]()
-    words = words_of(lanes)
+    words = words_of(lanes) | objects.classes
 
     def scope() -> Scope:
         return Scope(Namespace(words), lanes, flat, loads, kernel.name, paths, numpy=objects.numpy)
@@ -140,7 +141,10 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Att
     function.settled = settled(body)
     function.read, function.positive = read_names(body), not_negative(body)
     function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, Reserve))
-    function.outside = {stmt.lane for stmt in body if isinstance(stmt, Reserve)}
+    blocks = (body, *(routine.body for routine in kernel.routines))
+    exprs = (expr for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt))
+    asked = {part.lane for expr in exprs for part in subexpressions(expr) if isinstance(part, Capacity)}
+    function.outside = {stmt.lane for stmt in body if isinstance(stmt, Reserve)} - asked
     print_block(function, body)
     made = objects.inner(scope)
     name = f"_{role}_{number + 1}"

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.python.classes import member_names
 from rosetta_jit.generate.python.direct import slots_of
-from rosetta_jit.generate.python.expressions import Scope, bare, expression
+from rosetta_jit.generate.python.expressions import Scope, bare, expression, within
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.kernel.ir import Binary, Expr, Local, Place
 from rosetta_jit.kernel.terms import index
-from rosetta_jit.model.layout import Number, Row, Slot, Span
-from rosetta_jit.model.types import Array, Bytes, String, Struct, Type
+from rosetta_jit.model.layout import Member, Number, Row, Slot, Span
+from rosetta_jit.model.types import Array, Bytes, Optional, String, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -38,19 +38,21 @@ class Given(Scope):
     """What the fields of rows are in objects.
 
     ``objects`` has the expressions of fields by lane, row and offset; ``starts`` and ``counts`` are the locals of a kernel that say where
-    the rows of a sequence start and how many there are, with the lane of the sequence.
+    the rows of a sequence start and how many there are, with the lane of the sequence. ``numbers`` are the expressions whose values a
+    program has set, and that may be no numbers of their type.
     """
 
     objects: dict[tuple[int, Expr], dict[int, str]] = field(default_factory=dict[tuple[int, "Expr"], dict[int, str]])
     sequences: dict[int, Listed] = field(default_factory=dict[int, Listed])
     starts: dict[str, int] = field(default_factory=dict[str, int])
     counts: dict[str, int] = field(default_factory=dict[str, int])
+    numbers: set[str] = field(default_factory=set[str])
 
     def place(self, place: Place, scalar: str) -> str:
         """A scalar of a row of an object."""
         known = self.objects.get((place.lane, place.row))
         if known is not None and place.offset in known:
-            return known[place.offset]
+            return _checked(known[place.offset], scalar) if known[place.offset] in self.numbers else known[place.offset]
         found = self.element_of(place, scalar)
         if self.numpy and scalar[0] in "iu" and self.sequences[place.lane].element is not None:
             return f"int({found})"
@@ -90,6 +92,11 @@ class Given(Scope):
         return place.offset in self.objects.get((place.lane, place.row), {})
 
 
+def _checked(text: str, scalar: str) -> str:
+    """A number that is computed with: nothing else asks whether it is one of its field's."""
+    return f"_single({text})" if scalar == "f32" else text if scalar == "f64" else within(text, scalar)
+
+
 @dataclass(slots=True)
 class Binder:
     """Prints the statements that take objects apart; ``needed`` are the fields, by lane and offset, that anything reads."""
@@ -118,6 +125,7 @@ class Binder:
         match resolved, slot:
             case _, Number(offset, scalar):
                 found[offset] = f"(1 if {at} else 0)" if scalar == "bool" else at
+                self.scope.numbers |= {at} if scalar != "bool" else set()
             case Struct(), Row():
                 self._struct(lane, at, resolved, slot, found)
             case ((String() | Bytes() | Array()), Span()):
@@ -126,23 +134,46 @@ class Binder:
                 raise NotInParts
 
     def _struct(self, lane: int, at: str, struct: Struct, slot: Row, found: dict[int, str]) -> None:
-        if slot.presence_words:
-            raise NotInParts
         if not at.isidentifier():
             own = self.local(at.rpartition(".")[2])
             self.function.line(f"{own} = {at}")
             at = own
+        words = [list[str]() for _ in range(slot.presence_words)]
         for each, member, name in zip(struct.fields, slot.members, member_names(struct), strict=True):
-            if self._is_needed(lane, member.slot):
+            if member.presence is not None:
+                self._optional(lane, f"{at}.{name}", each.type, member, words, found)
+            elif self._is_needed(lane, member.slot):
                 self.value(lane, f"{at}.{name}", each.type, member.slot, found)
         if slot.unknown is not None and self._is_needed(lane, slot.unknown):
             self._sequence(f"{at}.unknown_fields", Bytes(), slot.unknown, found)
+        for number, bits in enumerate(words):
+            if (lane, slot.offset + 8 * number) in self.needed:
+                word = found[slot.offset + 8 * number] = self.local("presence")
+                self.function.line(f"{word} = {' | '.join(bits)}")
+
+    def _optional(self, lane: int, at: str, type_: Type, member: Member, words: list[list[str]], found: dict[int, str]) -> None:
+        """A field that may be None, for which its bit is 0, and what else is read of it is 0 or empty."""
+        assert isinstance(type_, Optional)
+        assert member.presence is not None
+        own, (word, bit) = self.local(at.rpartition(".")[2]), divmod(member.presence, 64)
+        self.function.line(f"{own} = {at}")
+        words[word].append(f"({1 << bit} if {own} is not None else 0)")
+        if not self._is_needed(lane, member.slot):
+            return
+        match self.unit.schema.resolve(type_.value), member.slot:
+            case _, Number():
+                self.value(lane, f"(0 if {own} is None else {own})", type_.value, member.slot, found)
+            case (String() | Bytes()) as text, Span() as span:
+                empty = '""' if isinstance(text, String) else 'b""'
+                self._sequence(f"({empty} if {own} is None else {own})", text, span, found)
+            case _:
+                raise NotInParts
 
     def _sequence(self, at: str, type_: String | Bytes | Array, slot: Span, found: dict[int, str]) -> None:
         lane = self.unit.layout.lanes[slot.lane]
         if lane.links is not None or type_ == String("utf-16"):
             raise NotInParts
-        own = self.local(at.rpartition(".")[2] if "." in at else lane.name.rpartition(".")[2] or "value")
+        own = self.local((at if at.replace(".", "").isidentifier() and "." in at else lane.name).rpartition(".")[2] or "value")
         self.function.line(f'{own} = {at}.encode("utf-8", "surrogateescape")' if isinstance(type_, String) else f"{own} = {at}")
         element = type_.element if isinstance(type_, Array) else None
         self.scope.sequences[slot.lane] = Listed(own, slot.lane, element, lane.element)

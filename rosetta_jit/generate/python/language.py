@@ -6,18 +6,17 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.base import Namespace, Writer
+from rosetta_jit.backends.base import Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.language import named_parts
 from rosetta_jit.generate.python.classes import classes, names_of
+from rosetta_jit.generate.python.encoder import encoder_in_parts
 from rosetta_jit.generate.python.expressions import CODES, Scope, view_name
-from rosetta_jit.generate.python.functions import WORDS, is_flat, print_kernel, words_of
-from rosetta_jit.generate.python.given import Given
+from rosetta_jit.generate.python.functions import WORDS, is_flat, print_kernel
 from rosetta_jit.generate.python.objects import Collect, Make, arrays_of
-from rosetta_jit.generate.python.parts import encoder_in_parts
 from rosetta_jit.generate.python.positions import NotInParts
-from rosetta_jit.generate.python.statements import Function, Objects
+from rosetta_jit.generate.python.statements import Objects
 from rosetta_jit.kernel.ir import Advance, Const, Return
 from rosetta_jit.kernel.shape import is_told, statements
 from rosetta_jit.model.types import Ref
@@ -50,7 +49,7 @@ class _Module:
 
     def __init__(self, unit: Unit) -> None:
         self.unit, self.names = unit, names_of(unit)
-        self.lanes = named_parts(unit, WORDS)
+        self.lanes = named_parts(unit, WORDS | frozenset(self.names.values()))
         self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.loads, self.structs = set[str](), dict[str, str]()
         self.root, self.guesses = self.names[unit.type], False
@@ -143,7 +142,7 @@ class _Module:
             return Make(self.unit, scope, self.names, taken).value(arrays[lane], self.unit.layout.lanes[lane].element, lane, "")
 
         origins, lanes = self.unit.origins.get("borrow", ()), self._lanes(kernel)
-        objects = Objects(made, row, inner, self.unit.layout, frozenset(arrays), self.unit.numpy)
+        objects = Objects(made, row, inner, self.unit.layout, frozenset(arrays), self.unit.numpy, frozenset(self.names.values()))
         text, attempts = print_kernel(kernel, lanes, "borrow", self.loads, origins, objects, self.paths, flat=is_flat(kernel, lanes))
         return "\n\n".join([self._sites("borrow"), f"\n{text.rstrip()}", f"\n{self._decode(attempts)}"])
 
@@ -184,28 +183,24 @@ class _Module:
     # --- encoding --------------------------------------------------------------------------------------------------------------------
 
     def _encoder_in_parts(self) -> str:
-        kernel, lanes = self.unit.kernels["encode"], self._lanes(self.unit.kernels["encode"])
-        scope = Given(Namespace(words_of(lanes)), lanes, flat=True, loads=set(), name=kernel.name, paths=self.paths, numpy=self.unit.numpy)
-        origins = self.unit.origins.get("encode", ())
-        objects = Objects(lambda _, __: "message")
-        function = Function(scope, kernel, kernel.sites, {}, origins, objects, writer=Writer(depth=2))
-        lines = encoder_in_parts(self.unit, kernel, function, scope)
-        self.loads |= scope.loads
+        kernel = self.unit.kernels["encode"]
+        made = encoder_in_parts(self.unit, kernel, self._lanes(kernel), self.paths)
+        self.loads |= made.loads
         writer = Writer()
         writer.line(f"def encode(target: {self.root}) -> bytes:")
         writer.line('    """The message; raises `EncodeError`."""')
         writer.line("    try:")
         writer.depth = 2
-        self._told(writer, {f"told_{what}" for what in scope.told}, "encode")
-        writer.lines += lines
+        self._told(writer, {f"told_{what}" for what in made.told}, "encode")
+        writer.lines += made.lines
         writer.depth = 1
-        fails = any("raise _Failed(" in line for line in lines)
+        fails = any("raise _Failed(" in line for line in made.lines)
         if fails:
             writer.line("except _Failed as failed:")
             writer.line("    raise _error(_ENCODE_SITES, failed, None) from None")
         writer.line("except (AttributeError, TypeError, ValueError, OverflowError, _StructError) as error:")
         writer.line('    raise EncodeError("range", "", str(error)) from error')
-        return "\n\n\n".join([*([self._sites("encode")] if fails else []), writer.text()])
+        return "\n\n\n".join([*([self._sites("encode")] if fails else []), *made.routines, writer.text()])
 
     def _encoder(self) -> str:
         try:

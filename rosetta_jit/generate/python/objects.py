@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Writer
 from rosetta_jit.generate.python.classes import NUMPY, member_names
-from rosetta_jit.generate.python.expressions import CODES, Scope, flat_name
+from rosetta_jit.generate.python.expressions import CODES, Scope, flat_name, within
 from rosetta_jit.model.layout import WIDTH, Number, Row, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
@@ -201,6 +201,7 @@ class Collect:
     """Statements that take an object apart: its numbers become locals, or parts of rows that are packed.
 
     ``replaced`` are lines that begin lanes with no rows, in vain; ``wholes`` are functions that pack arrays of a fixed length.
+    ``unpacked``: numbers become locals, which nothing packs, and thereby checks.
     """
 
     unit: Unit
@@ -210,6 +211,7 @@ class Collect:
     number: int = 0
     replaced: set[str] = field(default_factory=set[str])
     wholes: set[str] = field(default_factory=set[str])
+    unpacked: bool = False
 
     def name(self, what: str) -> str:
         self.number += 1
@@ -220,7 +222,8 @@ class Collect:
         resolved = self.unit.schema.resolve(type_)
         match resolved, slot:
             case _, Number(offset, scalar):
-                found[offset] = (f"1 if {at} else 0" if scalar == "bool" else at, scalar)
+                text = within(at, scalar) if self.unpacked and scalar[0] in "iu" else at
+                found[offset] = (f"1 if {at} else 0" if scalar == "bool" else text, scalar)
             case Struct(), Row():
                 self.struct(resolved, slot, at, found)
             case Union(), Variant():
@@ -336,13 +339,18 @@ class Collect:
         self.writer.line(f"{start} = len({rows}) // {stride}")
         self.writer.line(f"{count} = len({at})")
         self.writer.line(f"{rows}.extend(bytes({stride} * {count}))")
+        outside, self.unpacked = self.unpacked, False
         with self.writer.indented(f"for {index}, {own} in enumerate({at}, {start}):"):
-            if self.unit.layout.lanes[lane].links is not None:
-                self.writer.line(f"collect_{rows}({index}, {own})")
-                return
-            found: dict[int, tuple[str, str]] = {}
-            fill(own, found)
-            self.pack(lane, index, found)
+            self._row(lane, rows, index, own, fill)
+        self.unpacked = outside
+
+    def _row(self, lane: int, rows: str, index: str, own: str, fill: Callable[[str, dict[int, tuple[str, str]]], None]) -> None:
+        if self.unit.layout.lanes[lane].links is not None:
+            self.writer.line(f"collect_{rows}({index}, {own})")
+            return
+        found: dict[int, tuple[str, str]] = {}
+        fill(own, found)
+        self.pack(lane, index, found)
 
     def _entries(self, type_: Map, lane: int, at: str, start: str, count: str) -> None:
         element = self.unit.layout.lanes[lane].element
@@ -378,6 +386,7 @@ class Collect:
     def root(self, flat_rows: set[str], *, flat: bool) -> None:
         """The message."""
         found: dict[int, tuple[str, str]] = {}
+        self.unpacked = flat
         self.value(Ref(self.unit.type), self.unit.layout.root, "target", found)
         if not flat:
             self.writer.line(f"message = bytearray({self.lanes.stride(0)})")

@@ -10,19 +10,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.statements import reached, read_names
-from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.direct import numbers_of, slots_of
 from rosetta_jit.generate.python.expressions import CODES, bare, expression
 from rosetta_jit.generate.python.given import Binder
-from rosetta_jit.generate.python.groups import turned, undamaged
+from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.packed import Part, part_text, with_numbers
-from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum, without_places, without_positions
+from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
 from rosetta_jit.generate.python.statements import print_statement
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Assign,
     Binary,
+    Call,
     Compare,
     Const,
     Convert,
@@ -48,15 +47,14 @@ from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.model.layout import Number
-from rosetta_jit.model.types import Ref
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from rosetta_jit.generate.python.given import Given, Listed
     from rosetta_jit.generate.python.statements import Function
     from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.kernel.ir import Block, Expr, Kernel, Stmt
+    from rosetta_jit.kernel.ir import Block, Expr, Stmt
 
 MOST_STARRED = 40
 """Numbers of an array of a fixed length that are packed together with those around it."""
@@ -65,33 +63,15 @@ FEW_STARRED = 4
 """The same of an array of numpy's, whose elements become Python's one by one."""
 
 
-def encoder_in_parts(unit: Unit, kernel: Kernel, function: Function, scope: Given) -> list[str]:
-    """The lines of an encoder's function, from the object ``target`` on.
+class Parts:
+    """Prints a body; ``pending`` are parts that no line has written yet, ``begun`` is whether any has.
 
-    Raises
-    ------
-    NotInParts
-        It cannot be printed so.
+    ``routines`` are the functions that give the bytes which routines write, ``called`` those of them that are.
     """
-    if kernel.routines or len(kernel.bodies) != 1:
-        raise NotInParts
-    body = counted(undamaged(reached(kernel.bodies[0]), kernel.sites))
-    body = without_positions(body)
-    function.read = read_names(without_places(body))
-    printer = _Printer(unit, function, scope, body)
-    printer.binder.bind(0, index(0), "target", Ref(unit.type), unit.layout.root)
-    printer.block(body)
-    lines = function.writer.lines
-    if printer.begun:
-        lines = [f"{function.writer.depth * '    '}parts = []", *lines]
-    return lines
 
-
-class _Printer:
-    """Prints a body; ``pending`` are parts that no line has written yet, ``begun`` is whether any has."""
-
-    def __init__(self, unit: Unit, function: Function, scope: Given, body: Block) -> None:
-        self.unit, self.function, self.scope = unit, function, scope
+    def __init__(self, unit: Unit, function: Function, scope: Given, body: Block, routines: Mapping[str, str]) -> None:
+        self.unit, self.function, self.scope, self.body = unit, function, scope, body
+        self.routines, self.called = routines, set[str]()
         self.positions, self.pending, self.begun = Positions(), list[Part](), False
         parts = [part for stmt, _ in statements(body) for expr in expressions_of(stmt) for part in subexpressions(expr)]
         needed = {(part.place.lane, part.place.offset) for part in parts if isinstance(part, Get)}
@@ -128,6 +108,8 @@ class _Printer:
                 text = bare(expression(self.scope, size))
                 self.pending.append(Part("", "", (f"bytes({text})" if byte == 0 else f"bytes([{byte}]) * ({text})",)))
                 self.positions.written(at, self.positions.sum(size))
+            case Call():
+                self._call(stmt)
             case HostCall(inputs=(), target=None):
                 print_statement(self.function, stmt)
             case Return(position, registers):
@@ -181,6 +163,8 @@ class _Printer:
         match value:
             case Get(_, place) if not self.scope.has(place):
                 text = self.scope.element_of(place, type_)
+            case Get(_, place):
+                text = bare(self.scope.objects[place.lane, place.row][place.offset])
             case Convert(_, count) if self.limits.get(count, 1 << 64) <= 1 << 8 * WIDTH[type_] - (type_[0] == "i"):
                 text = bare(expression(self.scope, count))
             case _:
@@ -253,20 +237,35 @@ class _Printer:
             self.begun = True
             self.line(f"parts.append({texts[0]})" if len(texts) == 1 else f"parts += {', '.join(texts)}")
 
+    def _call(self, call: Call) -> None:
+        """A routine that writes from its first argument on, and gives the position behind."""
+        if call.routine not in self.routines or call.results[0].name in self.function.read:
+            raise NotInParts
+        given = ", ".join(self.function.text(each) for each in call.arguments[1:])
+        self.pending.append(Part("", "", (f"{self.routines[call.routine]}({given})",)))
+        behind = self.positions.new()
+        self.positions.written(call.arguments[0], behind.plus(self.positions.at, -1))
+        self.positions.values[call.results[0].name] = behind
+        self.called.add(call.routine)
+
     def _return(self, stmt: Return, position: Expr, registers: Sequence[tuple[int, Expr]]) -> None:
         if self.positions.sum(position) != self.positions.at or self.function.writer.depth != 2:
             raise NotInParts
+        if not registers:
+            self.end("")
+            return
+        self.end("message")
+        print_statement(self.function, Return(index(0), stmt.registers))
+
+    def end(self, name: str) -> None:
+        """Join the parts: that is the result, or has a name."""
         if self.begun:
             self.flush()
         texts = [part_text(each, self.scope, self.exact) for each in self.pending]
         if len(texts) == 1 and not self.pending[0].codes:
             texts = [f"bytes({texts[0]})"]
         made = 'b"".join(parts)' if self.begun else texts[0] if len(texts) == 1 else f'b"".join(({", ".join(texts)}))' if texts else 'b""'
-        if not registers:
-            self.line(f"return {made}")
-            return
-        self.line(f"message = {made}")
-        print_statement(self.function, Return(index(0), stmt.registers))
+        self.line(f"{name} = {made}" if name else f"return {made}")
 
     # --- branches and loops ----------------------------------------------------------------------------------------------------------
 
@@ -319,7 +318,7 @@ class _Printer:
         width = sum(WIDTH[type_of(each.value)] for each in loop.body if isinstance(each, Store))
         self.flush()
         outer = self.positions.at
-        holds = self.positions.loop(_assigned(loop.body))
+        holds = self.positions.loop(stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, Assign))
         self.positions.values[loop.variable] = self.positions.new()
         if holds is None:
             self.positions.at = outer.plus(self.positions.values[loop.variable], width)
@@ -343,12 +342,9 @@ class _Printer:
 
     def _sequence_of(self, loop: For) -> Listed | None:
         """What a loop over rows goes through."""
-        found: set[int] = set()
-        for stmt, _ in statements(loop.body):
-            for expr in expressions_of(stmt):
-                for part in subexpressions(expr):
-                    if isinstance(part, Get) and self.scope.behind(part.place) == Local("i64", loop.variable):
-                        found.add(part.place.lane)
+        parts = [part for stmt, _ in statements(loop.body) for expr in expressions_of(stmt) for part in subexpressions(expr)]
+        round_ = Local("i64", loop.variable)
+        found = {part.place.lane for part in parts if isinstance(part, Get) and self.scope.behind(part.place) == round_}
         rows = [self.scope.sequences[lane] for lane in found if not isinstance(self.scope.sequences[lane].slot, Number)]
         if len(rows) > 1 or (rows and not self._is_count_of(rows[0].lane, loop.count)):
             raise NotInParts
@@ -390,7 +386,7 @@ class _Printer:
 
     def _while(self, loop: While) -> None:
         self.flush()
-        holds = self.positions.loop(_assigned(loop.body))
+        holds = self.positions.loop(stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, Assign))
         begin, exact = self.positions.at, dict(self.exact)
         with self.function.writer.indented(f"while {self.function.text(loop.condition)}:"):
             self.block(loop.body)
@@ -399,7 +395,3 @@ class _Printer:
                 self.line("pass")
         self.exact = exact
         self._end(holds, begin, 0)
-
-
-def _assigned(block: Block) -> list[str]:
-    return [stmt.name for stmt, _ in statements(block) if isinstance(stmt, Assign)]

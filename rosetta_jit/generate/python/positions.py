@@ -6,7 +6,7 @@ from dataclasses import field, replace
 from itertools import count
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Const, Copy, Expect, Failure, Fill, Local, Require, Return, Store, While, Wire
+from rosetta_jit.kernel.ir import Binary, Call, Const, Copy, Expect, Failure, Fill, Local, Require, Return, Store, While, Wire
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.startup.dataclass import dataclass
@@ -143,6 +143,8 @@ def without_places(block: Block) -> Block:
                 found.append(Fill(Wire(index(0)), size, byte))
             case Return(_, registers):
                 found.append(Return(index(0), registers))
+            case Call():
+                found.append(replace(stmt, arguments=(index(0), *stmt.arguments[1:])))
             case While(condition, inner, _, _):
                 found.append(While(condition, without_places(inner), (), index(0)))
             case _:

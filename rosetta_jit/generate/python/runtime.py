@@ -9,6 +9,7 @@ from collections.abc import Callable
 from ctypes import c_float
 from dataclasses import dataclass, field
 from itertools import count as _count
+from operator import index as _index
 from struct import Struct
 from struct import error as _StructError
 from struct import iter_unpack as _unpack_each
@@ -102,6 +103,14 @@ def _turned(part: Any, code: str) -> bytes:
     numbers.frombytes(part)
     numbers.byteswap()
     return numbers.tobytes()
+
+
+def _within(number: Any, least: int, most: int) -> int:
+    """An integer that fits its field."""
+    found = _index(number)
+    if not least <= found <= most:
+        raise ValueError(f"{found} is not between {least} and {most}")
+    return found
 
 
 def _many(part: Any, code: str) -> list[Any]:

@@ -66,7 +66,8 @@ class Objects:
     """How a function comes to objects: ``result`` is what a return of success gives at a position.
 
     Of decoders ``row`` is the object of a lane's row, ``inner`` are the lines of functions for rows that contain rows of their own type,
-    and ``arrays`` are the lanes of arrays in the ``layout``. ``numpy``: arrays of numbers are numpy's.
+    and ``arrays`` are the lanes of arrays in the ``layout``. ``numpy``: arrays of numbers are numpy's;
+    ``classes`` are the names of classes, which no local hides.
     """
 
     result: Callable[[Scope, str], str]
@@ -75,6 +76,7 @@ class Objects:
     layout: Layout | None = None
     arrays: frozenset[int] = frozenset()
     numpy: bool = False
+    classes: frozenset[str] = frozenset()
 
 
 @dataclass(slots=True)
@@ -83,7 +85,7 @@ class Function:
 
     ``settled`` are the fields of the message's row, by offset and type, that are set whatever the message is before any is read.
     ``positive`` are the locals that are not negative; ``reserved`` says how often rows of a lane are reserved, ``outside`` of which lanes
-    that is not within a loop or a case.
+    that is not within a loop or a case, and nothing asks for their room.
     """
 
     scope: Scope

@@ -8,6 +8,7 @@ from rosetta_jit.kernel.ir import (
     Binary,
     Compare,
     Const,
+    Convert,
     Fill,
     For,
     If,
@@ -15,6 +16,7 @@ from rosetta_jit.kernel.ir import (
     Load,
     Place,
     Reserve,
+    Select,
     SetField,
     Used,
     Var,
@@ -237,3 +239,19 @@ CASES.add(
     ),
 )
 CASES.add("a measure that is no number", "bool where i64 belongs", (START, While(LOOP, (STEP,), INSIDE, LOOP)))
+
+FOUND = i64("found")
+COUNTED = Assign("found", add(FOUND, Convert("i64", compare("gt", N, 3))))
+CASES.add(
+    "the row that is counted next",
+    "a row outside its lane",
+    (*between("n", 0, 9), Reserve(1, N), Let("c", Used(1)), Advance(1, N), Var("found", index(0)), For("i", N, (COUNTED, put(FOUND)))),
+    (*between("n", 0, 9), Reserve(1, N), Let("c", Used(1)), Advance(1, N), Var("found", index(0)), For("i", N, (put(FOUND), COUNTED))),
+)
+SUMMED = Assign("found", add(FOUND, Select(compare("gt", N, 3), Convert("i64", Load("i32", BEGIN)), index(1))))
+CASES.add(
+    "a sum of any number of integers",
+    "i64 arithmetic that may wrap",
+    (*between("n", 0, 1 << 40), need(BEGIN, 8), Var("found", index(0)), For("i", N, (SUMMED,))),
+    (*between("n", 0, 1 << 20), need(BEGIN, 8), Var("found", index(0)), For("i", N, (SUMMED,))),
+)

@@ -1,0 +1,70 @@
+"""Types that a schema declares within a field, as YARP's bottles within lists, and that a language has to call something."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import count
+from typing import TYPE_CHECKING
+
+from rosetta_jit.model.types import Array, Enum, Map, Optional, Ref, Struct, Union
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.types import Declaration, Field, Schema, Type
+
+
+def with_inner_types(schema: Schema, name: str) -> Schema:
+    """A schema in which what is within the type of that name, and those in it, has a name, too: fields refer to it."""
+    found = _Names(schema)
+    found.declared(name)
+    return replace(schema, types=found.types)
+
+
+class _Names:
+    """Gives names; ``seen`` are the declared types that are done."""
+
+    def __init__(self, schema: Schema) -> None:
+        self.types: dict[str, Declaration] = dict(schema.types)
+        self.seen = set[str]()
+
+    def declared(self, name: str) -> None:
+        if name in self.seen:
+            return
+        self.seen.add(name)
+        declared = self.types[name]
+        if isinstance(declared, Struct):
+            self.types[name] = replace(declared, fields=tuple(map(self._field, declared.fields)))
+
+    def _field(self, field: Field) -> Field:
+        type_ = self._type(field.type)
+        return field if type_ is field.type else replace(field, type=type_)
+
+    def _type(self, type_: Type) -> Type:
+        match type_:
+            case Struct() | Enum():
+                name = self._free(type_)
+                self.types[name] = replace(type_, name=name)
+                self.declared(name)
+                return Ref(name)
+            case Ref(name):
+                self.declared(name)
+                return type_
+            case Array(element):
+                inner = self._type(element)
+                return type_ if inner is element else replace(type_, element=inner)
+            case Optional(value):
+                inner = self._type(value)
+                return type_ if inner is value else replace(type_, value=inner)
+            case Map(key, value):
+                inner = self._type(value)
+                return type_ if inner is value else replace(type_, key=key, value=inner)
+            case Union():
+                cases = tuple(map(self._field, type_.cases))
+                return type_ if all(new is old for new, old in zip(cases, type_.cases, strict=True)) else replace(type_, cases=cases)
+            case _:
+                return type_
+
+    def _free(self, type_: Struct | Enum) -> str:
+        """Its own name, if nothing else has it."""
+        if type_.name and self.types.get(type_.name, type_) == type_:
+            return type_.name
+        return next(name for number in count(2) if (name := f"{type_.name}_{number}") not in self.types)

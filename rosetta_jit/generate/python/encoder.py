@@ -1,0 +1,96 @@
+"""The functions of an encoder that joins parts (see `parts`): one for the message, and one for each routine that it calls."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.backends.base import Namespace, Writer
+from rosetta_jit.generate.c.statements import reached, read_names
+from rosetta_jit.generate.python.counted import counted
+from rosetta_jit.generate.python.functions import words_of
+from rosetta_jit.generate.python.given import Given
+from rosetta_jit.generate.python.groups import undamaged
+from rosetta_jit.generate.python.parts import Parts
+from rosetta_jit.generate.python.positions import NotInParts, Sum, without_places, without_positions
+from rosetta_jit.generate.python.statements import Function, Objects
+from rosetta_jit.kernel.ir import Expect
+from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.terms import index
+from rosetta_jit.model.types import Ref
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.unit import Unit
+    from rosetta_jit.kernel.ir import Block, Kernel, Routine
+
+
+@dataclass(frozen=True, slots=True)
+class InParts:
+    """An encoder: the functions of its routines, the lines that make the message of ``target``, what they need."""
+
+    routines: tuple[str, ...]
+    lines: tuple[str, ...]
+    loads: frozenset[str]
+    told: frozenset[str]
+
+
+def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str, ...]) -> InParts:
+    """The encoder of a unit.
+
+    Raises
+    ------
+    NotInParts
+        It cannot be printed so.
+    """
+    if len(kernel.bodies) != 1:
+        raise NotInParts
+    loads, written, texts = set[str](), dict[str, str](), dict[str, list[str]]()
+    for routine in kernel.routines:
+        try:
+            texts[routine.name] = _routine(unit, kernel, routine, _scope(kernel, lanes, paths, loads), written)
+        except NotInParts:
+            continue
+        written[routine.name] = f"_encode_{routine.name}"
+    scope = _scope(kernel, lanes, paths, loads)
+    scope.numpy = unit.numpy
+    body = undamaged(reached(kernel.bodies[0]), kernel.sites)
+    parts = _parts(unit, kernel, scope, body, written, depth=2)
+    parts.binder.bind(0, index(0), "target", Ref(unit.type), unit.layout.root)
+    parts.block(parts.body)
+    called, pending = set[str](), set(parts.called)
+    while pending:
+        name = pending.pop()
+        called.add(name)
+        pending |= {each for each, function in written.items() if any(f"{function}(" in line for line in texts[name][1:])} - called
+    lines = [*(["        parts = []"] if parts.begun else []), *parts.function.writer.lines]
+    routines = tuple("\n".join(texts[name]) for name in written if name in called)
+    return InParts(routines, tuple(lines), frozenset(loads), frozenset(scope.told))
+
+
+def _scope(kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], loads: set[str]) -> Given:
+    return Given(Namespace(words_of(lanes)), lanes, flat=True, loads=loads, name=kernel.name, paths=paths)
+
+
+def _parts(unit: Unit, kernel: Kernel, scope: Given, block: Block, written: dict[str, str], depth: int) -> Parts:
+    body = without_positions(counted(block))
+    objects = Objects(lambda _, __: "message")
+    function = Function(scope, kernel, kernel.sites, {}, unit.origins.get("encode", ()), objects, writer=Writer(depth=depth))
+    function.read = read_names(without_places(body))
+    return Parts(unit, function, scope, body, written)
+
+
+def _routine(unit: Unit, kernel: Kernel, routine: Routine, scope: Given, written: dict[str, str]) -> list[str]:
+    """A routine that writes from its first parameter on, and gives the position behind: a function of the others that gives the bytes."""
+    parts = _parts(unit, kernel, scope, routine.body, written, depth=1)
+    if not routine.parameters or len(routine.results) != 1 or any(isinstance(stmt, Expect) for stmt, _ in statements(parts.body)):
+        raise NotInParts
+    first, *others = routine.parameters
+    parts.positions.at = parts.positions.values[first.name] = Sum(0, frozenset({(first, 1)}))
+    given = ", ".join(scope.locals.identifier(each.name) for each in others)
+    parts.block(parts.body)
+    if parts.positions.sum(routine.results[0]) != parts.positions.at:
+        raise NotInParts
+    parts.end("")
+    begun = ["    parts = []"] if parts.begun else []
+    return [f"def _encode_{routine.name}({given}):", *begun, *parts.function.writer.lines]
