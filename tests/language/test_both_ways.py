@@ -343,3 +343,18 @@ def test_the_sign_of_a_zero_that_tells_a_block(backend, zero):
     made = pair('("kind" :int)', "required double a = 1;", rules + "pack-rules:\n.kind = 1 if .a == 0.0 else 2\n", backend)
     assert made.pack(a=0.0) == {"kind": 1}
     assert made.refused(a=-0.0).kind == "rejected"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_bits_of_an_integer(backend):
+    """Bits that are masked and those above them are digits: both come back, and what has more bits than its mask is refused."""
+    rules = "rules:\n  .low <-> int32(.word & 15)\n  .high <-> int32(.word >> 4)\n"
+    both = pair('("word" :int)', "required int32 low = 1; required int32 high = 2;", rules, backend)
+    assert "exact inverse" in str(both.decode.mapping.laws)
+    assert "lossy" not in str(both.decode.mapping.laws)
+    for word in (0, 15, 16, -77, 2**31 - 1, -(2**31)):
+        found = both.unpack(word=word)
+        assert found == {"low": word & 15, "high": word >> 4}
+        assert both.pack(**found) == {"word": word}
+    assert both.refused(low=16, high=0).kind == "rejected"
+    assert both.refused(low=0, high=1 << 28).kind == "range"

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
+from rosetta_jit.language.both_ways.bits import with_digits
 from rosetta_jit.language.both_ways.checks import checks_of
 from rosetta_jit.language.both_ways.inverse import condition_in
 from rosetta_jit.language.both_ways.packing import Packing
@@ -38,7 +39,7 @@ def derive(mapping: model.Mapping, type_of: TypeOf, problems: list[Diagnostic], 
     if mapping.rules is None:
         return mapping
     found: list[Diagnostic] = []
-    packing, rules = Packing.of(mapping.pack_rules or (), type_of, found), mapping.rules
+    packing, rules = Packing.of(mapping.pack_rules or (), type_of, found), with_digits(mapping.rules, type_of)
     pack_rules = packing.block(rules, ())
     conditional = _conditional(rules, packing)
     if conditional and depth < MAX_CONDITIONS:
