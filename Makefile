@@ -16,7 +16,7 @@ ifneq ($(wildcard $(YARP)/cmake/.built),)
 export YARP_DIR ?= $(abspath $(YARP))/cmake
 endif
 
-.PHONY: help demo usecase test check campaign conformance bench bench-check bench-compare native yarp clean
+.PHONY: help demo usecase test check campaign conformance bench bench-check bench-compare native peers yarp clean
 
 help: ## show this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -76,6 +76,10 @@ $(BIN)/python:
 	@test -n "$(PYTHON)" || { echo "no python3 found: install Python 3.11 or name one: make PYTHON=..." >&2; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "$(PYTHON) is older than Python 3.11" >&2; exit 1; }
 	$(PYTHON) -m venv $(VENV)
+
+# tests/peers.txt says what each is for.
+peers: ## install the programs of Debian that tests compare with (apt-get; asks sudo where it must)
+	$(if $(filter-out 0,$(shell id -u)),sudo )apt-get install --yes --no-install-recommends $(shell sed 's/#.*//' tests/peers.txt)
 
 yarp: $(YARP)/cmake/.built ## build the real YARP out of PyPI for tests and bench (minutes; needs a C++ compiler, CMake, and Debian's ycm-cmake-modules and libace-dev)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+from collections import Counter
 from functools import lru_cache
 
 import pytest
@@ -53,3 +54,13 @@ def optimised(lowered):
 def little_to_collect():
     """Tests that ask for a collection wait for what their module has made, and not for all that the modules before it have."""
     gc.freeze()
+
+
+def pytest_terminal_summary(terminalreporter):
+    """What was left out, and why: `make peers` and the extras of pyproject.toml install the most of it."""
+    skipped = terminalreporter.stats.get("skipped", ())
+    reasons = Counter(report.longrepr[2].removeprefix("Skipped: ") for report in skipped if isinstance(report.longrepr, tuple | list))
+    if reasons:
+        terminalreporter.section("left out")
+    for reason, count in sorted(reasons.items()):
+        terminalreporter.write_line(f"{count:4}  {reason}")
