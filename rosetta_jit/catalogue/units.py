@@ -71,11 +71,6 @@ def wrong_factor(span: Span | None, factor: float, source: str, target: str, rig
     return error("unit", message, span, "the wrong way", help_=f"{how}, or leave the factor out where both units are declared")
 
 
-def no_float(span: Span | None, found: str) -> Diagnostic:
-    """Something else than a float whose unit has to change."""
-    return error("unit", f"the units differ, and {found} is no float that could be converted", span, f"this is {found}")
-
-
 def integers_within(span: Span | None, integers: str, known: str, wanted: str) -> Diagnostic:
     """Integers within a whole value, which would be refused or rounded one by one."""
     message = f"within this are values of {integers} in {shorten(known)} where {shorten(wanted)} is meant"

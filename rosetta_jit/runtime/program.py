@@ -87,8 +87,8 @@ def entry_of(library: Library | None, state: Kept) -> int | None:
     return None if library is None or state.is_shared else library["call"]
 
 
-INTERNAL = frozenset({"__annotations__", "__signature__", "__vectorcalloffset__", "__weakref__"})
-"""What programs need for themselves, besides attributes that begin with an underscore."""
+INTERNAL = frozenset({"__annotations__", "__signature__", "__vectorcalloffset__", "__weakref__", "announced", "shared_", "wires_"})
+"""What programs need for themselves and each other, besides attributes that begin with an underscore."""
 
 
 class CallSignature:

@@ -32,7 +32,7 @@ class StubHolder:
 
 
 class StubDecoder:
-    def __init__(self, mapping, *, encoding=None, parameters=None):
+    def __init__(self, mapping, *, encoding=None, parameters=None, wire=None):
         if mapping == "wrong.mapping":
             raise MappingError((MISTAKE,))
         self.parameters = parameters

@@ -10,6 +10,7 @@ import decimal
 import enum
 import fractions
 import functools
+import gc
 import json
 import math
 import operator
@@ -26,6 +27,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rosetta_jit.runtime.functions import registered
 from rosetta_jit.runtime.functions.content import content_of
 from rosetta_jit.runtime.functions.identity import identify, settle
 from rosetta_jit.runtime.limits import MAX_FUNCTIONS
@@ -330,6 +332,15 @@ def test_dispatchers_whose_globals_changed():
     assert not settle(before, function, "f")
     variables["K"] = 2.0
     assert digest_of(function) == before.digest
+
+
+def test_dispatchers_that_are_freed_are_passed_over():
+    dispatcher = numba.njit(lambda x: x)
+    known = {weakref.ref(test_dispatchers_that_are_freed_are_passed_over): numba.types.Dispatcher(dispatcher)}
+    del dispatcher
+    gc.collect()
+    nothing = types.SimpleNamespace(functions=(), attributes=(), globals=(), _functions={}, _attributes={}, _globals=known)
+    assert list(registered._types(nothing, nothing)) == []
 
 
 REGISTER = """

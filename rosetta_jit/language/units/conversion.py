@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import units as words
 from rosetta_jit.catalogue.resolve import written_at
-from rosetta_jit.language.conversions import FLOAT64, convert, describe
+from rosetta_jit.language.conversions import FLOAT64, describe
 from rosetta_jit.language.function import functions
 from rosetta_jit.language.places import field_names
 from rosetta_jit.language.typed import Access, Binary, Call, Choice, Convert, IndexStep, Nearest, Reduce, Unary
@@ -40,7 +40,7 @@ def in_unit(value: Expr, place: Place, scope: Scope, *, packs: bool = False) -> 
 
     ``packs`` is whether a rule for both directions, turned round, sets the place.
     """
-    if not isinstance(place.type, Int | Float | Enum):
+    if not isinstance(place.type, Int | Float | Enum) or not isinstance(value.type, Int | Float | Enum):
         return value
     known, wanted = unit_of(value), unit_at(place)
     if _is_plain(value) and (known is None) != (wanted is None):
@@ -106,12 +106,9 @@ def _with_fields_converted(value: Expr, factors: Factors) -> Expr | None:
 
 def _not_converted(value: Expr, target: Type, known: str, wanted: str) -> Diagnostic:
     """Why a number is not converted."""
-    source = describe(value.type)
-    if isinstance(value.type, Int) and isinstance(target, Float):
-        return words.wide_integer(value.span, source, _element_of(value))
-    if isinstance(value.type, Int) and isinstance(target, Int):
-        return words.fraction_of_unit(value.span, known, wanted, describe(target), _element_of(value))
-    return words.no_float(value.span, source if convert(value, FLOAT64) is None else describe(target))
+    if isinstance(target, Float):
+        return words.wide_integer(value.span, describe(value.type), _element_of(value))
+    return words.fraction_of_unit(value.span, known, wanted, describe(target), _element_of(value))
 
 
 def _element_of(value: Expr) -> str:

@@ -13,6 +13,7 @@ from __future__ import annotations
 import enum
 import os
 import sys
+from contextlib import suppress
 from functools import cache
 from types import CellType, FunctionType, MethodType
 from typing import TYPE_CHECKING, Any, cast
@@ -72,7 +73,9 @@ def _typed(value: Any, type_: Any) -> Iterator[tuple[object, object]]:
     """What makes up the type that an object was given: templates, or the function behind a dispatcher that is not the object itself."""
     key: object = value() if type(cast("object", value)) is ReferenceType else value
     if type(type_).__name__ == "Dispatcher":
-        yield from [] if type_.dispatcher is key else [(key, type_.dispatcher.py_func)]
+        with suppress(ReferenceError):  # a dispatcher that is freed already, which nothing can reach
+            dispatcher = type_.dispatcher
+            yield from [] if dispatcher is key else [(key, dispatcher.py_func)]
     else:
         yield from ((key, each) for each in getattr(type_, "templates", (type_,)))
 
