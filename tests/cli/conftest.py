@@ -35,7 +35,7 @@ class StubDecoder:
     def __init__(self, mapping, *, encoding=None, parameters=None, wire=None):
         if mapping == "wrong.mapping":
             raise MappingError((MISTAKE,))
-        self.parameters = parameters
+        self.parameters, self.wire = parameters, wire
         self.encoding = encoding or "own"
 
     def __call__(self, message):
