@@ -298,5 +298,24 @@ PASSED = {
             Return(BEGIN),
         )
     ),
+    "a variable that grows by way of two names": kernel(
+        (
+            *COUNTED[:3],
+            Var("k", i64("n")),
+            For(
+                "i",
+                i64("n"),
+                (
+                    expect(compare("lt", i64("k"), 999), 3),
+                    expect(Compare("ge", i64("k"), i64("n")), 3),
+                    Let("once", add(i64("k"), 1)),
+                    Let("twice", Binary("max", i64("once"), index(5))),
+                    *(SetField(Place(0, ROW, 8 * at), i64(name)) for at, name in enumerate(("once", "twice"))),
+                    Assign("k", i64("twice")),
+                ),
+            ),
+            Return(BEGIN),
+        )
+    ),
 }
 """What a pass does, or must not do."""
