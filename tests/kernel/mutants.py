@@ -33,6 +33,8 @@ PROOF = (
     "linear",
     "paths",
     "loops",
+    "record",
+    "meetings",
 )
 PASSES = ("affine", "bulk", "drop", "fold", "hoist", "merge", "reuse", "simplify", "sink", "unroll", "widen", "order")
 MODULES = tuple(
