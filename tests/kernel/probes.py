@@ -162,6 +162,8 @@ def texts() -> Iterator[Probe]:
         except VerificationError:
             last, said = "refused", []
         yield f"passes: {name}", digest("\n".join((*said, last)))
+    for name, kernel in {**kernels.ALL, **PASSED}.items():
+        yield f"passes for any machine: {name}", digest(to_text(passes.run(kernel, passes.ANY_MACHINE)))
 
 
 def outcomes() -> Iterator[Probe]:
