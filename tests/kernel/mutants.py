@@ -1,4 +1,4 @@
-"""Mutants: the proof or a pass with one thing in one line changed, so that it demands less, takes more as known, or does something else.
+"""Mutants: the proof, its record or a pass with one change, so that it demands less, takes more as known, or does something else.
 
 Each line that can be changed gives one mutant, and each obligation two more: one that does not demand it, and one that demands one less.
 Which change a line gets depends on its text alone, so that a campaign can be repeated, and a table of survivors stays true while lines
@@ -33,6 +33,8 @@ PROOF = (
     "linear",
     "paths",
     "loops",
+    "record",
+    "meetings",
 )
 PASSES = ("affine", "bulk", "drop", "fold", "hoist", "merge", "reuse", "simplify", "sink", "unroll", "widen", "order")
 MODULES = tuple(

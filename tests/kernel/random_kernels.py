@@ -298,5 +298,38 @@ PASSED = {
             Return(BEGIN),
         )
     ),
+    "rows of a constant, of numbers, and of bytes": kernel(
+        (
+            *COUNTED,
+            need(BEGIN, mul(i64("n"), 8)),
+            For("j", i64("n"), (SetField(Place(1, Binary("add", i64("start_1"), i64("j"))), index(0)),)),
+            For("i", i64("n"), (SetField(Place(1, ELEMENT), Load("i64", THERE)),)),
+            Reserve(2, i64("n")),
+            Let("start_2", Used(2)),
+            Advance(2, i64("n")),
+            For("k", i64("n"), (SetField(Place(2, Binary("add", i64("start_2"), i64("k"))), Load("u8", Binary("add", BEGIN, i64("k")))),)),
+            Return(BEGIN),
+        ),
+        strides=(64, 8, 1),
+    ),
+    "a variable that grows by way of two names": kernel(
+        (
+            *COUNTED[:3],
+            Var("k", i64("n")),
+            For(
+                "i",
+                i64("n"),
+                (
+                    expect(compare("lt", i64("k"), 999), 3),
+                    expect(Compare("ge", i64("k"), i64("n")), 3),
+                    Let("once", add(i64("k"), 1)),
+                    Let("twice", Binary("max", i64("once"), index(5))),
+                    *(SetField(Place(0, ROW, 8 * at), i64(name)) for at, name in enumerate(("once", "twice"))),
+                    Assign("k", i64("twice")),
+                ),
+            ),
+            Return(BEGIN),
+        )
+    ),
 }
 """What a pass does, or must not do."""

@@ -65,6 +65,14 @@ CASES.add(
     (*BYTE, If(BRANCH, (need(BEGIN, 8),)), X),
     (*BYTE, If(BRANCH, (need(BEGIN, 8),), (need(BEGIN, 9),)), X),
 )
+IS_ROW = Local("bool", "is_row")
+PERHAPS_ROW = *between("n", 0, 20), *rows(9), Var("is_row", compare("lt", N, 9)), If(BRANCH, (Assign("is_row", compare("lt", N, 10)),))
+CASES.add(
+    "a bool that a branch changes",
+    "a row outside its lane",
+    (*PERHAPS_ROW, If(IS_ROW, (put(N),))),
+    (*PERHAPS_ROW, If(IS_ROW, (expect(compare("lt", N, 9)), put(N)))),
+)
 CASES.add(
     "a check in the other branch",
     "bytes beyond the end of the message",

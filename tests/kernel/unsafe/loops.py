@@ -121,6 +121,13 @@ CASES.add(
         If(compare("lt", i64("k"), 4), (put(i64("k")),)),
     ),
 )
+RAISED = Assign("k", add(i64("k"), 1))
+CASES.add(
+    "a number below zero that a loop raises",
+    "a row that may be negative",
+    (*between("n", 0, 9), *rows(10), Var("k", index(-1)), For("i", N, (RAISED,)), put(i64("k"))),
+    (*between("n", 0, 9), *rows(10), Var("k", index(0)), For("i", N, (RAISED,)), put(i64("k"))),
+)
 CASES.add(
     "rows that each round uses",
     "rows that were not reserved",
