@@ -357,6 +357,7 @@ import numpy as np
 
 import rosetta_jit as rj
 from rosetta_jit.runtime.arrow.stamps import with_times
+from rosetta_jit.runtime.arrow.tables import taken
 
 schema = 'syntax = "proto3"; message M { enum Colour { RED = 0; GREEN = 1; } Colour colour = 1; int64 time = 2; }'
 messages = rj.Decoder.of("M", encoding="protobuf", schema=schema).many([b"\x08\x01\x10\x07", b"\x08\x05"])
@@ -364,6 +365,7 @@ table = with_times(messages.to_arrow(times=["time"]), {"log_time": np.array([1_7
 assert table["colour"].to_pylist() == ["GREEN", "5"]
 assert [str(each) for each in table.schema.types[::2]] == ["timestamp[ns]", "timestamp[ns]"]
 assert table["log_time"].cast("int64").to_pylist() == [1_700_000_000_000_000_005, 0]
+assert taken(table, np.array([1]))["colour"].to_pylist() == ["5"]
 print("pandas" in sys.modules)
 """
 
