@@ -85,9 +85,7 @@ class LogFile:
             return
         for block in self._reader.blocks(wanted):
             rows = block.rows
-            kept = np.ones(len(rows), np.bool_)
-            if wanted.connections is not None:
-                kept &= np.isin(rows.channels, list(wanted.connections))
+            kept = np.ones(len(rows), np.bool_) if wanted.connections is None else rows.are_of(wanted.connections)
             if wanted.start_ns is not None:
                 kept &= rows.log_ns >= wanted.start_ns
             if wanted.end_ns is not None:

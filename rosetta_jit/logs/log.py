@@ -228,7 +228,7 @@ def _decoded(block: Block, channels: dict[int, Channel], on_error: OnError) -> d
     """The messages of a block by their rows, each channel's in a batch of its own."""
     found: dict[int, Any] = {}
     for channel in set(channels.values()):
-        chosen = np.flatnonzero(np.isin(block.rows.channels, [each.number for each in channel.connections]))
+        chosen = np.flatnonzero(block.rows.are_of(channel.numbers))
         if len(chosen):
             batch = channel.decoded(block, block.rows.only(chosen), on_error)
             found |= dict(zip(chosen[batch.kept].tolist(), batch, strict=True))

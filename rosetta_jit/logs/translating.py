@@ -41,7 +41,7 @@ class Stream:
 
     def messages(self, block: Block) -> dict[int, bytes]:
         """Those of a block, by their rows."""
-        chosen = np.flatnonzero(np.isin(block.rows.channels, list(self.channel.numbers)))
+        chosen = np.flatnonzero(block.rows.are_of(self.channel.numbers))
         if not len(chosen):
             return {}
         buffer, places = self.channel.bridged(block, block.rows.only(chosen), self.bridge)

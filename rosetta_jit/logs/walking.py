@@ -19,6 +19,8 @@ from rosetta_jit.runtime.code import native
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.code.native import Library
@@ -27,6 +29,9 @@ WALKS = ("mcap", "lcm", "bag")
 SYMBOLS = (*WALKS, "gather")
 ROOM = 65_536
 """Messages a walk finds in one call."""
+
+FEW = 4
+"""Channels that are compared one by one, each in a tenth of the time that `numpy.isin` takes."""
 
 _WALK = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
 _GATHER = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p)
@@ -69,6 +74,20 @@ class Rows:
     def only(self, chosen: NDArray[Any] | slice) -> Rows:
         """Some of them, by a mask or by numbers."""
         return Rows(self.channels[chosen], self.log_ns[chosen], self.publish_ns[chosen], self.begins[chosen], self.ends[chosen])
+
+    def are_of(self, channels: Collection[int]) -> NDArray[np.bool_]:
+        """Which of them are of some channels: shape (n,)."""
+        if len(channels) > FEW:
+            return np.isin(self.channels, list(channels))
+        found = np.zeros(len(self), np.bool_)
+        for number in channels:
+            found |= self.channels == number
+        return found
+
+    def of_channels(self, channels: Collection[int]) -> Rows:
+        """Those of some channels; the same rows, if all are."""
+        found = self.are_of(channels)
+        return self if found.all() else self.only(found)
 
 
 @dataclass(frozen=True, slots=True)

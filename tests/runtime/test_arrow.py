@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import subprocess
 import sys
 from pathlib import Path
 
@@ -347,3 +348,30 @@ def test_pandas():
     assert batch.to_pandas(["u64"], types_mapper=pandas.ArrowDtype)["u64"].dtype == "uint64[pyarrow]"
     with pytest.raises(TypeError, match="to_pandas"):
         pandas.DataFrame(batch)
+
+
+WITHOUT_PANDAS = r"""
+import sys
+
+import numpy as np
+
+import rosetta_jit as rj
+from rosetta_jit.runtime.arrow.stamps import with_times
+from rosetta_jit.runtime.arrow.tables import taken
+
+schema = 'syntax = "proto3"; message M { enum Colour { RED = 0; GREEN = 1; } Colour colour = 1; int64 time = 2; }'
+messages = rj.Decoder.of("M", encoding="protobuf", schema=schema).many([b"\x08\x01\x10\x07", b"\x08\x05"])
+table = with_times(messages.to_arrow(times=["time"]), {"log_time": np.array([1_700_000_000_000_000_005, 0])})
+assert table["colour"].to_pylist() == ["GREEN", "5"]
+assert [str(each) for each in table.schema.types[::2]] == ["timestamp[ns]", "timestamp[ns]"]
+assert table["log_time"].cast("int64").to_pylist() == [1_700_000_000_000_000_005, 0]
+assert taken(table, np.array([1]))["colour"].to_pylist() == ["5"]
+print("pandas" in sys.modules)
+"""
+
+
+def test_pandas_is_not_imported_for_tables():
+    """Where it is installed, `pa.array` imports it for whatever it is given: 40 MB, and longer than a small log takes."""
+    pytest.importorskip("pandas")
+    ran = subprocess.run([sys.executable, "-c", WITHOUT_PANDAS], capture_output=True, text=True, check=False)
+    assert (ran.returncode, ran.stdout) == (0, "False\n"), ran.stderr

@@ -11,8 +11,6 @@ from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.ahead import ahead
@@ -146,7 +144,7 @@ class FolderConversion:
         done = 0
         for piece, within, block in ahead(self._blocks(progress)):
             for stream in streams:
-                rows = block.rows.only(np.isin(block.rows.channels, list(stream.channel.numbers)))
+                rows = block.rows.of_channels(stream.channel.numbers)
                 self._add(stream, stream.staging.put(block, rows), progress, parts, rejected)
             done += int((block.rows.ends - block.rows.begins).sum())
             progress.piece, progress.within = piece, within

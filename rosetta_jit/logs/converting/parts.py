@@ -71,10 +71,12 @@ class Parts:
 
     def add(self, name: str, table: pa.Table, log_ns: NDArray[np.int64]) -> None:
         """Add rows of a topic, by the times at which they were logged."""
+        from rosetta_jit.runtime.arrow.tables import taken
+
         stretches = log_ns // self._every
         for stretch in np.unique(stretches).tolist():
             mask = stretches == stretch
-            self._file(name, stretch).write(table if mask.all() else table.take(np.flatnonzero(mask)))
+            self._file(name, stretch).write(table if mask.all() else taken(table, np.flatnonzero(mask)))
         waiting = {key: each.file.waiting_bytes for key, each in self._open.items()}
         while sum(waiting.values()) > WAITING_BYTES:
             largest = max(waiting, key=waiting.__getitem__)

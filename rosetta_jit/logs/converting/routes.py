@@ -67,7 +67,7 @@ class Copied:
 
     def messages(self, block: Block) -> dict[int, bytes]:
         view, rows = block.data.data, block.rows
-        chosen = np.flatnonzero(np.isin(rows.channels, list(self.channel.numbers))).tolist()
+        chosen = np.flatnonzero(rows.are_of(self.channel.numbers)).tolist()
         begins, ends = rows.begins.tolist(), rows.ends.tolist()
         return {row: bytes(view[begins[row] : ends[row]]) for row in chosen}
 
@@ -103,7 +103,7 @@ class Mapped:
         return cls(channel, rejected, holder.programs_.encode, [(channel.numbers, connection)])
 
     def messages(self, block: Block) -> dict[int, bytes]:
-        chosen = np.flatnonzero(np.isin(block.rows.channels, list(self.channel.numbers)))
+        chosen = np.flatnonzero(block.rows.are_of(self.channel.numbers))
         if not len(chosen):
             return {}
         rows = block.rows.only(chosen)

@@ -27,7 +27,7 @@ from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, lent, offse
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -163,7 +163,14 @@ def _named(type_: Enum, values: NDArray[np.int32], validity: pa.Buffer | None) -
     code_of = {number: code for code, number in enumerate(every)}
     codes = np.array([code_of[number] for number in numbers], np.int32)[places]
     indices = pa.Array.from_buffers(pa.int32(), len(codes), [validity, pa.py_buffer(codes)])
-    return pa.DictionaryArray.from_arrays(indices, pa.array([names.get(each, str(each)) for each in every], pa.string()))
+    return pa.DictionaryArray.from_arrays(indices, _strings([names.get(each, str(each)) for each in every]))
+
+
+def _strings(texts: Sequence[str]) -> Arrow:
+    """A few texts. Unlike `pa.array`, this does not import pandas."""
+    octets = [each.encode() for each in texts]
+    ends = offsets(np.array([len(each) for each in octets], np.int64)).astype(np.int32)
+    return pa.Array.from_buffers(pa.string(), len(texts), [None, pa.py_buffer(ends), pa.py_buffer(b"".join(octets))])
 
 
 def _distinct(values: NDArray[np.int32]) -> tuple[list[int], NDArray[Any]]:

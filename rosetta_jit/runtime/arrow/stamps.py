@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 
+from rosetta_jit.runtime.arrow.times import stamps_array
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -17,11 +19,17 @@ def with_times(table: pa.Table, times_ns: Mapping[str, NDArray[np.int64]]) -> pa
     """A table with columns of nanoseconds since 1970 in front, as timestamps; a name that a field has gets an underscore."""
     taken = set(table.schema.names)
     if not taken:  # such a table has no rows to which one could add
-        return pa.table({name: np.array(times, np.int64).view("datetime64[ns]") for name, times in times_ns.items()})
+        columns = {name: _column(times) for name, times in times_ns.items()}
+        schema = pa.schema([pa.field(name, column.type) for name, column in columns.items()])
+        return pa.Table.from_batches([pa.RecordBatch.from_arrays(list(columns.values()), schema=schema)])
     for place, (name, times) in enumerate(times_ns.items()):
-        column = pa.array(np.array(times, np.int64).view("datetime64[ns]"))
-        table = table.add_column(place, f"{name}_" if name in taken else name, column)
+        table = table.add_column(place, f"{name}_" if name in taken else name, _column(times))
     return table
+
+
+def _column(times_ns: NDArray[np.int64]) -> pa.Array:
+    """Times in memory of their own, for what they are given in is used again."""
+    return stamps_array(np.array(times_ns, np.int64), "ns")
 
 
 def concatenated(tables: Sequence[pa.Table]) -> pa.Table:

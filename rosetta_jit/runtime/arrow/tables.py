@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pyarrow as pa
 from pyarrow.types import is_struct
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.arrow.arrays import Form
     from rosetta_jit.runtime.holder.record import Node
     from rosetta_jit.runtime.lanes import Lanes
+    from rosetta_jit.runtime.rows import Indices
 
 
 def record_batch(root: Record, lanes: Lanes, count: int, names: Sequence[str], form: Form) -> pa.RecordBatch:
@@ -46,6 +48,11 @@ def _demand(root: Record, name: str) -> None:
 def table(batch: pa.RecordBatch) -> pa.Table:
     """A table of one chunk."""
     return pa.Table.from_batches([batch])
+
+
+def taken(table: pa.Table, numbers: Indices) -> pa.Table:
+    """Some rows of a table, in memory of their own. Unlike `Table.take` with an array of numpy, this does not import pandas."""
+    return table.take(pa.Array.from_buffers(pa.int64(), len(numbers), [None, pa.py_buffer(np.ascontiguousarray(numbers, np.int64))]))
 
 
 def flat(table: pa.Table) -> pa.Table:

@@ -47,7 +47,7 @@ def time_array(node: Node, lanes: Lanes, rows: Rows, unit: Unit, validity: pa.Bu
     """
     match node:
         case Scalar(_, Int()):
-            return _stamps(_integers(node, lanes, rows, path), unit, validity)
+            return stamps_array(_integers(node, lanes, rows, path), unit, validity)
         case Record():
             moment = _moment(node)
             if moment is None:
@@ -55,14 +55,15 @@ def time_array(node: Node, lanes: Lanes, rows: Rows, unit: Unit, validity: pa.Bu
             seconds, part = _integers(moment.seconds, lanes, rows, path), _integers(moment.part, lanes, rows, path)
             if _reach(seconds, SECOND_NS) + _reach(part, moment.unit_ns) > _MOST:
                 raise _too_far(path)
-            return _stamps(seconds * SECOND_NS + part * moment.unit_ns, "ns", validity)
+            return stamps_array(seconds * SECOND_NS + part * moment.unit_ns, "ns", validity)
         case Scalar() | Text() | Blob() | Numbers() | Items() | Pairs() | Child():
             raise _no_time(path)
         case _:
             assert_never(node)
 
 
-def _stamps(values: Indices, unit: Unit, validity: pa.Buffer | None) -> pa.Array:
+def stamps_array(values: Indices, unit: Unit, validity: pa.Buffer | None = None) -> pa.Array:
+    """Integers of a unit as timestamps, which show their memory. Unlike `pa.array`, this does not import pandas."""
     return pa.Array.from_buffers(pa.timestamp(unit), len(values), [validity, pa.py_buffer(values)])
 
 
