@@ -116,7 +116,7 @@ class Frame:
     """One body being printed. ``entry`` prints into the function's entry block, ``builder`` where the body has got to.
 
     A routine that is printed where it is called has a frame with locals of its own, which knows its ``caller``. ``is_rare`` says that LLVM
-    will take no time for the body's speed.
+    will take no time for the body's speed. ``indices`` are the locals that grow with the rounds of a loop.
     """
 
     module: ir.Module
@@ -134,6 +134,7 @@ class Frame:
     is_rare: bool = False
     locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
     used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
+    indices: set[str] = field(default_factory=set[str])
 
     def message(self) -> ir.Value:
         """Where the message begins."""

@@ -80,7 +80,7 @@ def _statement(frame: Frame, statement: Stmt) -> None:
         case Expect(condition, failure):
             _check(frame, expression(frame, condition), failure)
         case Let(name, value):
-            frame.locals[name] = _value(frame, value)
+            frame.locals[name] = _value(frame, name, value)
         case Var(name, value):
             start = expression(frame, value)
             frame.builder.store(start, frame.variable(name, LLVM_TYPES[type_of(value)]).slot)
@@ -115,17 +115,20 @@ def _statement(frame: Frame, statement: Stmt) -> None:
             assert_never(statement)
 
 
-def _value(frame: Frame, value: Expr) -> ir.Value:
+def _value(frame: Frame, name: str, value: Expr) -> ir.Value:
     """The value of a local: of a place in the message LLVM does not know how it was found.
 
     A place is a sum of the sizes of all that stands before it. What LLVM tries with the summands, for the addresses in each loop, takes
-    time that grows with their third power. An index is no such sum: what depends on it must be seen to grow by the same in each round.
+    time that grows with their third power. An index is no such sum: LLVM must see that what is computed from it grows by the same in each
+    round, or a loop over elements does not become one over vectors.
     """
     number = expression(frame, value)
+    if any(isinstance(frame.locals[each], ir.PhiInstr) or each in frame.indices for each in locals_in(value)):
+        frame.indices.add(name)
+        return number
     match value:
-        case Binary("add", left, right) if not isinstance(left, Const) and not isinstance(right, Const):
-            is_index = any(isinstance(frame.locals[name], ir.PhiInstr) for name in locals_in(value))
-            return number if is_index or type_of(left) != "i64" else forgotten(frame.builder, number)
+        case Binary("add", left, right) if not isinstance(left, Const) and not isinstance(right, Const) and type_of(left) == "i64":
+            return forgotten(frame.builder, number)
         case _:
             return number
 

@@ -40,10 +40,6 @@ PASSES: tuple[Pass, ...] = (
     sink,
 )
 
-FINDS_MORE_AFTER: dict[Pass, tuple[Pass, ...]] = {drop: (hoist, unroll)}
-"""Passes that find more in a kernel only where one of these has changed it since they ran. Any other pass may where anything has; what
-nothing has changed no pass changes again, and in large kernels later rounds find little."""
-
 ANY_MACHINE = tuple(bulk_of_bytes if each is bulk else each for each in PASSES if each is not group)
 """Those for code that may run where numbers lie with their high byte first."""
 
@@ -68,16 +64,12 @@ def run(kernel: Kernel, passes: tuple[Pass, ...] = PASSES) -> Kernel:
 
 
 def _all(kernel: Kernel, passes: tuple[Pass, ...]) -> Kernel:
-    changed: dict[Pass, set[Pass]] = {}  # for each pass that has run: those that have changed the kernel since
+    results: dict[Pass, Kernel] = {}
     large = is_large(kernel)
     for transform in passes:
-        if transform in changed and (large or changed[transform].isdisjoint(FINDS_MORE_AFTER.get(transform, passes))):
-            continue
-        before, kernel = kernel, transform(kernel)
-        if kernel is not before:
-            for since in changed.values():
-                since.add(transform)
-        changed[transform] = set()
+        # What a pass has made, and no pass has changed since, it would not change again. In large kernels later rounds find little.
+        if results.get(transform) is not kernel and not (large and transform in results):
+            kernel = results[transform] = transform(kernel)
     verify(kernel)
     return kernel
 
