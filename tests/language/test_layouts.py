@@ -272,3 +272,10 @@ pack-rules:
   .k = 1
   .a = .a
 """
+
+
+def test_pixels_turned_round_are_moved_by_vectors():
+    """LLVM makes vectors of a loop only where it sees that places grow by the same in each round."""
+    turned = "rules:\n  .k <-> .k\n  .b <-> reversed(rows(.a, .k, 6, 8), 3)\n"
+    decode = rj.Decoder("m.mapping", schema={**BLOB, "m.mapping": HEAD + turned}, encoding="yarp3")
+    assert " x i8>" in decode.stage("llvm")
