@@ -64,6 +64,8 @@ class _Programs(Mapping[str, _Program], Generic[_Program]):
         return next(iter(self._programs.values()))
 
     def __getitem__(self, wire: str) -> _Program:
+        if wire not in self._programs:
+            raise KeyError(f"there is no wire {wire!r}; the wires are {', '.join(self)}")
         return self._programs[wire]
 
     def __iter__(self) -> Iterator[str]:

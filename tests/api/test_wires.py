@@ -494,3 +494,10 @@ def test_the_command_line(tmp_path, capsysbinary):
     assert main(["generate", mapping, "--wire", "left", "-o", str(tmp_path)]) == 1
     assert b"generated source cannot join" in capsysbinary.readouterr().err
     assert main(["generate", mapping, "--wire", "left", "--directions", "encode", "-o", str(tmp_path)]) == 0
+
+
+def test_a_misspelt_wire_is_told_with_the_others():
+    decode = rj.Decoders("joined/odometry.mapping", backend="interpreter")
+    with pytest.raises(KeyError, match="no wire 'pos'; the wires are pose, velocity"):
+        decode["pos"]
+    assert "pos" not in decode
