@@ -17,7 +17,7 @@ message:
   %is_bytes = icmp eq ptr %type, @PyBytes_Type
   br i1 %is_bytes, label %bytes, label %buffer, !prof !1
 bytes:
-  call void @Py_IncRef(ptr %message.object)
+  call void @keep_any(ptr %message.object)
   %size.at = getelementptr i8, ptr %message.object, i64 16
   %size = load i64, ptr %size.at
   %data = getelementptr i8, ptr %message.object, i64 32
@@ -73,7 +73,11 @@ return:
   %holder.at = getelementptr ptr, ptr %context, i64 1
   %holder = load ptr, ptr %holder.at
   call void @keep(ptr %holder)
-  %set = call i32 @PyList_SetItem(ptr %cell, i64 0, ptr %source)
+  %items.at = getelementptr i8, ptr %cell, i64 24
+  %items = load ptr, ptr %items.at
+  %last = load ptr, ptr %items
+  store ptr %source, ptr %items
+  call void @drop_any(ptr %last)
   ret ptr %holder
 abandon:
   call void @Py_DecRef(ptr %source)
