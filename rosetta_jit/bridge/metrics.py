@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections import Counter
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any, cast
 
@@ -40,8 +41,10 @@ def _lines(snapshot: list[dict[str, Any]]) -> Iterator[str]:
     for key, (name, label, help_) in REASONS.items():
         yield from _head(name, help_, "counter")
         for each in snapshot:
+            counts: Counter[str] = Counter()
             for reason, count in each[key].items():
-                yield f"{PREFIX}_{name}{{{_label('route', each['route'])},{_label(label, reason)}}} {count}"
+                counts[_label(label, reason)] += count  # two reasons may differ in what no label shows
+            yield from (f"{PREFIX}_{name}{{{_label('route', each['route'])},{shown}}} {count}" for shown, count in counts.items())
     yield from _head("reconnects_total", "Connections that were made again.", "counter")
     yield from _of_ends(snapshot, "reconnects_total", "reconnects")
     yield from _head("connections", "Peers that are connected.", "gauge")

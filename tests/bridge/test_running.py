@@ -24,6 +24,7 @@ from rosetta_jit.bridge.limits import MAX_CAUSES
 from rosetta_jit.bridge.metrics import MetricsServer, text
 from rosetta_jit.bridge.running import Running
 from rosetta_jit.bridge.table import rows
+from rosetta_jit.bridge.translating import Bridged, Unchanged
 from tests.transports.free import answers, free_port, until
 from tests.transports.name_server import NameServer
 from tests.transports.ros_master import Master
@@ -222,8 +223,8 @@ def test_who_asks_a_service_gets_to_know_its_type(run, tmp_path):
 )
 def test_what_an_address_says_goes_first(target, told):
     bridge = rj.Bridge.of("std_msgs/msg/Bool", "std_msgs/Bool", decode={"encoding": "cdr"}, encode={"encoding": "ros1"})
-    assert announced(target, bridge).keys() == told
-    assert announced(target, None) == {}
+    assert announced(target, Bridged(bridge)).keys() == told
+    assert announced(target, Unchanged()) == {}
 
 
 def test_a_rate(run):
@@ -339,6 +340,40 @@ def test_what_was_not_sent_is_counted(run, monkeypatch):
     bridge.stop(0.1)
     assert sum(live.counts.dropped.values()) == 3
     assert any("nobody listens" in line for line in said)
+
+
+def test_a_peer_that_is_too_slow_costs_its_own_messages_and_is_counted(run):
+    """One of two takes nothing. What the other one got is sent, and what the first one did not get is dropped."""
+    source, target = free_port(), free_port()
+    bridge, said = run(f'[[route]]\nsource = "tcp:{source}"\ntarget = "rsb:/big?port={target}&type=bytes&linger=0.1"\n')
+    live = next(iter(bridge.live.values()))
+    until(lambda: live.target is not None)
+    with (
+        rj.subscribe(f"rsb:/big?host=localhost&port={target}&role=client", queue=100) as quick,
+        socket.create_connection(("127.0.0.1", target)),
+    ):
+        until(lambda: live.target.connections == 2)
+        with rj.publish(f"tcp:{source}") as robot:
+            for _ in range(30):
+                robot.send(bytes(1 << 20))
+                assert quick.take(5)
+        until(lambda: bridge.snapshot()[0]["sent"] == 30)
+        too_slow = live.counts.dropped["the peer is too slow"]
+        assert too_slow > 5
+        assert any("1 dropped: the peer is too slow" in line for line in said)
+        bridge.stop(0.1)
+        assert 10 <= live.counts.dropped["closed before it was sent"] <= 30 - too_slow
+
+
+def test_many_targets_that_take_nothing_are_closed_side_by_side(run):
+    targets = [free_port() for _ in range(8)]
+    bridge, _ = run("".join(route(free_port(), f"{each}?wait=no", f'name = "{each}"') for each in targets))
+    for each in bridge.live.values():
+        each.deliver(message(0))
+    begun = time.monotonic()
+    bridge.stop(0.5)
+    assert time.monotonic() - begun < 3.0
+    assert all(sum(each.counts.dropped.values()) == 1 for each in bridge.live.values())
 
 
 def test_services(run, bottles):

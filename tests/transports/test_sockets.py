@@ -207,6 +207,16 @@ def test_a_slow_reader_makes_the_sender_wait_or_drop():
         assert 10 <= sink.lost["the peer went away"] <= taken  # what waited for it
 
 
+def test_what_waits_when_the_sender_closes_is_counted():
+    port = free_port()
+    with socket.create_server(("127.0.0.1", port)) as server, rj.publish(f"tcp:{port}?wait=no&linger=0.05") as sink:
+        until(lambda: sink.connections)
+        taken = sum(sink.send(bytes(1 << 20)) for _ in range(24))
+        sink.close()
+        assert 4 <= sink.lost["closed before it was sent"] <= taken
+        server.accept()[0].close()
+
+
 def test_a_sender_waits_for_a_reader_that_comes_later():
     port = free_port()
     with rj.publish(f"tcp:{port}") as sink:
