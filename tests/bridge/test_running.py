@@ -538,6 +538,15 @@ def is_answered(port):
         return False
 
 
+def test_messages_on_standard_output_are_alone_there(tmp_path):
+    (tmp_path / "in").write_bytes(b"\3\0\0\0abc\3\0\0\0def")
+    (tmp_path / "bridge.toml").write_text(f'[[route]]\nname = "a"\nsource = "pipe:{tmp_path}/in"\ntarget = "pipe:-"\n')
+    command = [sys.executable, "-m", "rosetta_jit", "bridge", str(tmp_path / "bridge.toml"), "--json", "--seconds", "0.2"]
+    found = subprocess.run(command, capture_output=True, check=True, timeout=20)
+    assert found.stdout == b"\3\0\0\0abc\3\0\0\0def"
+    assert json.loads(found.stderr.splitlines()[-1])["routes"][0]["sent"] == 2
+
+
 def test_the_command(tmp_path):
     """From start to stop, as people run it: a file, another one, an end."""
     source, target = free_port(), free_port()
