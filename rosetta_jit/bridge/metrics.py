@@ -49,11 +49,13 @@ def _lines(snapshot: list[dict[str, Any]]) -> Iterator[str]:
     yield from _of_ends(snapshot, "reconnects_total", "reconnects")
     yield from _head("connections", "Peers that are connected.", "gauge")
     yield from _of_ends(snapshot, "connections", "connections")
-    yield from _head("latency_seconds", "From arrival to what the target took.", "summary")
+    yield from _head("latency_seconds", "From arrival to what the target took; quantiles of the last one to two minutes.", "summary")
     for each in snapshot:
         for part, key in (("0.5", "p50_us"), ("0.99", "p99_us")):
             if each[key] is not None:
                 yield f'{PREFIX}_latency_seconds{{{_label("route", each["route"])},quantile="{part}"}} {each[key] / 1e6:.9f}'
+        for part, key in (("sum", "latencies_s"), ("count", "latencies")):
+            yield f"{PREFIX}_latency_seconds_{part}{{{_label('route', each['route'])}}} {each[key]}"
     yield from _head("state", "What a mapping keeps from one message to the next.", "gauge")
     for each in snapshot:
         for variable, now in each["state"].items():

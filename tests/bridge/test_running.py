@@ -19,7 +19,7 @@ import rosetta_jit as rj
 from rosetta_jit.bridge import metrics as asking
 from rosetta_jit.bridge.announcing import announced
 from rosetta_jit.bridge.checking import checked
-from rosetta_jit.bridge.counting import Latencies, RouteCounts
+from rosetta_jit.bridge.counting import WINDOW_S, Latencies, RouteCounts
 from rosetta_jit.bridge.limits import MAX_CAUSES
 from rosetta_jit.bridge.metrics import MetricsServer, text
 from rosetta_jit.bridge.running import Running
@@ -490,6 +490,22 @@ def test_latencies():
     for part in (0.1, 0.5, 0.9):
         assert latencies.quantile(part) == pytest.approx(1000 * part, rel=0.13)
     assert latencies.quantile(1.0) == pytest.approx(10**15, rel=0.13)
+    assert (latencies.total, latencies.total_ns) == (1000, 499_500 + 10**15)
+
+
+def test_latencies_are_those_of_the_last_minutes():
+    latencies, begun = Latencies(), time.monotonic()
+    latencies.add(10**6)
+    latencies.forget(begun + 1)
+    assert latencies.quantile(0.5) is not None
+    latencies.forget(begun + WINDOW_S + 1)
+    latencies.add(10**3)
+    assert latencies.quantile(0.99) == pytest.approx(10**6, rel=0.13)
+    latencies.forget(begun + 2 * WINDOW_S + 2)
+    assert latencies.quantile(0.99) == pytest.approx(10**3, rel=0.13)
+    latencies.forget(begun + 4 * WINDOW_S + 3)  # nothing came, and nobody looked
+    assert latencies.quantile(0.99) is None
+    assert latencies.total == 2
 
 
 def test_the_table_and_the_metrics(run):
@@ -512,6 +528,7 @@ def test_the_table_and_the_metrics(run):
         assert found.split("\n")[0].startswith("# HELP")
         assert 'rosetta_jit_bridge_bytes_sent_total{route="a \\"b\\"?[2J"} 5' in found
         assert 'reason="evil?[2J reason?"} 1' in found
+        assert 'rosetta_jit_bridge_latency_seconds_count{route="a \\"b\\"?[2J"} 1\n' in found
         assert 'rosetta_jit_bridge_connections{route="a \\"b\\"?[2J",end="target"} 1' in found
         assert 'rosetta_jit_bridge_reconnects_total{route="a \\"b\\"?[2J",end="source"} 0' in found
         assert all(line.startswith("#") or line.count("{") == 1 for line in text(bridge.snapshot()).splitlines())
