@@ -24,6 +24,12 @@ MAX_UNROLLED_ROUNDS = 16
 MAX_UNROLLED_STATEMENTS = 64
 """statements that such a loop becomes"""
 
+MAX_PIECE = 128
+"""bytes of fields side by side that become one move without a loop"""
+
+MAX_PIECES = 8
+"""such moves that a run of fields becomes; a longer run is moved by a loop"""
+
 MAX_HOISTED_NODES = 64
 """operators of a position that is computed before its loop"""
 

@@ -8,10 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rosetta_jit.kernel.ir import Expect, For, If, Let, Load, Local, Place, Require, Return, SetField
+from rosetta_jit.kernel.ir import Copy, Expect, Fill, For, Get, If, Let, Load, Local, Place, Require, Return, SetField, Store, Wire
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.passes.drop import drop
 from rosetta_jit.kernel.passes.hoist import hoist
+from rosetta_jit.kernel.passes.join import join
 from rosetta_jit.kernel.passes.merge import merge
 from rosetta_jit.kernel.passes.simplify import simplify
 from rosetta_jit.kernel.passes.unroll import unroll
@@ -140,3 +141,58 @@ def test_the_same_value_is_computed_once():
     body = (need(BEGIN, 4), Let("n", kernels.Convert("i64", Load("i32", BEGIN))), Let("a", mul(n, 12)), Let("b", mul(n, 12)))
     after = simplify(kernel((*body, SetField(Place(0, ROW), i64("a")), SetField(Place(0, ROW), i64("b")), Return(BEGIN))))
     assert [stmt.name for stmt in checks(after, Let)] == ["n", "a"]
+
+
+# --- fields side by side become one move ---
+
+
+def fields(*places):
+    """A row is emptied, and set from the message: `places` are offset in the row, type, offset in the message, byte order."""
+    moves = (SetField(Place(0, ROW, offset), Load(type_, add(BEGIN, at), order)) for offset, type_, at, order in places)
+    return kernel((ROW_EXISTS, need(BEGIN, 24), Fill(Place(0, ROW), index(24)), *moves, Return(BEGIN)), strides=(24,))
+
+
+def copies(joined):
+    return [(stmt.target, stmt.source, stmt.size) for stmt in checks(joined, Copy)]
+
+
+def test_a_row_that_lies_in_the_message_is_one_move_and_is_not_emptied():
+    joined = join(fields((0, "u32", 0, "<"), (4, "u32", 4, "<"), (8, "f64", 8, "<"), (16, "u8", 16, ">"), (17, "u8", 17, "<")))
+    assert copies(joined) == [(Place(0, ROW), Wire(BEGIN), index(18))]
+    assert len(checks(joined, Fill)) == 1, "six bytes of the row are not set"
+    whole = join(fields(*((8 * number, "f64", 8 * number, "<") for number in range(3))))
+    assert copies(whole) == [(Place(0, ROW), Wire(BEGIN), index(24))]
+    assert not checks(whole, Fill)
+    verify(whole)
+
+
+@pytest.mark.parametrize(
+    "second", [(8, "f64", 8, ">"), (16, "f64", 8, "<"), (8, "f64", 16, "<"), (8, "bool", 8, "<")], ids=["order", "gap", "wire", "bool"]
+)
+def test_what_lies_otherwise_is_moved_alone(second):
+    assert not copies(join(fields((0, "f64", 0, "<"), second)))
+
+
+def test_fields_are_written_by_one_move():
+    writes = (Store(add(BEGIN, 4 * number), Get("f32", Place(0, ROW, 4 * number))) for number in range(3))
+    joined = join(kernel((ROW_EXISTS, need(BEGIN, 12), *writes, Return(BEGIN)), direction="encode", strides=(24,)))
+    assert copies(joined) == [(Wire(BEGIN), Place(0, ROW), index(12))]
+    verify(joined)
+
+
+def test_a_row_is_emptied_where_it_is_read_before_it_is_set():
+    body = (
+        *(ROW_EXISTS, need(BEGIN, 24), Fill(Place(0, ROW), index(24))),
+        SetField(Place(0, ROW, 8), Get("f64", Place(0, ROW))),
+        *(SetField(Place(0, ROW, 8 * number), Load("f64", add(BEGIN, 8 * number))) for number in range(3)),
+    )
+    assert len(checks(join(kernel((*body, Return(BEGIN)), strides=(24,))), Fill)) == 1
+
+
+def test_a_long_run_is_cut_for_processors_and_a_vast_one_is_one_loop():
+    def run(count):
+        moves = (SetField(Place(0, ROW, 8 * number), Load("f64", add(BEGIN, 8 * number))) for number in range(count))
+        return kernel((ROW_EXISTS, need(BEGIN, 8 * count), *moves, Return(BEGIN)), strides=(8 * count,))
+
+    assert [int(size.value) for _, _, size in copies(join(run(37)))] == [128, 128, 40]
+    assert [int(size.value) for _, _, size in copies(join(run(1000)))] == [8000]

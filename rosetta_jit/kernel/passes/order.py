@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.kernel.passes.bulk import bulk, bulk_of_bytes, group
 from rosetta_jit.kernel.passes.drop import drop
 from rosetta_jit.kernel.passes.hoist import hoist
+from rosetta_jit.kernel.passes.join import join
 from rosetta_jit.kernel.passes.merge import merge
 from rosetta_jit.kernel.passes.reuse import reuse
 from rosetta_jit.kernel.passes.simplify import simplify
@@ -37,10 +38,11 @@ PASSES: tuple[Pass, ...] = (
     bulk,
     simplify,
     merge,
+    join,
     sink,
 )
 
-ANY_MACHINE = tuple(bulk_of_bytes if each is bulk else each for each in PASSES if each is not group)
+ANY_MACHINE = tuple(bulk_of_bytes if each is bulk else each for each in PASSES if each not in {group, join})
 """Those for code that may run where numbers lie with their high byte first."""
 
 

@@ -1,0 +1,147 @@
+"""Fields that lie side by side in the message and in a row become one move, and what is moved over a whole row need not be emptied before.
+
+Only numbers that both have in the same byte order, on a machine that has it, too: the low byte first.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import WIDTH, Const, Copy, Expect, Fill, Get, IsText, Let, Load, Nearest, Place, Require, SetField, Store, Wire
+from rosetta_jit.kernel.limits import MAX_PIECE, MAX_PIECES
+from rosetta_jit.kernel.rewrite import reads_memory, with_blocks, with_bodies
+from rosetta_jit.kernel.shape import expressions_of, subexpressions
+from rosetta_jit.kernel.terms import add, index, split, type_of
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.kernel.ir import Block, Expr, Kernel, Stmt
+
+
+@dataclass(frozen=True, slots=True)
+class _Move:
+    """So many bytes between a row, from ``offset``, and the message, from ``at`` behind ``base``."""
+
+    is_decoding: bool
+    lane: int
+    row: Expr
+    base: Expr
+    offset: int
+    at: int
+    size: int
+
+    def is_followed_by(self, other: _Move) -> bool:
+        """Whether both are one move: the other one begins where this one ends, on both sides."""
+        ours = self.is_decoding, self.lane, self.row, self.base, self.offset + self.size, self.at + self.size
+        return ours == (other.is_decoding, other.lane, other.row, other.base, other.offset, other.at)
+
+
+def join(kernel: Kernel) -> Kernel:
+    """The kernel with one move where fields lie side by side."""
+
+    def block(body: Block) -> Block:
+        return _uncovered(tuple(_joined([with_blocks(stmt, block) for stmt in body])))
+
+    return with_bodies(kernel, tuple(map(block, kernel.bodies)))
+
+
+def _joined(block: list[Stmt]) -> Iterator[Stmt]:
+    run: list[tuple[_Move, Stmt]] = []
+    for stmt in block:
+        move = _move(stmt)
+        if run and (move is None or not run[-1][0].is_followed_by(move)):
+            yield from _together(run)
+            run = []
+        if move is None:
+            yield stmt
+        else:
+            run.append((move, stmt))
+    yield from _together(run)
+
+
+def _move(stmt: Stmt) -> _Move | None:
+    """A statement as a move, if it is one of so many bytes."""
+    match stmt:
+        case SetField(place, Load(type_, at, order)) if type_ != "bool" and (order == "<" or WIDTH[type_] == 1):
+            return _between(place, at, WIDTH[type_], is_decoding=True)
+        case Store(at, Get(type_, place), order) if type_ != "bool" and (order == "<" or WIDTH[type_] == 1):
+            return _between(place, at, WIDTH[type_], is_decoding=False)
+        case Copy(Place() as place, Wire(at), Const(_, size)):
+            return _between(place, at, int(size), is_decoding=True)
+        case Copy(Wire(at), Place() as place, Const(_, size)):
+            return _between(place, at, int(size), is_decoding=False)
+        case _:
+            return None
+
+
+def _between(place: Place, at: Expr, size: int, *, is_decoding: bool) -> _Move | None:
+    if reads_memory(at) or reads_memory(place.row):
+        return None
+    base, begin = split(at)
+    return _Move(is_decoding, place.lane, place.row, base, place.offset, begin, size)
+
+
+def _together(run: list[tuple[_Move, Stmt]]) -> Iterator[Stmt]:
+    """The moves of a run as few: one, or some of a size that a processor moves without a loop."""
+    if len(run) < 2:
+        yield from (stmt for _, stmt in run)
+        return
+    first, size = run[0][0], sum(move.size for move, _ in run)
+    piece = MAX_PIECE if size <= MAX_PIECES * MAX_PIECE else size
+    for begin in range(0, size, piece):
+        yield _copy(first, begin, min(piece, size - begin))
+
+
+def _copy(first: _Move, begin: int, size: int) -> Copy:
+    """The move of some bytes of a run, from so many bytes behind its first."""
+    place, wire = Place(first.lane, first.row, first.offset + begin), Wire(add(first.base, first.at + begin))
+    return Copy(place, wire, index(size)) if first.is_decoding else Copy(wire, place, index(size))
+
+
+def _uncovered(block: Block) -> Block:
+    """A block without what empties bytes of a row that are then all set, by statements that only check, name values, or set fields."""
+    return tuple(stmt for number, stmt in enumerate(block) if not (isinstance(stmt, Fill) and _is_covered(stmt, block[number + 1 :])))
+
+
+def _is_covered(fill: Fill, behind: Block) -> bool:
+    match fill:
+        case Fill(Place() as place, Const(_, size)) if not reads_memory(place.row):
+            begin, end = place.offset, place.offset + int(size)
+        case _:
+            return False
+    free = [(begin, end)]
+    for stmt in behind:
+        covered = _span(stmt, place)
+        if covered is not None:
+            free = [each for span in free for each in _without(span, covered)]
+        elif not isinstance(stmt, Require | Expect | Let) or any(map(reads_memory, expressions_of(stmt))):
+            return False
+        if not free:
+            return True
+    return False
+
+
+def _span(stmt: Stmt, place: Place) -> tuple[int, int] | None:
+    """The bytes of a row that a statement sets, from where to where; None if it may do anything else with lanes."""
+    match stmt:
+        case SetField(Place(place.lane, place.row, offset), value) if not _reads_lanes(value):
+            return offset, offset + WIDTH[type_of(value)]
+        case Copy(Place(place.lane, place.row, offset), Wire(_), Const(_, size)):
+            return offset, offset + int(size)
+        case _:
+            return None
+
+
+def _reads_lanes(value: Expr) -> bool:
+    return any(isinstance(part, Get | IsText | Nearest) for part in subexpressions(value))
+
+
+def _without(span: tuple[int, int], covered: tuple[int, int]) -> Iterator[tuple[int, int]]:
+    """What is left of a span."""
+    (begin, end), (low, high) = span, covered
+    if begin < min(low, end):
+        yield begin, min(low, end)
+    if max(high, begin) < end:
+        yield max(high, begin), end
