@@ -91,6 +91,8 @@ def verify(kernel: Kernel, record: Record | None = None) -> None:
 def settled(kernel: Kernel) -> frozenset[int]:
     """The ids of Require and Expect statements that cannot fail wherever they stand, and of Ifs that always choose their first block.
 
+    In rare bodies nobody looks for them.
+
     Raises
     ------
     VerificationError
@@ -99,7 +101,7 @@ def settled(kernel: Kernel) -> frozenset[int]:
     found: set[int] = set()
     needed: set[int] = set()
     routines = _proven_routines(kernel)
-    for body in kernel.bodies:
+    for body in kernel.usual:
         walk = _body(kernel, body, routines, notes=True)
         found |= walk.seen.keys()
         needed |= walk.needed
