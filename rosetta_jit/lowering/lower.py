@@ -14,14 +14,14 @@ from rosetta_jit.kernel.ir import Block, Capacity, Compare, Direction, Fill, Ker
 from rosetta_jit.kernel.ir import Place as KernelPlace
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index
 from rosetta_jit.language.check.discriminators import discriminators_of
-from rosetta_jit.language.resolve.defaults import has_array
 from rosetta_jit.language.scope import Message
 from rosetta_jit.lowering.codec.ending import end
 from rosetta_jit.lowering.codec.fields import root_fields
 from rosetta_jit.lowering.codec.walk import walk
-from rosetta_jit.lowering.codec.wire_fields import Found, NotInPlaceError, WireFields
+from rosetta_jit.lowering.codec.wire_fields import Found, WireFields
 from rosetta_jit.lowering.rules.holder_side import HolderSide
-from rosetta_jit.lowering.rules.initial_values import bear, opened_lanes, places_left
+from rosetta_jit.lowering.rules.in_place import obstacle
+from rosetta_jit.lowering.rules.initial_values import bear, opened_lanes
 from rosetta_jit.lowering.rules.packed_values import Supplies, look_up_arrays
 from rosetta_jit.lowering.rules.shares import born_of, clear, kept_lanes
 from rosetta_jit.lowering.rules.state import begin
@@ -79,10 +79,9 @@ def lower(
     if mapped is None:
         return lowering.kernel(name, lambda fields, attempt: _own(encoding, attempt, fields))
     mapped = _in_order(mapped, mapped.holder if direction == "decode" else mapped.wire)
-    try:
-        return lowering.kernel(name, lambda fields, attempt: _in_place(encoding, attempt, fields, mapped))
-    except NotInPlaceError:
-        return lowering.kernel(name, lambda fields, attempt: _staged(encoding, attempt, fields, mapped))
+    in_the_way = obstacle(encoding, lowering.attempts, mapped.rules, direction, mapped.schema)
+    relate = _in_place if in_the_way is None else _staged
+    return lowering.kernel(name, lambda fields, attempt: relate(encoding, attempt, fields, mapped))
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,11 +136,16 @@ class _Lowering:
     registers: int = 0
     kept: tuple[int, ...] = ()
 
+    @property
+    def attempts(self) -> tuple[Codec, ...]:
+        """The codecs of which each becomes a body."""
+        attempts = self.encoding.attempts if self.direction == "decode" else (self.encoding.written,)
+        return tuple(attempt for attempt in attempts if attempt is not None)
+
     def kernel(self, name: str, relate: Relate) -> Kernel:
         writer = Writer(self.direction, [*(lane.stride for lane in self.layout.lanes), SCRATCH_STRIDE], references=self.references)
         own = len(writer.strides)
-        attempts = self.encoding.attempts if self.direction == "decode" else (self.encoding.written,)
-        bodies = tuple(self.body(writer, attempt, relate) for attempt in attempts if attempt is not None)
+        bodies = tuple(self.body(writer, attempt, relate) for attempt in self.attempts)
         strides, routines = tuple(writer.strides), tuple(writer.routines.values())
         sites, hidden = tuple(writer.sites), len(strides) - own
         rare = self.encoding.rare if self.direction == "decode" else 0
@@ -191,10 +195,8 @@ def _nested(encoding: Encoding, attempt: Codec) -> Mapping[str, Codec]:
     return encoding.nested[number]
 
 
-def _in_place(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: Mapped) -> None:
+def _in_place(_: Encoding, attempt: Codec, fields: HolderFields, mapped: Mapped) -> None:
     """Decode: find the wire's fields, then run the rules. Otherwise: lay out the message, then fill in the elements."""
-    if encoding.nested or isinstance(attempt, Tagged):
-        raise NotInPlaceError
     writer, rules = fields.writer, mapped.rules
     begin(writer, rules)
     found, decodes = Found(), writer.direction == "decode"
@@ -207,8 +209,6 @@ def _in_place(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: 
         Runner(writer, wire, holder).run(rules, Values(writer, wire, {}))
         writer.position = end
         return
-    if any(has_array(place.type, mapped.schema, told=False) for place in places_left(rules)):
-        raise NotInPlaceError
     values = Values(writer, holder, {})
     look_up_arrays(rules, holder, values)
     wire = WireSide(writer, WireFields(writer, found, Supplies(rules, holder, values)))

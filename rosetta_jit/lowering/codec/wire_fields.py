@@ -26,12 +26,6 @@ EACH = "[]"
 """In a path, stands for any element of the array before it."""
 
 
-class NotInPlaceError(Exception):
-    """Rules need a field that cannot be read or written where it lies on the wire: it is not at a known place, or what it says must be
-    put together first. The message is then decoded as a whole before the rules run, or encoded behind them (`lowering.staging`).
-    """
-
-
 class Supply(Protocol):
     """Where an encoding walk gets what the rules assign."""
 
@@ -137,28 +131,28 @@ class WireFields:
         if not self.element:
             for _, codec in choice.alternatives:
                 self.declare(codec, ())
-            for path in {} if self.supply is None else dict.fromkeys(path for _, codec in choice.alternatives for path in _told_by(codec)):
+            if self.supply is None:
+                return
+            for path in dict.fromkeys(path for _, codec in choice.alternatives for path in numbers_of_counts(codec)):
                 if (self.path + path, "value") not in self.found.variables:
                     self.get(path)
 
     def supplied(self, key: Path) -> Supply:
-        """Where an encoding walk gets its values; a decoding one has bound what it could."""
-        if self.supply is None:
-            raise NotInPlaceError(key)
+        """Where an encoding walk gets its values; a decoding one has bound what rules read."""
+        assert self.supply is not None, key
         return self.supply
 
     def choose(self, path: Path, number: int) -> None:
-        del number
-        raise NotInPlaceError(path)
+        raise AssertionError(path, number)
 
     def scatter(self, path: Path) -> None:
-        raise NotInPlaceError(path)
+        raise AssertionError(path)
 
     def appear(self, path: Path) -> None:
-        raise NotInPlaceError(path)
+        raise AssertionError(path)
 
     def present(self, path: Path) -> Expr:
-        raise NotInPlaceError(path)
+        raise AssertionError(path)
 
     @property
     def scope(self) -> WireFields:
@@ -260,12 +254,12 @@ def _stem(key: Path, role: str) -> str:
     return name if role == "value" else f"{name}_{role}"
 
 
-def _told_by(codec: Codec) -> Iterator[Path]:
+def numbers_of_counts(codec: Codec) -> Iterator[Path]:
     """The numbers by which a codec tells counts."""
     match codec:
         case Seq(items):
             for item in items:
-                yield from _told_by(item)
+                yield from numbers_of_counts(item)
         case Repeat(_, count, _) | Blob(_, count, _, _):
             yield from _named_in(count.value)
         case _:

@@ -69,11 +69,6 @@ def opened_lanes(rules: tuple[typed.Rule, ...], layout: Layout, root: Slot, side
     return frozenset(found)
 
 
-def places_left(rules: tuple[typed.Rule, ...]) -> list[typed.Place]:
-    """The places that are meant to be left alone."""
-    return [rule.place for rule in rules_within(rules) if isinstance(rule, typed.Default)]
-
-
 def _slot_at(place: typed.Place, layout: Layout, root: Slot) -> Slot:
     slot = root
     for step in place.steps:

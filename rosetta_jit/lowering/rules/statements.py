@@ -17,7 +17,6 @@ from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.calls import lowered
-from rosetta_jit.lowering.codec.wire_fields import NotInPlaceError
 from rosetta_jit.lowering.filling import UINT8
 from rosetta_jit.lowering.rules.copies import copy, is_endless
 from rosetta_jit.lowering.rules.filters import filtered
@@ -199,8 +198,7 @@ class Runner:
 
     def assign_computed(self, place: typed.Place, value: typed.Call, values: Values) -> None:
         """A text that is made of others, an image, or its pixels. On the wire there is no place for it before it is made."""
-        if isinstance(self.target, WireSide):
-            raise NotInPlaceError
+        assert isinstance(self.target, HolderSide)
         view = placed(self.writer, text_of(value, values))
         if isinstance(place.type, String) and place.type.encoding == "utf-8":
             view = checked(view, values)
@@ -210,8 +208,7 @@ class Runner:
 
     def assign_filling(self, place: typed.Place, call: typed.Call, values: Values) -> None:
         """An array that a function makes of others. On the wire there is no place for it before it is known how long it is."""
-        if isinstance(self.target, WireSide):
-            raise NotInPlaceError
+        assert isinstance(self.target, HolderSide)
         made = cast("Filling", lowered(call, values))
         self.take(place, self.count(made.count), values)
         variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
@@ -224,8 +221,7 @@ class Runner:
 
     def assign_parts(self, place: typed.Place, call: typed.Call, values: Values) -> None:
         """The parts of a text, each as an element. What is between separators is whole characters."""
-        if isinstance(self.target, WireSide):
-            raise NotInPlaceError
+        assert isinstance(self.target, HolderSide)
         assert isinstance(place.type, Array)
         text, pattern = cast("tuple[View, bytes]", lowered(call, values))
         view = checked(text, values) if isinstance(place.type.element, String) else text
@@ -241,8 +237,8 @@ class Runner:
 
     def copy(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """A message, union or map as a whole."""
-        if not (isinstance(self.source, HolderSide) and isinstance(self.target, HolderSide)):
-            raise NotInPlaceError
+        assert isinstance(self.source, HolderSide)
+        assert isinstance(self.target, HolderSide)
         chosen = self.target.case_of(place, values)
         source, path, _ = self.source.descend(origin, values)
         target, target_path, _ = self.target.descend(place, values)
