@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-import rosetta_jit as rj
 from rosetta_jit.lowering.rules.in_place import obstacle
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request
@@ -44,15 +43,3 @@ def in_the_way(rules, direction, block="rules"):
 def test_obstacles(rules, block, paths, direction):
     if direction in paths:
         assert in_the_way(rules, direction, block) == paths[direction]
-
-
-def test_wide_texts_of_corba_are_staged():
-    files = {
-        "a.idl": "module a { struct W { wstring name; long x; }; };",
-        "b.idl": "module b { struct V { wstring name; long x; }; };",
-        "m.mapping": 'import "a.idl" import "b.idl" data-holder: b::V wire-schema: a::W rules: .x <-> .x  .name <-> .name',
-    }
-    decode, encode = (kind("m.mapping", schema=files, encoding="cdr-giop", backend="interpreter") for kind in (rj.Decoder, rj.Encoder))
-    for name in ("", "wheel", "Räder ♥"):
-        holder = encode.holder_type.from_dict({"name": name, "x": 6})
-        assert decode(encode(holder)) == holder

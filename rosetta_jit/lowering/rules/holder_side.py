@@ -264,10 +264,11 @@ class HolderSide:
         fields, path, _ = self.descend(place, values)
         fields.put_bytes(path, at, size)
 
-    def set_byte(self, place: typed.Place, number: int, value: int, values: Evaluation) -> None:
-        """One byte of a text whose length was set."""
+    def set_unit(self, place: typed.Place, number: int, value: int, values: Evaluation) -> None:
+        """One byte, or unit of 16 bits, of a text whose length was set."""
         elements, _ = self.array(place, values)
-        self.writer.emit(SetField(Place(elements.lane, add(elements.start, number)), Const("u8", value)))
+        unit = Const("u8" if self.root.layout.lanes[elements.lane].stride == 1 else "u16", value)
+        self.writer.emit(SetField(Place(elements.lane, add(elements.start, number)), unit))
 
 
 def presence(fields: HolderFields, path: Path, *, outer: bool = False) -> Expr | None:

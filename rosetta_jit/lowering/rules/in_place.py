@@ -16,6 +16,7 @@ from rosetta_jit.language.resolve.defaults import has_array
 from rosetta_jit.lowering.codec.wire_fields import EACH
 from rosetta_jit.lowering.rules.bound_fields import BoundFields, Obstacle
 from rosetta_jit.lowering.rules.filters import filtered_arrays
+from rosetta_jit.lowering.rules.rescaling import UINT16
 from rosetta_jit.lowering.rules.wire_side import wire_key
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
 
@@ -121,6 +122,9 @@ def _of_value(place: typed.Place, type_: Type, bound: BoundFields) -> Iterator[O
     match type_:
         case Bool() | Int() | Float() | Enum():
             yield from _of_number(place, bound)
+        case String(encoding="utf-16"):
+            yield from _of_count(place, bound)
+            yield from _of_elements(wire_key(place)[0], UINT16, bound)
         case String() | Bytes():
             yield from _of_bytes(place, bound)
         case Array(element=element):
@@ -188,6 +192,11 @@ def _of_setting(place: typed.Place, value: typed.Expr, bound: BoundFields) -> It
     match place.type, value:
         case ((String() | Bytes() | Array()), typed.Call()):
             yield Obstacle(key, "how long it becomes is known only when it is made")
+        case String(encoding="utf-16"), _:
+            if isinstance(value, typed.Access):
+                yield from _of_elements(key, UINT16, bound)
+            else:
+                yield Obstacle(key, "how many units of 16 bits it has is known only when it is made")
         case ((String() | Bytes()), _):
             pass  # the walk has asked for its size
         case Array(element=element), _:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.lowering.rules.holder_side import HolderSide
     from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.model.types import Type
     from rosetta_jit.wire.codec import Path
 
 
@@ -79,12 +81,12 @@ class Supplies:
                 size = here.writer.let("length", here.of(value))
                 here.writer.expect(Compare("ge", size, index(0)), "count", here.where, "a length must not be negative", line=here.line)
                 return size
-            case typed.Assign(_, typed.Const(str(text))):
-                return index(len(text.encode()))
+            case typed.Assign(place, typed.Const(str(text))):
+                return index(len(units_of(text, place.type)))
             case typed.Assign(_, typed.Access(origin)):
                 return self.source.count(origin, here)
-            case typed.Assign(_, typed.Listed(items) as listed):
-                return here.of(replace(listed, items=tuple(map(_size, items)), type=typed.INT64))
+            case typed.Assign(place, typed.Listed(items) as listed):
+                return here.of(replace(listed, items=tuple(_size(item, place.type) for item in items), type=typed.INT64))
             case typed.Default():
                 return index(0)
             case _:
@@ -118,10 +120,17 @@ def rule_for(path: Path, rules: tuple[typed.Rule, ...]) -> typed.Rule | None:
     return None
 
 
-def _size(text: typed.Expr) -> typed.Const:
-    """How many bytes a text of a list has."""
+def _size(text: typed.Expr, type_: Type) -> typed.Const:
+    """How many bytes or units a text of a list has."""
     assert isinstance(text, typed.Const)
-    return typed.Const(len(str(text.value).encode()), typed.INT64)
+    return typed.Const(len(units_of(str(text.value), type_)), typed.INT64)
+
+
+def units_of(text: str, type_: Type) -> list[int]:
+    """A text as a type has it: bytes, or units of 16 bits."""
+    if isinstance(type_, String) and type_.encoding == "utf-16":
+        return [unit for (unit,) in struct.iter_unpack("<H", text.encode("utf-16-le"))]
+    return list(text.encode())
 
 
 def _zero(path: Path, rules: tuple[typed.Rule, ...]) -> Const:

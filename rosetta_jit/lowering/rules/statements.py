@@ -22,7 +22,7 @@ from rosetta_jit.lowering.rules.copies import copy, is_endless
 from rosetta_jit.lowering.rules.filters import filtered
 from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
 from rosetta_jit.lowering.rules.look_ahead import look_ahead
-from rosetta_jit.lowering.rules.packed_values import place_of
+from rosetta_jit.lowering.rules.packed_values import place_of, units_of
 from rosetta_jit.lowering.rules.putting import Putting
 from rosetta_jit.lowering.rules.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.rules.state import remember
@@ -143,8 +143,10 @@ class Runner:
 
     def assign(self, place: typed.Place, value: typed.Expr, values: Values, change: typed.Change | None = None) -> None:
         match place.type, value:
+            case String(encoding="utf-16"), typed.Access(origin):
+                self.assign_array(place, origin, values)
             case ((String() | Bytes()), typed.Const(str(text))):
-                self.assign_text(place, text.encode(), values)
+                self.assign_text(place, text, values)
             case ((String() | Bytes()), typed.Listed()):
                 self.assign_listed(place, value, values)
             case ((String() | Bytes()), typed.Access(origin)):
@@ -164,10 +166,12 @@ class Runner:
             case _:
                 self.target.set_number(place, values.of(value), values)
 
-    def assign_text(self, place: typed.Place, text: bytes, values: Values) -> None:
-        self.take(place, index(len(text)), values)
-        for number, byte in enumerate(text):
-            self.target.set_byte(place, number, byte, values)
+    def assign_text(self, place: typed.Place, text: str, values: Values) -> None:
+        """A text that is written down, in the units of the place."""
+        units = units_of(text, place.type)
+        self.take(place, index(len(units)), values)
+        for number, unit in enumerate(units):
+            self.target.set_unit(place, number, unit, values)
 
     def assign_listed(self, place: typed.Place, listed: typed.Listed, values: Values) -> None:
         """One of several texts; what is looked up for one of them is forgotten behind it."""
@@ -253,8 +257,8 @@ class Runner:
         if chosen is not None:
             self.target.expect_case(*chosen, values)
 
-    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
-        """An array as a whole: its length, then each element."""
+    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None = None) -> None:
+        """An array as a whole, or a text in units of 16 bits: its length, then each element."""
         count = self.source.count(origin, values)
         self.take(place, count, values)
         variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))

@@ -99,7 +99,7 @@ class WireSide:
     def set_length(self, place: typed.Place, count: Expr, values: Evaluation) -> None:
         """The walk has asked for it."""
 
-    def set_byte(self, place: typed.Place, number: int, value: int, values: Evaluation) -> None:
+    def set_unit(self, place: typed.Place, number: int, value: int, values: Evaluation) -> None:
         """One byte of a text whose size the walk has asked for."""
         del values
         at = add(self.root.found.regions[(*wire_key(place)[0], EACH)].first, number)
