@@ -21,16 +21,16 @@ from rosetta_jit.lowering.codec.walk import walk
 from rosetta_jit.lowering.codec.wire_fields import Found, WireFields
 from rosetta_jit.lowering.rules.holder_side import HolderSide
 from rosetta_jit.lowering.rules.in_place import obstacle
-from rosetta_jit.lowering.rules.initial_values import bear, opened_lanes
+from rosetta_jit.lowering.rules.initial_values import initialise, opened_lanes
 from rosetta_jit.lowering.rules.packed_values import Supplies, look_up_arrays
-from rosetta_jit.lowering.rules.shares import born_of, clear, kept_lanes
+from rosetta_jit.lowering.rules.shares import clear, initial_of, kept_lanes
 from rosetta_jit.lowering.rules.state import begin
 from rosetta_jit.lowering.rules.statements import Runner
 from rosetta_jit.lowering.rules.values import Values
 from rosetta_jit.lowering.rules.wire_side import WireSide
 from rosetta_jit.lowering.staging import staged_fields
 from rosetta_jit.lowering.writer import References, Where, Writer, block
-from rosetta_jit.model.initial_values import Births
+from rosetta_jit.model.initial_values import InitialValues
 from rosetta_jit.model.types import Struct
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Tagged
@@ -98,18 +98,18 @@ class Mapped:
     share: Share | None = None
 
     def side(self, fields: HolderFields, type_: Type, *, filled: Side | None) -> HolderSide:
-        """A message in lanes; where rules fill it, with what it is born with."""
+        """A message in lanes; where rules fill it, with its initial values."""
         if filled is None:
             return HolderSide(fields)
-        births, cell = Births(self.schema, fields.layout), fields.cell
+        initial, cell = InitialValues(self.schema, fields.layout), fields.cell
         opened = opened_lanes(self.rules, fields.layout, cell.slot, filled)
-        born = births.of(type_, cell.slot, cell.lane)
+        of_message = initial.of(type_, cell.slot, cell.lane)
         if self.share is None or filled == "wire":
-            bear(fields, born, cell.row, opened)
-            return HolderSide(fields, births, opened, self.unions)
+            initialise(fields, of_message, cell.row, opened)
+            return HolderSide(fields, initial, opened, self.unions)
         clear(fields, self.share)
-        bear(fields, born_of(self.share, born, fields.layout), cell.row, opened)
-        return HolderSide(fields, births, opened, self.unions, joined=self.share.joined)
+        initialise(fields, initial_of(self.share, of_message, fields.layout), cell.row, opened)
+        return HolderSide(fields, initial, opened, self.unions, joined=self.share.joined)
 
 
 def _in_order(mapped: Mapped, target: Type) -> Mapped:
