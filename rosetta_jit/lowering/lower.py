@@ -22,7 +22,7 @@ from rosetta_jit.lowering.codec.wire_fields import Found, WireFields
 from rosetta_jit.lowering.rules.holder_side import HolderSide
 from rosetta_jit.lowering.rules.in_place import obstacle
 from rosetta_jit.lowering.rules.initial_values import initialise, opened_lanes
-from rosetta_jit.lowering.rules.packed_values import Supplies, look_up_arrays
+from rosetta_jit.lowering.rules.packed_values import AssignedByRules, look_up_arrays
 from rosetta_jit.lowering.rules.shares import clear, initial_of, kept_lanes
 from rosetta_jit.lowering.rules.state import begin
 from rosetta_jit.lowering.rules.statements import Runner
@@ -211,7 +211,7 @@ def _in_place(_: Encoding, attempt: Codec, fields: HolderFields, mapped: Mapped)
         return
     values = Values(writer, holder, {})
     look_up_arrays(rules, holder, values)
-    wire = WireSide(writer, WireFields(writer, found, Supplies(rules, holder, values)))
+    wire = WireSide(writer, WireFields(writer, found, AssignedByRules(rules, holder, values)))
     walk(attempt, wire.root, writer)
     if writer.direction == "encode":
         Runner(writer, holder, wire).run(rules, values)

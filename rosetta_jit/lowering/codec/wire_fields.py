@@ -26,7 +26,7 @@ EACH = "[]"
 """In a path, stands for any element of the array before it."""
 
 
-class Supply(Protocol):
+class AssignedValues(Protocol):
     """Where an encoding walk gets what the rules assign."""
 
     def number(self, path: Path) -> Expr:
@@ -68,7 +68,7 @@ class WireFields:
 
     writer: Writer
     found: Found
-    supply: Supply | None = None
+    assigned: AssignedValues | None = None
     path: Path = ()
     where: Where = MESSAGE
     element: bool = False
@@ -91,7 +91,7 @@ class WireFields:
             return self.found.numbers[key]
         if self.element:
             return self.passing.get(path)
-        self.found.numbers[key] = self.bind(key, "value", self.supplied(key).number(key))
+        self.found.numbers[key] = self.bind(key, "value", self.assigned_at(key).number(key))
         return self.found.numbers[key]
 
     def put_bytes(self, path: Path, at: Expr, size: Expr) -> None:
@@ -101,7 +101,7 @@ class WireFields:
     def size_of(self, path: Path) -> Expr:
         key = self.path + path
         if key not in self.found.counts:
-            self.found.counts[key] = self.bind(key, "count", self.supplied(key).size(key))
+            self.found.counts[key] = self.bind(key, "count", self.assigned_at(key).size(key))
         return self.found.counts[key]
 
     def stored(self, path: Path, fixed: int | None = None) -> Stored:
@@ -111,7 +111,7 @@ class WireFields:
 
     def copy_bytes(self, path: Path, stored: Stored) -> None:
         key = self.path + path
-        source = self.supplied(key).bytes_at(key)
+        source = self.assigned_at(key).bytes_at(key)
         if source is None:
             self.bind_bytes(key, self.writer.position, stored.size)
         else:
@@ -131,16 +131,16 @@ class WireFields:
         if not self.element:
             for _, codec in choice.alternatives:
                 self.declare(codec, ())
-            if self.supply is None:
+            if self.assigned is None:
                 return
             for path in dict.fromkeys(path for _, codec in choice.alternatives for path in numbers_of_counts(codec)):
                 if (self.path + path, "value") not in self.found.variables:
                     self.get(path)
 
-    def supplied(self, key: Path) -> Supply:
+    def assigned_at(self, key: Path) -> AssignedValues:
         """Where an encoding walk gets its values; a decoding one has bound what rules read."""
-        assert self.supply is not None, key
-        return self.supply
+        assert self.assigned is not None, key
+        return self.assigned
 
     def choose(self, path: Path, number: int) -> None:
         raise AssertionError(path, number)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Supplies:
+class AssignedByRules:
     """What an encoding walk asks for while it lays out a message: numbers, sizes, and bytes that are copied as they are."""
 
     rules: tuple[typed.Rule, ...]
