@@ -16,7 +16,8 @@ from rosetta_jit.runtime.attributes.methods import turning
 from rosetta_jit.runtime.callable import FAILED, THREAD
 from rosetta_jit.runtime.joining import NOT_WHOLE, broken_wires, joining
 from rosetta_jit.runtime.limits import MAX_CLASSES
-from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
+from rosetta_jit.runtime.memory import address_of
+from rosetta_jit.runtime.program import Loaded, Program, is_foreign, one_by_one
 from rosetta_jit.runtime.room import roomier
 from rosetta_jit.runtime.whole_objects import decoding, decoding_whole
 from rosetta_jit.startup.cached import cached_property
@@ -234,8 +235,8 @@ class DecoderBase(Program):
         """Decode from one message on; the first that could not be."""
         count = len(offsets) - 1
         if self._loaded.library is not None:
-            many = MANY(self._loaded.library["many"])
-            return many(data.ctypes.data, data.size, offsets.ctypes.data, first, count, lanes.address)
+            where = address_of(offsets) if offsets.flags.writeable else offsets.ctypes.data
+            return self._compiled_many(data.ctypes.data, data.size, where, first, count, lanes.address)
         return one_by_one(self._loaded.kernel, data, offsets, first, lanes)
 
     def _many_error(self, result: int, data: NDArray[np.uint8], offsets: NDArray[np.int64], done: int, lanes: Lanes) -> Exception:
