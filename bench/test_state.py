@@ -11,7 +11,7 @@ from bench.contest import Contender
 CHAPTER = "State"
 OURS, STATELESS, BY_HAND = "rosetta_jit", "rosetta_jit, without state", "numba, by hand"
 AT_MOST, AT_MOST_PLAIN = 1.2, 1.2
-"""The loop by hand knows beforehand where each number lies; a decoder looks at each message anew, and a call of `many` takes microseconds."""
+"""The loop by hand knows beforehand where each number lies; a decoder looks at each message anew, and `many` takes microseconds."""
 
 COUNT = 10_000
 SHARE, RATE = 0.1, 100.0
