@@ -63,7 +63,13 @@ def unexpected(span: Span, kind: str, expected: frozenset[str]) -> Diagnostic:
     found = span.source.text[span.start : span.end]
     name = "the end of the file" if kind == "$END" else f"`{shorten(found)}`"
     message = f"expected {_listed(_expected(expected))}, found {name}"
-    return error("syntax", message, span, "not expected here", help_=_undotted(span, kind, expected) or _meant(span, kind, expected) or _hint(found, kind, expected))
+    return error(
+        "syntax",
+        message,
+        span,
+        "not expected here",
+        help_=_undotted(span, kind, expected) or _meant(span, kind, expected) or _hint(found, kind, expected),
+    )
 
 
 def _meant(span: Span, kind: str, expected: frozenset[str]) -> str:

@@ -61,6 +61,7 @@ OURS = (
     "spelling",
     "moments",
     "octets",
+    "signals",
     "checksums",
     "images",
     "colours",
