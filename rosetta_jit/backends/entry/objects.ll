@@ -9,7 +9,7 @@
 ; the state (`kernel.state.RESULT`) if the kernel has failed, and raises, or makes room and runs the kernel again.
 ;
 ; Offsets into CPython's objects, the same from 3.11 to 3.14 (Include/object.h, cpython/bytesobject.h, cpython/bytearrayobject.h, pybuffer.h).
-; Any object: type 8. bytes: size 16, data 32. bytearray: size 16, data 40, how often its buffer is exported 48. Py_buffer: buf 0, len 16, 80
+; Any object: type 8. bytes: size 16, data 32. list: items 24. bytearray: size 16, data 40, how often its buffer is exported 48. Py_buffer: buf 0, len 16, 80
 ; bytes in all. Ours (runtime/callable.py): of a callable the context 72, of a holder its state 16.
 
 @PyBytes_Type = external global i8
@@ -22,7 +22,6 @@ declare ptr @PyBytes_FromStringAndSize(ptr, i64)
 declare ptr @PyLong_FromSsize_t(i64)
 declare i64 @PyLong_AsSsize_t(ptr)
 declare ptr @PyErr_Occurred()
-declare i32 @PyList_SetItem(ptr, i64, ptr)
 declare void @Py_IncRef(ptr)
 declare void @Py_DecRef(ptr)
 declare i64 @kernel(ptr, i64, i64, ptr, i64)
@@ -150,6 +149,35 @@ define internal void @keep(ptr %object) alwaysinline {
   %count = load i64, ptr %object
   %more = add i64 %count, 1
   store i64 %more, ptr %object
+  ret void
+}
+
+; One more reference to any object, and one less. CPython does it itself where the count may stand for more than a count, as that of an immortal
+; object, or where the reference is the last one.
+define internal void @keep_any(ptr %object) alwaysinline {
+  %count = load i64, ptr %object
+  %plain = icmp ult i64 %count, 1073741824
+  br i1 %plain, label %here, label %there, !prof !0
+here:
+  %more = add i64 %count, 1
+  store i64 %more, ptr %object
+  ret void
+there:
+  call void @Py_IncRef(ptr %object)
+  ret void
+}
+
+define internal void @drop_any(ptr %object) alwaysinline {
+  %count = load i64, ptr %object
+  %less = add i64 %count, -1
+  %others = add i64 %count, -2
+  %plain = icmp ult i64 %others, 1073741824
+  br i1 %plain, label %here, label %there
+here:
+  store i64 %less, ptr %object
+  ret void
+there:
+  call void @Py_DecRef(ptr %object)
   ret void
 }
 
