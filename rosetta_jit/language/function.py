@@ -65,6 +65,7 @@ OURS = (
     "checksums",
     "images",
     "colours",
+    "reorders",
     *GROUPS,
 )
 """Modules of `rosetta_jit.functions` with a tuple `FUNCTIONS`, in the order of the reference."""
