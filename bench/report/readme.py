@@ -19,7 +19,7 @@ TABLE, PICTURE = "docs/benchmarks.md", "docs/speed.svg"
 HEADLINES = (
     "one call, 24 specialised doubles, `builtin`",
     "24 specialised doubles, against a dynamic C++ decoder",
-    "`many`, 10⁶ such messages",
+    "`many`, 10⁶ such messages, read and written",
     "image, unpadded and channels swapped",
     "Imu, against the fastest Python peer",
     "Imu, five values, decoded and read",

@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.api.bridges import Bridge
-from rosetta_jit.bridge.translating import Joining, Stateful
 from rosetta_jit.transports.address import parse
 from rosetta_jit.transports.installed import installed
 
 if TYPE_CHECKING:
-    from rosetta_jit.bridge.translating import Translate
+    from rosetta_jit.bridge.translating import Half, Translator
 
 
-def announced(target: str, translate: Translate | Joining | None) -> dict[str, Any]:
+def announced(target: str, translate: Translator) -> dict[str, Any]:
     """Options for a publisher: the name, md5 sum, hash and text of the type that is written, whichever it takes."""
     return _known(target, translate, "encode")
 
 
-def wanted(source: str, translate: Translate | Joining | None) -> dict[str, Any]:
+def wanted(source: str, translate: Translator) -> dict[str, Any]:
     """Options for a subscriber: what the type that is read must be, so that messages of another one are refused and not misread."""
     return _known(source, translate, "decode")
 
 
-def served(place: str, request: Translate | None, reply: Translate | None) -> dict[str, Any]:
+def served(place: str, request: Translator, reply: Translator) -> dict[str, Any]:
     """Options for a server: the service of ROS 1 whose requests are read, or the type of what RSB is answered."""
     return wanted(place, request) or announced(place, reply)
 
 
-def _known(place: str, translate: Translate | Joining | None, half: Literal["decode", "encode"]) -> dict[str, str]:
+def _known(place: str, translate: Translator, half: Half) -> dict[str, str]:
     """Nothing where messages are not translated, or where their type is none of the middleware's; nor of a type that the address says."""
     known = installed()
     address = parse(place, known)
@@ -37,14 +35,7 @@ def _known(place: str, translate: Translate | Joining | None, half: Literal["dec
     names = transport.asks if half == "decode" else tuple(transport.options)
     if framework is None or not names:
         return {}
-    found = _of(translate, framework, half)
+    found = translate.announced(framework, half)
     if "type" in address.options and address.options["type"][0] != found.get("type"):
         return {}
     return {name: value for name, value in found.items() if name in names and name not in address.options}
-
-
-def _of(translate: Translate | Joining | None, framework: str, half: Literal["decode", "encode"]) -> dict[str, str]:
-    if isinstance(translate, Joining):
-        return translate.encode.announced(framework) if half == "encode" else {}
-    bridge = translate.bridge if isinstance(translate, Stateful) else translate
-    return bridge.announced(framework, half) if isinstance(bridge, Bridge) else {}

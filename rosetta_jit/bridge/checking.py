@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rosetta_jit.bridge.announcing import announced
 from rosetta_jit.bridge.configuration import read
 from rosetta_jit.bridge.patterns import is_pattern
-from rosetta_jit.bridge.translating import translation_of, translator
+from rosetta_jit.bridge.translating import Unchanged, translator, translator_of
 from rosetta_jit.catalogue import bridge as words
 from rosetta_jit.errors import AddressError, BridgeError, RosettaError
 from rosetta_jit.transports.address import parse, settle
@@ -18,7 +18,7 @@ from rosetta_jit.transports.opening import COMMON
 
 if TYPE_CHECKING:
     from rosetta_jit.bridge.configuration import Configuration, Route, Rpc, Translation
-    from rosetta_jit.bridge.translating import Joining, Translate
+    from rosetta_jit.bridge.translating import Translator
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
     from rosetta_jit.transports.base import Transport
@@ -98,16 +98,16 @@ def _example(direction: str) -> str:
 
 def _compiled(
     route: Route | None, translation: Translation, configuration: Configuration, here: tuple[str | int, ...], found: list[Diagnostic]
-) -> Translate | Joining | None:
-    """Compile what a route, or one direction of a service, has for messages."""
+) -> Translator:
+    """Compile what a route, or one direction of a service, has for messages; where that is wrong, nothing is known of it."""
     try:
-        return translator(translation, configuration.search_path) if route is None else translation_of(route, configuration.search_path)
+        return translator(translation, configuration.search_path) if route is None else translator_of(route, configuration.search_path)
     except (RosettaError, TypeError, ValueError) as error:
         given: dict[str, Any] = json.loads(translation.text)
         keys = [key for key in ("decode_mapping", "encode_mapping", "decode_type", "encode_type", "between") if key in given]
         path = (*here, "mapping") if keys[:1] == ["decode_mapping"] else (*here, *keys[:1])
         found.append(words.bad_mapping(configuration.places.of(*path), str(error)))
-        return None
+        return Unchanged()
 
 
 def explained(configuration: Configuration) -> list[dict[str, Any]]:

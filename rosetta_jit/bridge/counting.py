@@ -4,40 +4,67 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
+from operator import add
 from time import monotonic
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.bridge.limits import MAX_CAUSES
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 OTHERS = "other causes"
 SUB = 8
 """Parts that each power of two of nanoseconds is divided into: latencies are known to an eighth."""
 
 
-class Latencies:
-    """How often which latency was measured."""
+WINDOW_S = 60.0
+"""Quantiles are of the latencies of one to two such times: of what happens now, not of all since the start."""
 
-    __slots__ = ("_counts", "total")
+
+class Latencies:
+    """How often which latency was measured in the present window, and in the one before.
+
+    Attributes
+    ----------
+    total, total_ns : int
+        All since the start: how many, and their sum in nanoseconds.
+    """
+
+    __slots__ = ("_before", "_begun", "_counts", "total", "total_ns")
 
     def __init__(self) -> None:
-        self._counts = [0] * (64 * SUB)
-        self.total = 0
+        self._before: Sequence[int] = _NONE
+        self._counts = [*_NONE]
+        self._begun = monotonic()
+        self.total = self.total_ns = 0
+
+    def forget(self, now: float) -> None:
+        """Begin another window where the present one is over; the moment is that of the monotonic clock."""
+        if now >= self._begun + WINDOW_S:
+            self._before = self._counts if now < self._begun + 2 * WINDOW_S else _NONE
+            self._counts, self._begun = [*_NONE], now
 
     def add(self, nanoseconds: int) -> None:
         """One more."""
         power = nanoseconds.bit_length()
         self._counts[power * SUB + (nanoseconds >> power - 4 & 7) if power > 3 else nanoseconds] += 1
         self.total += 1
+        self.total_ns += nanoseconds
 
     def quantile(self, part: float) -> int | None:
         """The latency that so many are not above, in nanoseconds; None where there are none."""
-        left = self.total * part
-        for number, count in enumerate(self._counts):
+        counts = [*map(add, self._before, self._counts)]
+        left = sum(counts) * part
+        for number, count in enumerate(counts):
             left -= count
             if count and left <= 0:
                 power, rest = divmod(number, SUB)
                 return number if power <= 3 else (SUB + rest + 1) << power - 4
         return None
+
+
+_NONE = (0,) * (64 * SUB)
 
 
 class RouteCounts:
@@ -83,6 +110,7 @@ class RouteCounts:
         now, then = (monotonic(), self.taken, self.sent, self.bytes_out), self._before
         self._before = now
         seconds = max(now[0] - then[0], 1e-6)
+        self.latencies.forget(now[0])
         with self._lock:
             dropped, failed = dict(self.dropped), dict(self.failed)
         return {
@@ -95,6 +123,8 @@ class RouteCounts:
             "bytes_per_s": (now[3] - then[3]) / seconds,
             "p50_us": _microseconds(self.latencies.quantile(0.5)),
             "p99_us": _microseconds(self.latencies.quantile(0.99)),
+            "latencies": self.latencies.total,
+            "latencies_s": self.latencies.total_ns / 1e9,
             "dropped": dropped,
             "failed": failed,
         }

@@ -7,6 +7,9 @@ from __future__ import annotations
 MAX_OPENING = 16
 """routes that are being opened at the same time"""
 
+MAX_CLOSING = 64
+"""routes that are being closed at the same time"""
+
 MAX_FOUND = 1000
 """routes that one pattern becomes: a hostile name server could name any number of channels"""
 

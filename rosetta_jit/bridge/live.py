@@ -12,14 +12,13 @@ from time import monotonic, perf_counter_ns
 from typing import TYPE_CHECKING
 
 from rosetta_jit.bridge.counting import RouteCounts
-from rosetta_jit.bridge.translating import Joining, Stateful, state_of
 from rosetta_jit.errors import MessageError, TransportError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.bridge.configuration import Route
-    from rosetta_jit.bridge.translating import Translate
+    from rosetta_jit.bridge.translating import Translator
     from rosetta_jit.transports.base import Caller, Message, Sink
 
     Say = Callable[[str], object]
@@ -42,7 +41,7 @@ class Inlet:
 
     def deliver(self, message: Message) -> None:
         """Take a message from the wire's source."""
-        self.live.join(self.wire, message)
+        self.live.deliver(message, self.wire)
 
 
 class LiveRoute:
@@ -51,8 +50,7 @@ class LiveRoute:
     Parameters
     ----------
     translate
-        What turns messages into those of the target; None leaves them as they are. Where it joins several wires, messages come by
-        an `Inlet` for each of them.
+        What turns messages into those of the target. Where it joins several wires, messages come by an `Inlet` for each of them.
     say
         Takes lines for people.
 
@@ -64,12 +62,11 @@ class LiveRoute:
 
     wire = ""
 
-    def __init__(self, route: Route, translate: Translate | Joining | None, say: Say) -> None:
+    def __init__(self, route: Route, translate: Translator, say: Say) -> None:
         self.route = route
+        self.translate = translate
         self.counts = RouteCounts()
         self.problem = "not open yet"
-        self._joining = translate if isinstance(translate, Joining) else None
-        self.translate = None if isinstance(translate, Joining) else translate
         self._say = say
         self._sink: Sink | None = None
         self._caller: Caller | None = None
@@ -82,7 +79,7 @@ class LiveRoute:
         self._thread: threading.Thread | None = None
         self._sending = threading.Lock()
         self._sender = 0
-        self._refusal = ""
+        self._refusal, self._refused = "", 0
 
     def open(self, sink: Sink | None, caller: Caller | None) -> None:
         """Begin: the target is there."""
@@ -101,18 +98,11 @@ class LiveRoute:
     @property
     def state(self) -> Mapping[str, float | str]:
         """What its mappings keep from one message to the next."""
-        return state_of(self.translation)
-
-    @property
-    def translation(self) -> Translate | Joining | None:
-        """What turns messages into those of the target."""
-        return self._joining or self.translate
+        return self.translate.state()
 
     def begin_anew(self) -> None:
         """Let the next message be the first one for its mappings."""
-        kept = self.translation
-        if isinstance(kept, Stateful | Joining):
-            kept.reset()
+        if self.translate.reset():
             self._say(f"{self.route.name}: its source came back, and the state of its mapping begins anew")
 
     @property
@@ -120,55 +110,38 @@ class LiveRoute:
         """Messages that wait for the target."""
         return len(self._waiting) + self._held
 
-    def deliver(self, message: Message) -> None:
-        """Take a message from the source."""
-        begun, counts, data = perf_counter_ns(), self.counts, message.data
-        counts.taken += 1
-        counts.bytes_in += len(data)
-        if self._interval_ns:
-            if begun < self._due_ns:
-                self.lost("above its rate")
-                return
-            self._due_ns = max(self._due_ns + self._interval_ns, begun)
-        if self.translate is not None:
-            try:
-                data = self.translate(data)
-            except MessageError as error:
-                self._failed(error)
-                return
-        self._go_on(message, data, begun)
-
-    def join(self, wire: str, message: Message) -> None:
-        """Take a message of one of several wires; what they have filled together goes on behind some of them."""
-        begun, counts, joining = perf_counter_ns(), self.counts, self._joining
-        assert joining is not None, "such a route has one source"
+    def deliver(self, message: Message, wire: str = "") -> None:
+        """Take a message from the source, or from that of one of several wires; send what it becomes, or let that wait."""
+        begun, counts = perf_counter_ns(), self.counts
         counts.taken += 1
         counts.bytes_in += len(message.data)
         try:
-            with joining.turn:
-                if not joining.take(wire, message.data):
-                    return
-                if begun < self._due_ns:
-                    self.lost("above its rate")
-                    return
-                self._due_ns = max(self._due_ns + self._interval_ns, begun) if self._interval_ns else 0
-                data = joining.message()
+            data = self.translate(message.data, wire, self._is_due)
         except MessageError as error:
             self._failed(error)
             return
-        self._go_on(message, data, begun)
-
-    def _go_on(self, message: Message, data: bytes | memoryview, begun: int) -> None:
-        """Send what has become of a message, or let it wait."""
+        if data is None:
+            return
         time = message.sent or message.time or None
         if self._caller is None and not self._waiting and not self._held and self._send(data, time, begun):
             return
         self._wait((bytes(data), time, begun))
 
+    def _is_due(self) -> bool:
+        """Whether the route's rate lets a message go on now; where it does not, one is counted as dropped."""
+        if not self._interval_ns:
+            return True
+        now = perf_counter_ns()
+        if now < self._due_ns:
+            self.lost("above its rate")
+            return False
+        self._due_ns = max(self._due_ns + self._interval_ns, now)
+        return True
+
     def lost(self, reason: str, count: int = 1) -> None:
         """Count messages that do not go on; also what the transport of the target reports."""
         if self._sender == threading.get_ident():
-            self._refusal = reason  # of the message that is being sent, which may be sent again
+            self._refusal, self._refused = reason, self._refused + count  # of the message that is being sent, which may be sent again
             return
         if not count:  # a peer was refused, and tries again and again
             if reason not in self.counts.dropped and self.counts.drop(reason, 0):
@@ -186,7 +159,7 @@ class LiveRoute:
         sink = self._sink
         assert sink is not None
         with self._sending:
-            self._sender = threading.get_ident()
+            self._sender, self._refused = threading.get_ident(), 0
             try:
                 taken = sink.send(data, time=time)
             except TransportError as error:
@@ -195,6 +168,8 @@ class LiveRoute:
                 return True  # there is nothing to be tried again
             finally:
                 self._sender = 0
+            if taken and self._refused:  # by some of several peers, to which it is not sent again
+                self.lost(self._refusal, self._refused)
         if taken:
             self._passed(data, begun)
         return taken
@@ -278,7 +253,9 @@ class LiveRoute:
             self._changed.notify_all()
         if self._thread is not None:
             self._thread.join(linger_s + 1)
-        left = self.waiting
+        with self._changed:
+            left = self.waiting
+            self._waiting.clear()  # or the thread would count them, too, as it finds the target closed
         if left:
             self.lost("not sent before the end", left)
         if self._sink is not None:

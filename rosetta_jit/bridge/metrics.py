@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections import Counter
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any, cast
 
@@ -40,17 +41,21 @@ def _lines(snapshot: list[dict[str, Any]]) -> Iterator[str]:
     for key, (name, label, help_) in REASONS.items():
         yield from _head(name, help_, "counter")
         for each in snapshot:
+            counts: Counter[str] = Counter()
             for reason, count in each[key].items():
-                yield f"{PREFIX}_{name}{{{_label('route', each['route'])},{_label(label, reason)}}} {count}"
+                counts[_label(label, reason)] += count  # two reasons may differ in what no label shows
+            yield from (f"{PREFIX}_{name}{{{_label('route', each['route'])},{shown}}} {count}" for shown, count in counts.items())
     yield from _head("reconnects_total", "Connections that were made again.", "counter")
     yield from _of_ends(snapshot, "reconnects_total", "reconnects")
     yield from _head("connections", "Peers that are connected.", "gauge")
     yield from _of_ends(snapshot, "connections", "connections")
-    yield from _head("latency_seconds", "From arrival to what the target took.", "summary")
+    yield from _head("latency_seconds", "From arrival to what the target took; quantiles of the last one to two minutes.", "summary")
     for each in snapshot:
         for part, key in (("0.5", "p50_us"), ("0.99", "p99_us")):
             if each[key] is not None:
                 yield f'{PREFIX}_latency_seconds{{{_label("route", each["route"])},quantile="{part}"}} {each[key] / 1e6:.9f}'
+        for part, key in (("sum", "latencies_s"), ("count", "latencies")):
+            yield f"{PREFIX}_latency_seconds_{part}{{{_label('route', each['route'])}}} {each[key]}"
     yield from _head("state", "What a mapping keeps from one message to the next.", "gauge")
     for each in snapshot:
         for variable, now in each["state"].items():

@@ -41,6 +41,6 @@ def _quoted(channel: str) -> str:
 
 def _filled(target: str, parts: tuple[str, ...]) -> str:
     for number, part in enumerate(parts, 1):
-        safe = re.sub(r"[^\w.:-]", "_", part)  # a name from the network becomes a part of an address, and no option in it
+        safe = re.sub(r"[^\w.:-]|\A\.+\Z", "_", part)  # a name from the network becomes no option of an address, and no folder above
         target = target.replace(f"{{{number}}}", safe)
     return target

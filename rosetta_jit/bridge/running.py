@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.bridge.announcing import announced, served, wanted
 from rosetta_jit.bridge.configuration import Route
-from rosetta_jit.bridge.limits import MAX_FOUND, MAX_OPENING
+from rosetta_jit.bridge.limits import MAX_CLOSING, MAX_FOUND, MAX_OPENING
 from rosetta_jit.bridge.live import LINGER_S, Inlet, LiveRoute
 from rosetta_jit.bridge.patterns import is_pattern, matching, place_to_list
 from rosetta_jit.bridge.services import LiveService
-from rosetta_jit.bridge.translating import translation_of, translator
+from rosetta_jit.bridge.translating import translator, translator_of
 from rosetta_jit.errors import RosettaError
 from rosetta_jit.transports.opening import call, names, publish, serve, subscribe
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection
 
     from rosetta_jit.bridge.configuration import Configuration, Rpc
     from rosetta_jit.transports.base import Message, Source
@@ -116,8 +116,7 @@ class Running:
             for shared in self._sources.values():
                 shared.close()
             self._sources.clear()
-            for each in self.live.values():
-                each.close(linger_s)
+            _close(self.live.values(), linger_s)
         self._pool.shutdown(wait=False, cancel_futures=True)
         if self._opener.is_alive():
             self._opener.join(2 * RETRY_S)
@@ -158,21 +157,17 @@ class Running:
             kept = {name for name, each in self.live.items() if same_folders and _is_same(each.route, wanted, name)}
             made = {name: self._made(each, folders) for name, each in wanted.items() if name not in kept and not _is_pattern(each)}
             self.configuration = configuration
-            for name in [*self.live]:
-                if name not in kept:
-                    self._drop(name)
+            gone = [self.live.pop(name) for name in [*self.live] if name not in kept]
+            for each in gone:
+                self._forget(each)
+            _close(gone, LINGER_S)
             self._patterns.clear()
             self.live.update(made)
 
     def _made(self, route: Route | Rpc, folders: tuple[str, ...]) -> Live:
         if isinstance(route, Route):
-            return LiveRoute(route, translation_of(route, folders), self._say)
+            return LiveRoute(route, translator_of(route, folders), self._say)
         return LiveService(route, translator(route.request, folders), translator(route.reply, folders), self._say)
-
-    def _drop(self, name: str) -> None:
-        gone = self.live.pop(name)
-        self._forget(gone)
-        gone.close()
 
     def _forget(self, gone: Live) -> None:
         """Bring a route no more messages; where it was the last one of its source, close that."""
@@ -255,9 +250,9 @@ class Running:
         route = each.route
         if each.target is None:
             if route.calls:
-                each.open(None, call(route.target, **announced(route.target, each.translation)))
+                each.open(None, call(route.target, **announced(route.target, each.translate)))
             else:
-                each.open(publish(route.target, lost=each.lost, **announced(route.target, each.translation)), None)
+                each.open(publish(route.target, lost=each.lost, **announced(route.target, each.translate)), None)
         self._listen(each)
         each.problem = ""
 
@@ -265,7 +260,7 @@ class Running:
         """Let its source bring its messages to this route, too; or those of all wires."""
         inlets = [(address, Inlet(each, wire)) for wire, address in each.route.sources]
         for address, inlet in inlets or [(each.route.source, each)]:
-            options = wanted(address, each.translation)
+            options = wanted(address, each.translate)
             key = address, tuple(sorted(options.items()))
             if not self._joins(key, inlet):
                 shared = _Shared(inlet)
@@ -285,6 +280,14 @@ class Running:
             if not any(known.live is inlet.live and known.wire == inlet.wire for known in shared.routes):
                 shared.routes = (*shared.routes, inlet)
             return True
+
+
+def _close(routes: Collection[Live], linger_s: float) -> None:
+    """Close routes side by side: a target that takes nothing holds up its own route alone."""
+    if routes:
+        with ThreadPoolExecutor(min(len(routes), MAX_CLOSING), "closes routes") as pool:
+            for done in [pool.submit(each.close, linger_s) for each in routes]:
+                done.result()
 
 
 def _is_pattern(route: Route | Rpc) -> bool:

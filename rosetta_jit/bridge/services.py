@@ -6,13 +6,12 @@ from time import perf_counter_ns
 from typing import TYPE_CHECKING
 
 from rosetta_jit.bridge.counting import RouteCounts
-from rosetta_jit.bridge.translating import state_of
 from rosetta_jit.errors import MessageError, TransportError
 
 if TYPE_CHECKING:
     from rosetta_jit.bridge.configuration import Rpc
     from rosetta_jit.bridge.live import Say
-    from rosetta_jit.bridge.translating import Translate
+    from rosetta_jit.bridge.translating import Translator
     from rosetta_jit.transports.base import Caller, Message, Server
 
 
@@ -21,7 +20,7 @@ class LiveService:
 
     waiting = 0
 
-    def __init__(self, rpc: Rpc, request: Translate | None, reply: Translate | None, say: Say) -> None:
+    def __init__(self, rpc: Rpc, request: Translator, reply: Translator, say: Say) -> None:
         self.route = rpc
         self.counts = RouteCounts()
         self.problem = "not open yet"
@@ -39,7 +38,7 @@ class LiveService:
     def state(self) -> dict[str, float | str]:
         """What the mappings of requests and of replies keep from one message to the next."""
         sides = (("request", self.request), ("reply", self.reply))
-        return {f"{side}.{name}": value for side, translate in sides for name, value in state_of(translate).items()}
+        return {f"{side}.{name}": value for side, translate in sides for name, value in translate.state().items()}
 
     def answer(self, message: Message) -> bytes:
         """Ask the other service. What fails is told to who asked."""
@@ -47,10 +46,11 @@ class LiveService:
         counts.taken += 1
         counts.bytes_in += len(message.data)
         try:
-            data = message.data if self.request is None else self.request(message.data)
+            data = self.request(message.data)
+            assert data is not None
             assert self.caller is not None
-            answered = self.caller(data, timeout=self.route.timeout_s).data
-            reply = bytes(answered) if self.reply is None else self.reply(answered)
+            reply = self.reply(self.caller(data, timeout=self.route.timeout_s).data)
+            assert reply is not None
         except (MessageError, TransportError) as error:
             if counts.fail(f"{error.kind}: {error.detail}"):
                 self._say(f"{self.route.name}: {error}")
@@ -58,7 +58,7 @@ class LiveService:
         counts.sent += 1
         counts.bytes_out += len(reply)
         counts.latencies.add(perf_counter_ns() - begun)
-        return reply
+        return bytes(reply)
 
     def close(self, linger_s: float = 0.0) -> None:
         """Stop answering."""

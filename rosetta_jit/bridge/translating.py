@@ -1,93 +1,172 @@
-"""What turns the messages of a route into others."""
+"""What turns the messages of a route into others: nothing, one compiled bridge, or what joins the messages of several wires."""
 
 from __future__ import annotations
 
 import json
 import math
 import threading
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from rosetta_jit.api.bridges import Bridge
     from rosetta_jit.api.programs import Encoder
     from rosetta_jit.api.wires import Decoders
     from rosetta_jit.bridge.configuration import Route, Translation
 
-    Translate = Callable[[Any], bytes]
+    Half = Literal["decode", "encode"]
 
 
-class Stateful:
-    """A compiled bridge whose mappings keep state from one message to the next; threads take it in turn."""
+def always() -> bool:
+    """The answer where there is no rate."""
+    return True
 
-    def __init__(self, bridge: Bridge) -> None:
-        self.bridge = bridge
-        self._turn = threading.Lock()
 
-    def __call__(self, message: Any) -> bytes:
-        """What a message becomes."""
-        with self._turn:
-            return self.bridge(message)
+class Translator(Protocol):
+    """What turns the messages of a route into others. Threads may share it."""
 
-    def reset(self) -> None:
-        """Let the next message be the first one."""
-        with self._turn:
-            self.bridge.reset()
+    def __call__(self, message: Any, wire: str = "", is_due: Callable[[], bool] = always) -> bytes | memoryview | None:
+        """What goes on behind a message of a wire; None where nothing does.
+
+        Parameters
+        ----------
+        is_due
+            Whether the route's rate lets something go on now. It is asked only where there is something.
+
+        Raises
+        ------
+        MessageError
+            The message is wrong, or its values do not fit the other wire.
+        """
+        ...
+
+    def reset(self) -> bool:
+        """Let the next message be the first one; whether anything of the ones before was kept."""
+        ...
 
     def state(self) -> dict[str, float | str]:
-        """Each state variable by its name, `decode.` or `encode.` in front; as JSON has numbers, so that infinity and NaN are texts."""
+        """What is kept from one message to the next, by name; as JSON has numbers, so that infinity and NaN are texts."""
+        ...
+
+    def announced(self, framework: str, half: Half) -> dict[str, str]:
+        """What a transport's ends are told of the type that is read or written, as of `rosetta_jit.Bridge.announced`."""
+        ...
+
+
+class Unchanged:
+    """Bytes pass as they are."""
+
+    def __call__(self, message: Any, wire: str = "", is_due: Callable[[], bool] = always) -> bytes | memoryview | None:
+        """The message."""
+        del wire
+        return message if is_due() else None
+
+    def reset(self) -> bool:
+        """Nothing is kept."""
+        return False
+
+    def state(self) -> dict[str, float | str]:
+        """Nothing is kept."""
+        return {}
+
+    def announced(self, framework: str, half: Half) -> dict[str, str]:
+        """Nothing is known."""
+        del framework, half
+        return {}
+
+
+class Bridged:
+    """One compiled bridge. Where its mappings keep state from one message to the next, threads take it in turn."""
+
+    def __init__(self, bridge: Bridge) -> None:
+        self._bridge = bridge
+        self._turn = threading.Lock() if any(bridge.state.values()) else None
+
+    def __call__(self, message: Any, wire: str = "", is_due: Callable[[], bool] = always) -> bytes | memoryview | None:
+        """What the message becomes."""
+        del wire
+        if not is_due():
+            return None
+        if self._turn is None:
+            return self._bridge(message)
         with self._turn:
-            halves = self.bridge.state
-        return {f"{half}.{name}": _shown(value) for half, variables in halves.items() for name, value in variables.items()}
+            return self._bridge(message)
+
+    def reset(self) -> bool:
+        """Let the mappings begin anew."""
+        if self._turn is None:
+            return False
+        with self._turn:
+            self._bridge.reset()
+        return True
+
+    def state(self) -> dict[str, float | str]:
+        """The state variables, `decode.` or `encode.` in front."""
+        if self._turn is None:
+            return {}
+        with self._turn:
+            halves = self._bridge.state
+        return {name: value for half, variables in halves.items() for name, value in _shown(half, variables).items()}
+
+    def announced(self, framework: str, half: Half) -> dict[str, str]:
+        """As the bridge says."""
+        return self._bridge.announced(framework, half)
 
 
-class Joining:
-    """What turns messages of several wires into messages of the holder that they fill; threads take it in turn."""
+class Joined:
+    """Messages of several wires fill one data-holder, which goes on once each of them has come; threads take it in turn.
+
+    Parameters
+    ----------
+    on
+        The wire behind whose messages the data-holder goes on; empty for any of them.
+    """
 
     def __init__(self, decoders: Decoders, encode: Encoder, on: str) -> None:
-        self._decoders, self.encode, self._on = decoders, encode, on
+        self._decoders, self._encode, self._on = decoders, encode, on
         self._holder = decoders.new()
         self._missing = set(decoders)
-        self.turn = threading.Lock()
+        self._turn = threading.Lock()
 
-    def take(self, wire: str, message: Any) -> bool:
-        """Fill a wire's part of the holder; whether the holder is to go on. In one's `turn`."""
-        self._missing.add(wire)
-        self._decoders[wire](message, self._holder)
-        self._missing.discard(wire)
-        return not self._missing and self._on in ("", wire)
+    def __call__(self, message: Any, wire: str = "", is_due: Callable[[], bool] = always) -> bytes | memoryview | None:
+        """Fill the part of a wire; the whole as the target has it, where it goes on."""
+        with self._turn:
+            self._missing.add(wire)  # until it is filled: a message that is refused holds up the whole
+            self._decoders[wire](message, self._holder)
+            self._missing.discard(wire)
+            goes_on = not self._missing and self._on in ("", wire) and is_due()
+            return self._encode(self._holder) if goes_on else None
 
-    def message(self) -> bytes:
-        """The holder as the target has it. In one's `turn`."""
-        return self.encode(self._holder)
-
-    def reset(self) -> None:
-        """Let the next message be the first one."""
-        with self.turn:
+    def reset(self) -> bool:
+        """Let all wires come again."""
+        with self._turn:
             self._decoders.reset()
             self._holder.clear()
             self._missing = set(self._decoders)
+        return True
 
     def state(self) -> dict[str, float | str]:
-        """As of `Stateful`; and of each wire how many messages have come since its last one."""
-        with self.turn:
-            variables = {f"decode.{name}": _shown(value) for name, value in self._decoders.state.items()}
-            ages = {f"age.{wire}": age for wire, age in self._decoders.ages.items() if age is not None}
-            return {**variables, **{f"encode.{name}": _shown(value) for name, value in self.encode.state.items()}, **ages}
+        """The state variables, as of `Bridged`; and of each wire how many messages have come since its last one."""
+        with self._turn:
+            ages = {wire: age for wire, age in self._decoders.ages.items() if age is not None}
+            return {
+                **_shown("decode", self._decoders.state),
+                **_shown("encode", self._encode.state),
+                **_shown("age", ages),
+            }
+
+    def announced(self, framework: str, half: Half) -> dict[str, str]:
+        """What is written; each wire is of a type of its own."""
+        return self._encode.announced(framework) if half == "encode" else {}
 
 
-def state_of(translate: Translate | Joining | None) -> dict[str, float | str]:
-    """The state of a translation; empty where it keeps none."""
-    return translate.state() if isinstance(translate, Stateful | Joining) else {}
+def _shown(group: str, variables: Mapping[str, float]) -> dict[str, float | str]:
+    return {f"{group}.{name}": value if math.isfinite(value) else str(value) for name, value in variables.items()}
 
 
-def _shown(value: float) -> float | str:
-    return value if math.isfinite(value) else str(value)
-
-
-def translator(translation: Translation, search_path: tuple[str, ...]) -> Translate | None:
-    """The compiled bridge of a route, `Stateful` where its mappings keep state; None where bytes pass as they are.
+def translator(translation: Translation, search_path: tuple[str, ...]) -> Translator:
+    """What a file says of messages of one wire.
 
     Raises
     ------
@@ -96,31 +175,31 @@ def translator(translation: Translation, search_path: tuple[str, ...]) -> Transl
     TypeError
         An option is of another kind.
     """
-    if not translation.text:
-        return None
+    return Bridged(_bridge(json.loads(translation.text), search_path)) if translation.text else Unchanged()
+
+
+def _bridge(given: dict[str, Any], search_path: tuple[str, ...]) -> Bridge:
     from rosetta_jit.api.bridges import Bridge
 
-    given: dict[str, Any] = json.loads(translation.text)
     if "between" in given:
         return Bridge.between(*given["between"])
-    options: dict[str, Any] = {side: {"search_path": search_path, **given.get(side, {})} for side in ("decode", "encode")}
+    options = _options(given, search_path)
     one, other = given.get("decode_mapping"), given.get("encode_mapping")
     if one is None and other is None and "decode_type" in given:
         return Bridge.of(given["decode_type"], given.get("encode_type"), **options)
     types = {key: given[key] for key in ("decode_type", "encode_type") if key in given}
-    bridge = Bridge(one, other, **options, **types)
-    return Stateful(bridge) if any(bridge.state.values()) else bridge
+    return Bridge(one, other, **options, **types)
 
 
-def translation_of(route: Route, search_path: tuple[str, ...]) -> Translate | Joining | None:
-    """What turns the messages of a route into others, `Joining` where they are of several wires. Raises as `translator`."""
+def translator_of(route: Route, search_path: tuple[str, ...]) -> Translator:
+    """What a file says of the messages of a route. Raises as `translator`."""
     if not route.sources:
         return translator(route.translation, search_path)
     from rosetta_jit.api.programs import Encoder
     from rosetta_jit.api.wires import Decoders
 
     given: dict[str, Any] = json.loads(route.translation.text)
-    options: dict[str, Any] = {side: {"search_path": search_path, **given.get(side, {})} for side in ("decode", "encode")}
+    options = _options(given, search_path)
     decoders = Decoders(given["decode_mapping"], **options["decode"])
     for wire in decoders:
         if wire not in dict(route.sources):
@@ -129,7 +208,11 @@ def translation_of(route: Route, search_path: tuple[str, ...]) -> Translate | Jo
         if wire not in decoders:
             raise ValueError(f"the mapping has no wire `{wire}`: its wires are {', '.join(decoders)}")
     if "encode_mapping" in given:
-        return Joining(decoders, Encoder(given["encode_mapping"], **options["encode"]), route.on)
+        return Joined(decoders, Encoder(given["encode_mapping"], **options["encode"]), route.on)
     if "encode_type" in given:
-        return Joining(decoders, Encoder.of(given["encode_type"], **options["encode"]), route.on)
-    return Joining(decoders, decoders.encoder(**options["encode"]), route.on)
+        return Joined(decoders, Encoder.of(given["encode_type"], **options["encode"]), route.on)
+    return Joined(decoders, decoders.encoder(**options["encode"]), route.on)
+
+
+def _options(given: dict[str, Any], search_path: tuple[str, ...]) -> dict[str, Any]:
+    return {side: {"search_path": search_path, **given.get(side, {})} for side in ("decode", "encode")}

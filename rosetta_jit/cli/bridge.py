@@ -7,7 +7,7 @@ import json
 import signal
 import sys
 import threading
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 from rosetta_jit.cli.arguments import Commands, add_command
 from rosetta_jit.diagnostics import to_json
@@ -68,6 +68,11 @@ def _call_all_old() -> None:
     gc.freeze()
 
 
+def _printed_to(configuration: Configuration) -> TextIO:
+    """Where the table goes: not among the messages of a route whose target is standard output."""
+    return sys.stderr if any(each.target.partition("?")[0] == "pipe:-" for each in configuration.routes) else sys.stdout
+
+
 class _Session:
     """A bridge that runs until it is told to stop."""
 
@@ -78,7 +83,8 @@ class _Session:
         self._over = self._changed = False
         self._told = threading.Event()
         self._bridge = Running(configuration, self._say)
-        self._draws = sys.stdout.isatty() and not arguments.json and not arguments.quiet
+        self._out = _printed_to(configuration)
+        self._draws = self._out.isatty() and not arguments.json and not arguments.quiet
         self._said: list[str] = []
         self._line = threading.Lock()
         self._metrics: MetricsServer | None = None
@@ -157,7 +163,7 @@ class _Session:
         except (RosettaError, OSError) as error:
             self._say(f"the file cannot be used, and all goes on as before:\n{error}")
             return
-        self._configuration = configuration
+        self._configuration, self._out = configuration, _printed_to(configuration)
         _call_all_old()
         self._say("the file was read again")
         try:
@@ -167,13 +173,13 @@ class _Session:
 
     def _show(self, snapshot: list[dict[str, Any]]) -> None:
         if self._arguments.json:
-            print(json.dumps({"routes": snapshot}), flush=True)
+            print(json.dumps({"routes": snapshot}), flush=True, file=self._out)
         elif not self._arguments.quiet:
             from rosetta_jit.bridge.table import rows
 
             with self._line:
                 above = [*self._said[-8:], ""] if self._draws and self._said else []
-                print((CLEAR if self._draws else "") + "\n".join([*rows(snapshot), *above]), flush=True)
+                print((CLEAR if self._draws else "") + "\n".join([*rows(snapshot), *above]), flush=True, file=self._out)
 
     def _say(self, text: str) -> None:
         from rosetta_jit.terminal import printable

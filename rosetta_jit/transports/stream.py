@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import socket
 import threading
-from collections import deque
+from collections import Counter, deque
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -13,8 +13,9 @@ from rosetta_jit.transports.limits import MAX_HELD_BYTES, MAX_WAITING_BYTES
 from rosetta_jit.transports.loop import READ, WRITE, loop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
+    from rosetta_jit.transports.end import End
     from rosetta_jit.transports.feeding import Machine
     from rosetta_jit.transports.loop import Timer
 
@@ -39,8 +40,8 @@ class Stream:
         The other end's address.
     cut : bool
         Whether it ended in the middle of a message.
-    unsent : int
-        Once it has ended: how often `send` took something that was not sent any more.
+    unsent : Counter
+        Once it has ended: how often `send` took something that was not sent any more, by who sent it.
     """
 
     def __init__(
@@ -56,13 +57,13 @@ class Stream:
         self.socket = sock
         self.peer = _name(sock)
         self.cut = False
-        self.unsent = 0
+        self.unsent: Counter[End | None] = Counter()
         self.closed = False
         self._ended = ended
         self._machine = machine
         self._feed: Feed | None = None
         self._most = max_waiting
-        self._waiting: deque[memoryview] = deque()
+        self._waiting: deque[tuple[memoryview, End | None]] = deque()
         self._waiting_bytes = 0
         self._turn = threading.RLock()  # a signal may interrupt a sender, and its handler send, too
         self._room = threading.Condition(self._turn)
@@ -89,8 +90,11 @@ class Stream:
             self._deadline.cancel()
             self._deadline = None
 
-    def send(self, *parts: Bytes) -> bool:
-        """Send parts as one, or let them wait; from any thread. False where too much waits, or it is closed: then nothing is sent."""
+    def send(self, *parts: Bytes, sender: End | None = None) -> bool:
+        """Send parts as one, or let them wait; from any thread. False where too much waits, or it is closed: then nothing is sent.
+
+        Where several ends share the connection, ``sender`` is the one that has to know what is not sent in the end.
+        """
         size = sum(map(len, parts))
         with self._turn:  # not the condition, whose block is entered by a function of Python
             if self.closed or self._finishing or (self._waiting and self._waiting_bytes + size > self._most):
@@ -107,7 +111,7 @@ class Stream:
                 if sent == size:
                     return True
             rest = memoryview(b"".join(parts))[sent:]
-            self._waiting.append(rest)
+            self._waiting.append((rest, sender))
             self._waiting_bytes += len(rest)
         loop().soon(self._watch)
         return True
@@ -142,7 +146,7 @@ class Stream:
             return
         with self._room:
             self.closed = True
-            self.unsent = len(self._waiting)
+            self.unsent = Counter(sender for _, sender in self._waiting)
             self._waiting.clear()
             self._room.notify_all()
         self.in_time()
@@ -224,10 +228,11 @@ class Stream:
         try:
             with self._room:
                 while self._waiting:
-                    sent = self.socket.send(self._waiting[0])
+                    data, sender = self._waiting[0]
+                    sent = self.socket.send(data)
                     self._waiting_bytes -= sent
-                    if sent < len(self._waiting[0]):
-                        self._waiting[0] = self._waiting[0][sent:]
+                    if sent < len(data):
+                        self._waiting[0] = data[sent:], sender
                         break
                     self._waiting.popleft()
                 self._room.notify_all()
@@ -239,6 +244,16 @@ class Stream:
         if self._finishing:
             self._half_close()
         self._watch()
+
+
+def finish_all(streams: Iterable[Stream], linger: float) -> None:
+    """Close connections once all that waits is sent, at the latest after so many seconds: what waits then is lost. From any thread."""
+    until = monotonic() + linger
+    for each in tuple(streams):
+        if loop().is_current or each.wait(until - monotonic(), empty=True):
+            each.finish(linger)
+        else:
+            loop().run(each.end)
 
 
 def _why(error: OSError) -> str:

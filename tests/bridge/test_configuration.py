@@ -63,10 +63,13 @@ def test_what_a_file_means(tmp_path, capsys):
 def test_patterns_become_routes():
     route = read_one('source = "yarp:/icub/*/state:o?carrier=fast_tcp"\ntarget = "rsb:/icub/{1}"')
     assert place_to_list(route.source) == "yarp:/icub/?carrier=fast_tcp"
-    found = [*matching(route, ["/icub/head/state:o", "/icub/a/b/state:o", "/icub/x?y/state:o", "/other"])]
+    channels = ["/icub/head/state:o", "/icub/a/b/state:o", "/icub/x?y/state:o", "/other", "/icub/../state:o", "/icub/..\n/state:o"]
+    found = [*matching(route, channels)]
     assert [(each.source, each.target) for each in found] == [
         ("yarp:/icub/head/state:o?carrier=fast_tcp", "rsb:/icub/head"),
         ("yarp:/icub/x%3fy/state:o?carrier=fast_tcp", "rsb:/icub/x_y"),
+        ("yarp:/icub/../state:o?carrier=fast_tcp", "rsb:/icub/_"),
+        ("yarp:/icub/..\n/state:o?carrier=fast_tcp", "rsb:/icub/.._"),
     ]
 
 

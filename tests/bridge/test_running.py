@@ -19,11 +19,12 @@ import rosetta_jit as rj
 from rosetta_jit.bridge import metrics as asking
 from rosetta_jit.bridge.announcing import announced
 from rosetta_jit.bridge.checking import checked
-from rosetta_jit.bridge.counting import Latencies, RouteCounts
+from rosetta_jit.bridge.counting import WINDOW_S, Latencies, RouteCounts
 from rosetta_jit.bridge.limits import MAX_CAUSES
 from rosetta_jit.bridge.metrics import MetricsServer, text
 from rosetta_jit.bridge.running import Running
 from rosetta_jit.bridge.table import rows
+from rosetta_jit.bridge.translating import Bridged, Unchanged
 from tests.transports.free import answers, free_port, until
 from tests.transports.name_server import NameServer
 from tests.transports.ros_master import Master
@@ -222,8 +223,8 @@ def test_who_asks_a_service_gets_to_know_its_type(run, tmp_path):
 )
 def test_what_an_address_says_goes_first(target, told):
     bridge = rj.Bridge.of("std_msgs/msg/Bool", "std_msgs/Bool", decode={"encoding": "cdr"}, encode={"encoding": "ros1"})
-    assert announced(target, bridge).keys() == told
-    assert announced(target, None) == {}
+    assert announced(target, Bridged(bridge)).keys() == told
+    assert announced(target, Unchanged()) == {}
 
 
 def test_a_rate(run):
@@ -341,6 +342,40 @@ def test_what_was_not_sent_is_counted(run, monkeypatch):
     assert any("nobody listens" in line for line in said)
 
 
+def test_a_peer_that_is_too_slow_costs_its_own_messages_and_is_counted(run):
+    """One of two takes nothing. What the other one got is sent, and what the first one did not get is dropped."""
+    source, target = free_port(), free_port()
+    bridge, said = run(f'[[route]]\nsource = "tcp:{source}"\ntarget = "rsb:/big?port={target}&type=bytes&linger=0.1"\n')
+    live = next(iter(bridge.live.values()))
+    until(lambda: live.target is not None)
+    with (
+        rj.subscribe(f"rsb:/big?host=localhost&port={target}&role=client", queue=100) as quick,
+        socket.create_connection(("127.0.0.1", target)),
+    ):
+        until(lambda: live.target.connections == 2)
+        with rj.publish(f"tcp:{source}") as robot:
+            for _ in range(30):
+                robot.send(bytes(1 << 20))
+                assert quick.take(5)
+        until(lambda: bridge.snapshot()[0]["sent"] == 30)
+        too_slow = live.counts.dropped["the peer is too slow"]
+        assert too_slow > 5
+        assert any("1 dropped: the peer is too slow" in line for line in said)
+        bridge.stop(0.1)
+        assert 10 <= live.counts.dropped["closed before it was sent"] <= 30 - too_slow
+
+
+def test_many_targets_that_take_nothing_are_closed_side_by_side(run):
+    targets = [free_port() for _ in range(8)]
+    bridge, _ = run("".join(route(free_port(), f"{each}?wait=no", f'name = "{each}"') for each in targets))
+    for each in bridge.live.values():
+        each.deliver(message(0))
+    begun = time.monotonic()
+    bridge.stop(0.5)
+    assert time.monotonic() - begun < 3.0
+    assert all(sum(each.counts.dropped.values()) == 1 for each in bridge.live.values())
+
+
 def test_services(run, bottles):
     """An answer that goes through, one that cannot be translated, and messages that ask."""
     outer, inner, source = free_port(), free_port(), free_port()
@@ -455,6 +490,22 @@ def test_latencies():
     for part in (0.1, 0.5, 0.9):
         assert latencies.quantile(part) == pytest.approx(1000 * part, rel=0.13)
     assert latencies.quantile(1.0) == pytest.approx(10**15, rel=0.13)
+    assert (latencies.total, latencies.total_ns) == (1000, 499_500 + 10**15)
+
+
+def test_latencies_are_those_of_the_last_minutes():
+    latencies, begun = Latencies(), time.monotonic()
+    latencies.add(10**6)
+    latencies.forget(begun + 1)
+    assert latencies.quantile(0.5) is not None
+    latencies.forget(begun + WINDOW_S + 1)
+    latencies.add(10**3)
+    assert latencies.quantile(0.99) == pytest.approx(10**6, rel=0.13)
+    latencies.forget(begun + 2 * WINDOW_S + 2)
+    assert latencies.quantile(0.99) == pytest.approx(10**3, rel=0.13)
+    latencies.forget(begun + 4 * WINDOW_S + 3)  # nothing came, and nobody looked
+    assert latencies.quantile(0.99) is None
+    assert latencies.total == 2
 
 
 def test_the_table_and_the_metrics(run):
@@ -477,6 +528,7 @@ def test_the_table_and_the_metrics(run):
         assert found.split("\n")[0].startswith("# HELP")
         assert 'rosetta_jit_bridge_bytes_sent_total{route="a \\"b\\"?[2J"} 5' in found
         assert 'reason="evil?[2J reason?"} 1' in found
+        assert 'rosetta_jit_bridge_latency_seconds_count{route="a \\"b\\"?[2J"} 1\n' in found
         assert 'rosetta_jit_bridge_connections{route="a \\"b\\"?[2J",end="target"} 1' in found
         assert 'rosetta_jit_bridge_reconnects_total{route="a \\"b\\"?[2J",end="source"} 0' in found
         assert all(line.startswith("#") or line.count("{") == 1 for line in text(bridge.snapshot()).splitlines())
@@ -501,6 +553,15 @@ def is_answered(port):
             return answer.read().startswith(b"# HELP")
     except OSError:
         return False
+
+
+def test_messages_on_standard_output_are_alone_there(tmp_path):
+    (tmp_path / "in").write_bytes(b"\3\0\0\0abc\3\0\0\0def")
+    (tmp_path / "bridge.toml").write_text(f'[[route]]\nname = "a"\nsource = "pipe:{tmp_path}/in"\ntarget = "pipe:-"\n')
+    command = [sys.executable, "-m", "rosetta_jit", "bridge", str(tmp_path / "bridge.toml"), "--json", "--seconds", "0.2"]
+    found = subprocess.run(command, capture_output=True, check=True, timeout=20)
+    assert found.stdout == b"\3\0\0\0abc\3\0\0\0def"
+    assert json.loads(found.stderr.splitlines()[-1])["routes"][0]["sent"] == 2
 
 
 def test_the_command(tmp_path):

@@ -266,10 +266,34 @@ def test_a_peer_that_dies_in_the_middle_and_one_that_reads_nothing(bus):
         with join(port):
             until(lambda: sink.connections == 1)
             began = time.monotonic()
-            for _ in range(40):
-                sink.send(bytes(1 << 20))
+            taken = sum(sink.send(bytes(1 << 20)) for _ in range(40))
             assert time.monotonic() - began < 3
-            assert sink.lost["the peer is too slow"] > 10
+            assert sink.lost == {"the connection ended in the middle of a message": 1, "the peer is too slow": 40 - taken}
+            assert taken < 30
+        until(lambda: not sink.connections)
+        assert 10 <= sink.lost["the peer went away"] <= taken  # what waited for it
+        assert source.lost == {"the connection ended in the middle of a message": 1}
+
+
+def test_what_waits_when_the_bus_closes_is_counted(bus):
+    server, _, port = bus
+    with rj.publish(server("/big", "&type=bytes&timeout=0&linger=0.05")) as sink, join(port):
+        until(lambda: sink.connections)
+        taken = sum(sink.send(bytes(1 << 20)) for _ in range(24))
+        sink.close()
+        assert 4 <= sink.lost["closed before it was sent"] <= taken
+
+
+def test_what_is_passed_on_and_waits_for_a_peer_that_goes_is_counted(bus):
+    server, _, port = bus
+    with rj.subscribe(server("/p")) as source, join(port) as sender:
+        with join(port):
+            until(lambda: source.connections == 2)
+            for _ in range(24):
+                sender.sendall(event_of(bytes(1 << 20)))
+            until(lambda: source.messages == 24)
+        until(lambda: source.connections == 1)
+        assert 4 <= source.lost["the peer went away"] <= 24
 
 
 def test_a_hundred_clients_at_once(bus):

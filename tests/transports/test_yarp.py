@@ -234,6 +234,20 @@ def test_a_reader_that_dies_with_messages_on_the_way_is_counted(at, names):
         assert sink.lost["the reader went away"] == 3
 
 
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp"])
+def test_what_waits_for_a_reader_when_the_port_closes_is_counted(at, names, carrier):
+    stuck = socket.create_server(("127.0.0.1", 0))
+    names.ports["/stuck"] = "127.0.0.1", str(stuck.getsockname()[1])
+    with stuck, rj.publish(at("/stuck", f"&open=no&carrier={carrier}&linger=0.05")) as sink:
+        peer, _ = stuck.accept()
+        with peer:
+            peer.sendall(b"YA\1\0\0\0RP")
+            until(lambda: sink.connections)
+            taken = sum(sink.send(bytes(1 << 20)) for _ in range(24))
+            sink.close()
+            assert 4 <= sink.lost["closed before it was sent"] <= taken
+
+
 @pytest.mark.parametrize("wrong", ["icub", "/a b", '/a"b', "/a\nunregister /b", "/" + "x" * 300])
 def test_names_that_ports_do_not_have(wrong):
     with pytest.raises(AddressError, match="a port's name"):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -30,12 +31,24 @@ pytestmark = pytest.mark.skipif(not (YARP and SERVER), reason="YARP's programs a
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
     """A name server of its own on loopback, and the environment in which programs find it."""
-    home, port = tmp_path_factory.mktemp("yarp"), free_port()
+    found = place(tmp_path_factory.mktemp("yarp"))
+    with serving(found):
+        yield found
+
+
+def place(home):
+    """A port for a name server, and the environment in which programs find it there."""
+    port = free_port()
     (home / "yarp.conf").write_text(f"127.0.0.1 {port} yarp\n")
-    env = {**os.environ, "YARP_CONFIG_HOME": str(home), "YARP_DATA_HOME": str(home), "HOME": str(home), "YARP_CONF": str(home)}
-    with running(SERVER, "--read", "--socket", port, "--portdb", ":memory:", "--subdb", ":memory:", env=env, cwd=home):
+    return port, {**os.environ, "YARP_CONFIG_HOME": str(home), "YARP_DATA_HOME": str(home), "HOME": str(home), "YARP_CONF": str(home)}
+
+
+@contextmanager
+def serving(found):
+    port, env = found
+    with running(SERVER, "--read", "--socket", port, "--portdb", ":memory:", "--subdb", ":memory:", env=env, cwd=env["HOME"]) as program:
         until(lambda: answers(port))
-        yield port, env
+        yield program
 
 
 @pytest.fixture
@@ -131,3 +144,22 @@ def test_a_reader_that_is_killed_costs_nobody_else(at, server):
             sink.send(from_text("2", "yarp3"))
             assert source.take(5) is not None
         until(lambda: sink.connections == 1)
+
+
+def test_a_name_server_that_is_started_again_gets_to_know_the_ports(tmp_path, monkeypatch):
+    monkeypatch.setattr("rosetta_jit.transports.yarp.port.HEARTBEAT_S", 0.1)
+    found = place(tmp_path)
+    here = f"?server=127.0.0.1:{found[0]}"
+    with serving(found) as first, rj.publish(f"yarp:/stays{here}") as sink, rj.subscribe(f"yarp:/stays{here}") as source:
+        until(lambda: sink.connections)
+        first.kill()
+        first.wait()
+        sink.send(b"meanwhile")
+        assert source.take(5).data == b"meanwhile"
+        with serving(found), (tmp_path / "read").open("w") as printed:
+            until(lambda: ("/stays", None) in names_at(f"yarp:/{here}"))
+            with running(YARP, "read", "/late", env=found[1], stdout=printed):
+                until(obeyed(found, "connect", "/stays", "/late"), 20)
+                sink.send(from_text("7 8", "yarp3"))
+                until(lambda: "7 8" in (tmp_path / "read").read_text())
+        assert not sink.lost

@@ -44,7 +44,7 @@ class Line:
 
     def __init__(self):
         self.out = b""
-        self.closed = False
+        self.closed, self.waiting = False, 0
 
     def send(self, *parts):
         self.out += b"".join(map(bytes, parts))

@@ -15,7 +15,7 @@ from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.ros1.node import graph_name, nodes, refuse
 from rosetta_jit.transports.ros1.tcpros import LENGTH, disagreement, header, messages, read_header
 from rosetta_jit.transports.ros1.xmlrpc import ask
-from rosetta_jit.transports.stream import Stream
+from rosetta_jit.transports.stream import Stream, finish_all
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -226,7 +226,7 @@ class RosSink(Sink):
         self._streams.discard(stream)
         self.connections = len(self._streams)
         if stream.unsent:
-            self.lose("closed before it was sent" if self._closed else "the subscriber went away", stream.unsent)
+            self.lose("closed before it was sent" if self._closed else "the subscriber went away", stream.unsent.total())
         elif why:
             self.lose(why, 0)
 
@@ -257,10 +257,7 @@ class RosSink(Sink):
             return
         self._closed = True
         self._node.remove(self)
-        if not loop().is_current:
-            self.flush(self._linger)
-        for each in tuple(self._streams):
-            each.finish(self._linger)
+        finish_all(self._streams, self._linger)
         nodes().leave(self._node)
 
 

@@ -21,7 +21,7 @@ from rosetta_jit.transports.limits import MAX_CONNECTIONS
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.rsb.notification import Event, NoEventError, decode, encode, scope_in
 from rosetta_jit.transports.rsb.scopes import above, normal
-from rosetta_jit.transports.stream import Stream
+from rosetta_jit.transports.stream import Stream, finish_all
 
 if TYPE_CHECKING:
     import socket
@@ -110,15 +110,17 @@ class Bus:
         loop().run(work)
 
     def send(self, event: Event, counts: End, wait: float = 0.0) -> bool:
-        """Send an event to all others, and to the listeners of this process."""
+        """Send an event to all others, and to the listeners of this process; whether any of them took it, or the bus has no others."""
         parts = encode(event)
         head = _LENGTH.pack(sum(map(len, parts)))
         streams = tuple(self._streams)
-        taken = bool(streams) or self.is_server
+        taken = not streams and self.is_server
         for each in streams:
-            if not each.send(head, *parts) and not (wait and each.wait(wait) and each.send(head, *parts)):
+            if each.send(head, *parts, sender=counts) or (wait and each.wait(wait) and each.send(head, *parts, sender=counts)):
+                taken = True
+            else:
                 counts.lose("the peer is too slow")
-        if not taken:
+        if not taken and not streams:
             counts.lose("the bus is not connected")
         if any(self._listening.get(each) for each in above(event.scope)):  # of this process
             loop().soon(self._deliver, event._replace(data=bytes(event.data)))
@@ -130,8 +132,6 @@ class Bus:
 
     def close(self, linger: float) -> None:
         """Half-close all connections, as RSB's peers do, and close them when the other ends do the same."""
-        if linger and not loop().is_current:
-            self.flush(linger)
         if self._listener is not None:
             self._listener.close()
 
@@ -139,10 +139,9 @@ class Bus:
             self._closed = True
             if self._dialer is not None:
                 self._dialer.stop()
-            for each in tuple(self._streams):
-                each.finish(linger)
 
         loop().run(work)
+        finish_all(self._streams, linger)
 
     def _open(self) -> None:
         if self._role != "client":
@@ -223,8 +222,12 @@ class Bus:
         known = stream in self._streams
         self._streams.discard(stream)
         self._count()
-        if why or (known and stream.cut):
-            self._why = why or self._why
+        self._why = why or self._why
+        reason = "closed before it was sent" if self._closed else "the peer went away"
+        for sender, count in stream.unsent.items():
+            for each in self._everyone if sender is None else (sender,):  # nobody here sent what is only passed on
+                each.lose(reason, count)
+        if (why and not stream.unsent) or (known and stream.cut):
             self._lose(why or "the connection ended in the middle of a message")
         if self._dialer is not None and not self._closed:
             self._dialer.lost()

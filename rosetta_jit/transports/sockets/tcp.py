@@ -12,7 +12,7 @@ from rosetta_jit.transports.limits import MAX_CONNECTIONS
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.sockets.framing import framed, messages
 from rosetta_jit.transports.sockets.places import targets
-from rosetta_jit.transports.stream import Stream
+from rosetta_jit.transports.stream import Stream, finish_all
 
 if TYPE_CHECKING:
     import socket
@@ -68,8 +68,7 @@ class Links:
         if self.listener is not None:
             self.listener.close()
         loop().run(self._stop)
-        for each in tuple(self.streams):
-            each.finish(linger)
+        finish_all(self.streams, linger)
 
     def flush(self, timeout: float) -> bool:
         """Wait until nothing waits to be sent."""
@@ -97,7 +96,7 @@ class Links:
         self.streams.discard(stream)
         self._counts.connections = len(self.streams)
         if stream.unsent:
-            self._counts.lose("closed before it was sent" if self._closed else "the peer went away", stream.unsent)
+            self._counts.lose("closed before it was sent" if self._closed else "the peer went away", stream.unsent.total())
         elif stream.cut or why:
             self._counts.lose(why or "the connection ended in the middle of a message")
         if self.dialer is not None and self._again and not self._closed:
@@ -164,8 +163,6 @@ class TcpSink(Sink):
     def close(self) -> None:
         if not self._closed:
             self._closed = True
-            if not loop().is_current:
-                self._links.flush(self._linger)
             self._links.close(self._linger)
 
     def _first(self) -> tuple[Stream, ...]:

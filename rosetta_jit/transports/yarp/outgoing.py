@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.transports.feeding import Between, ProtocolError
 from rosetta_jit.transports.limits import MAX_SKIPPED_BYTES, MAX_WAITING_BYTES
+from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.yarp.wire import goodbye, hello, int_of
 
 if TYPE_CHECKING:
@@ -90,15 +91,19 @@ class Output:
             left, stream = len(self._waiting), self.stream
             self._waiting.clear()
             self._bytes = 0
-        if stream is not None:
-            stream.send(goodbye())
-            stream.finish(linger)
+        if stream is None:
+            return left
+        if stream.waiting and not loop().is_current:  # `wait` has waited for it
+            loop().run(stream.end)
+            return left + stream.unsent.total()
+        stream.send(goodbye())
+        stream.finish(linger)
         return left
 
     def gone(self) -> int:
         """The connection is gone; gives the number of messages that waited."""
         with self._changed:
-            unsent = 0 if self.stream is None else self.stream.unsent
+            unsent = 0 if self.stream is None else self.stream.unsent.total()
             left = len(self._waiting) + (self._unanswered or unsent)
             self._waiting.clear()
             self._bytes = 0
