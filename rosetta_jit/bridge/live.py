@@ -143,11 +143,8 @@ class LiveRoute:
         if self._sender == threading.get_ident():
             self._refusal, self._refused = reason, self._refused + count  # of the message that is being sent, which may be sent again
             return
-        if not count:  # a peer was refused, and tries again and again
-            if reason not in self.counts.dropped and self.counts.drop(reason, 0):
-                self._say(f"{self.route.name}: {reason}")
-        elif self.counts.drop(reason, count):
-            self._say(f"{self.route.name}: {self.counts.dropped[reason]} dropped: {reason}")
+        if line := self.counts.lose(reason, count):
+            self._say(f"{self.route.name}: {line}")
 
     def _failed(self, error: MessageError) -> None:
         cause = f"{error.kind}: {error.detail} - at `{error.path}`" if error.path else f"{error.kind}: {error.detail}"

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     Lost = Callable[[str, int], object]
     Answer = Callable[["Message"], "bytes | bytearray | memoryview | None"]
 
+ANSWER_FAILED = "the answer failed"
+"""Why a question is lost where the function that answers raised."""
+
 QUEUE = 1000
 """Messages that wait for who iterates over a source, where nobody says how many."""
 
@@ -268,7 +271,7 @@ class Server(End):
             try:
                 answer = self._answer(message)
             except Exception as error:  # noqa: BLE001 - the user's code: the peer gets to know
-                self.lose("the answer failed")
+                self.lose(ANSWER_FAILED)
                 reply(None, f"{type(error).__name__}: {error}")
             else:
                 reply(None if answer is None else bytes(answer), None)

@@ -407,6 +407,29 @@ def test_services(run, bottles):
         assert asked[-1] == b"command"
 
 
+def test_questions_that_are_too_many_are_counted(run):
+    outer, inner, goes_on = free_port(), free_port(), threading.Event()
+    with rj.serve(f"tcp:{inner}", lambda message: bytes(message.data) if goes_on.wait(5) else b""):
+        bridge, said = run(f'[[rpc]]\nname = "a"\nserve = "tcp:{outer}?queue=1"\ncall = "tcp:{inner}"\n')
+        asks = [rj.call(f"tcp:{outer}") for _ in range(3)]
+        answered = []
+        threads = [threading.Thread(target=lambda each=each: answered.append(each(b"question").data)) for each in asks[:2]]
+        for number, each in enumerate(threads):
+            each.start()
+            until(lambda: bridge.snapshot()[0]["taken"] == 1)
+            until(lambda number=number: len(bridge.live["a"].server._asked) == number)
+        with pytest.raises(rj.TransportError, match="closed"):
+            asks[2](b"one more")
+        goes_on.set()
+        for each in threads:
+            each.join()
+        for each in asks:
+            each.close()
+    assert answered == [b"question"] * 2
+    assert bridge.snapshot()[0]["dropped"] == {"queue full": 1}
+    assert "a: 1 dropped: queue full" in said
+
+
 def test_another_file(run, tmp_path):
     one, two, target, other = (free_port() for _ in range(4))
     with rj.subscribe(f"tcp:{target}") as first, rj.subscribe(f"tcp:{other}") as second:
