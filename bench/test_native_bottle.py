@@ -278,4 +278,5 @@ def test_a_million_in_one_call(decoders, effort, compare, record):
         rounds=7,
     )
     took = outcome.took(MANY).median
-    record("`many`, 10⁶ such messages, read and written", outcome.ratio(MANY, "memmove"), 1.2, "x memmove", f"{took:.1f} ns a message, of {count:,}")
+    what, words = "`many`, 10⁶ such messages, read and written", f"{took:.1f} ns a message, of {count:,}"
+    record(what, outcome.ratio(MANY, "memmove"), 1.2, "x memmove", words)

@@ -93,6 +93,15 @@ def undetermined(span: Span | None, place: str, *, holds: bool) -> Diagnostic:
     return error("undetermined-field", message, span, "the condition reads it", help_=help_)
 
 
+def unsettled_presence(span: Span | None, place: str, *, holds: bool) -> Diagnostic:
+    """A block that does not set what its condition says is there, or may set what it says is not."""
+    shown = shorten(place)
+    condition, found = ("holds", "does not set") if holds else ("does not hold", "may set")
+    message = f"to pack, the block where the condition {condition} {found} `{shown}`"
+    help_ = f"relate the holder to `{shown}`, or to something in it, in the block where it is there alone; or {_by_hand([place])}"
+    return error("undetermined-field", message, span, "the condition asks whether it is there", help_=help_)
+
+
 def alike_blocks(span: Span | None, place: str) -> Diagnostic:
     """A `when` whose blocks nothing in the holder tells apart."""
     return error(
@@ -101,7 +110,8 @@ def alike_blocks(span: Span | None, place: str) -> Diagnostic:
         span,
         "the condition reads the wire",
         help_=f"relate `{shorten(place)}` to the holder outside of the `when`, relate one field of the holder to other constants in each"
-        " block, or write the `when` in `unpack-rules:` and one in `pack-rules:`",
+        " block, set an optional field or a case of a union in one of them alone, or write the `when` in `unpack-rules:` and one in"
+        " `pack-rules:`",
     )
 
 

@@ -47,7 +47,7 @@ def alone(span: Span | None, name: str) -> Diagnostic:
 def apart(span: Span | None, names: Sequence[str]) -> Diagnostic:
     """A rule that needs messages of several wires at once."""
     title = f"this needs messages of {_listed(names)} at once, and each of them comes alone"
-    help_ = f"keep what is needed of `{names[0]}`: declare `state last: float64 = 0.0`, and set it by a rule that reads `{names[0]}` alone"
+    help_ = "of all wires but one it can read numbers and bools, which are kept; not texts, and not the elements of an array one by one"
     return error("wires-apart", title, span, "here", help_=help_)
 
 

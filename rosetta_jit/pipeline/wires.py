@@ -1,7 +1,8 @@
 """One of several wires of a mapping: its message, its rules, its share of the holder, and which messages have arrived.
 
 What has arrived is state, in registers behind those that the mapping declares: how many messages in all, and of each wire the number of its
-last one, from 1 on. All programs of the mapping have the same registers.
+last one, from 1 on; then what rules that read several wires need of each one's last message. All programs of the mapping have the same
+registers.
 """
 
 from __future__ import annotations
@@ -10,16 +11,19 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import wires as words
 from rosetta_jit.errors import MappingError
-from rosetta_jit.language.check.wires import rules_of, share_of
+from rosetta_jit.language.check.across_wires import Memory, type_name
+from rosetta_jit.language.check.wires import kept_values, rules_of, share_of, value_of_wire
 from rosetta_jit.language.parameters.state import Declared
-from rosetta_jit.language.typed import INT64, Binary, Const, SetState, StateVariable
+from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, SetState
 from rosetta_jit.model.types import Struct
 from rosetta_jit.pipeline.types import Types
-from rosetta_jit.runtime.arrivals import ALL, variable_of
+from rosetta_jit.runtime.arrivals import ALL, variable_of, variable_of_value
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rosetta_jit.language.check.mapping import Checked
-    from rosetta_jit.language.typed import Rule
+    from rosetta_jit.language.typed import Expr, Rule
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.types import Schema
     from rosetta_jit.pipeline.request import Request
@@ -50,17 +54,33 @@ def types_of_wire(checked: Checked, request: Request, schema: Schema, rules: tup
     assert isinstance(struct, Struct)
     if request.direction == "encode":
         return Types(holder.root, struct, schema, rules_of(rules, wire, "wire", holder), checked.functions, checked.state)
-    own, state = rules_of(rules, wire, "holder", holder), checked.state
     wires = [each.name for each in checked.mapping.wires]
-    names = [ALL, *map(variable_of, wires)]
-    state = Declared({**state.initial, **dict.fromkeys(names, 0)}, {**state.types, **dict.fromkeys(names, "int64")})
+    kept = kept_values(rules)
+    state = _state(checked.state, wires, kept)
+    memory = _memory(state, wires, kept)
+    own = rules_of(rules, wire, "holder", holder, memory)
+    keeping = (SetState(memory.values[value], value_of_wire(value, wire), value.span) for owner, value in kept if owner == wire)
     share = share_of(rules, wire, wires, holder)
-    return Types(holder.root, struct, schema, (*_counting(wire, state), *own), checked.functions, state, share)
+    return Types(holder.root, struct, schema, (*_counting(wire, state), *own, *keeping), checked.functions, state, share)
+
+
+def _state(declared: Declared, wires: Sequence[str], kept: Sequence[tuple[str, Expr]]) -> Declared:
+    """The state of all programs of a mapping."""
+    types = {**dict.fromkeys((ALL, *map(variable_of, wires)), "int64")}
+    types |= {variable_of_value(number): type_name(value) or "" for number, (_, value) in enumerate(kept)}
+    return Declared({**declared.initial, **dict.fromkeys(types, 0)}, {**declared.types, **types})
+
+
+def _memory(state: Declared, wires: Sequence[str], kept: Sequence[tuple[str, Expr]]) -> Memory:
+    """Where the values of messages are kept."""
+    variables = state.variables("holder")
+    values = {value: variables[variable_of_value(number)] for number, (_, value) in enumerate(kept)}
+    return Memory(values, {wire: Binary(">", variables[variable_of(wire)], Const(0, INT64), BOOL) for wire in wires})
 
 
 def _counting(wire: str, state: Declared) -> tuple[Rule, ...]:
     """The rules that count a message that has arrived."""
-    numbers = list(state.initial)
-    every, last = (StateVariable(name, numbers.index(name), "holder", INT64) for name in (ALL, variable_of(wire)))
+    variables = state.variables("holder")
+    every, last = variables[ALL], variables[variable_of(wire)]
     number = Binary("+", every, Const(1, INT64), INT64)
     return SetState(every, number), SetState(last, number)

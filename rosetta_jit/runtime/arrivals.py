@@ -1,4 +1,4 @@
-"""Which messages have arrived, of several wires that fill one holder: the state variables that count them.
+"""Which messages have arrived, of several wires that fill one holder: the state variables that count them, and keep values of them.
 
 No mapping can give a variable such a name.
 """
@@ -17,6 +17,11 @@ ALL = "(arrivals)"
 def variable_of(wire: str) -> str:
     """The variable that has the number of a wire's last message, from 1 on; 0 before the first."""
     return f"({wire})"
+
+
+def variable_of_value(number: int) -> str:
+    """The variable that keeps a value of a wire's last message for the rules of other wires' messages."""
+    return f"(value {number})"
 
 
 def ages(shown: Mapping[str, bool | int | float], wires: Sequence[str]) -> dict[str, int | None]:

@@ -319,7 +319,7 @@ def test_a_field_that_both_blocks_set_says_not_which():
     rules = PRESENT.replace("default .pace .name", ".pace <-> 1.0 .name")
     with pytest.raises(rj.MappingError) as error:
         rj.Encoder("m.mapping", schema={**PRESENT_FILES, "m.mapping": rules}, backend="interpreter")
-    assert "undetermined-field" in [problem.code for problem in error.value.diagnostics]
+    assert "alike-blocks" in [problem.code for problem in error.value.diagnostics]
 
 
 @pytest.mark.parametrize("backend", BACKENDS)

@@ -2,7 +2,7 @@
 ;
 ; A bytes object alone is decoded here, by a kernel that is part of this function if it is short: then its row is known to be 0, and its first byte
 ; to be the message's. Else little is kept across its call, so that few registers are saved for the caller. The program's own holder belongs to
-; one thread, and the slow path has one for each other thread.
+; one thread, and the slow path has one for each other thread. What a borrowing decoder does besides is `retain`.
 declare ptr @any_call(ptr, ptr, i64, ptr)
 
 define ptr @call(ptr %self, ptr %args, i64 %nargsf, ptr %names) {
@@ -41,6 +41,7 @@ decode:
 return:
   %good.state = load ptr, ptr %context
   store i64 1, ptr %good.state
+  call void @retain(ptr %context, ptr %message)
   %holder.at = getelementptr ptr, ptr %context, i64 1
   %holder = load ptr, ptr %holder.at
   call void @keep(ptr %holder)

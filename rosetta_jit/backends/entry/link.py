@@ -50,8 +50,8 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Kernel
 
 USUAL: dict[EntryName, tuple[str, ...]] = {
-    "decode": ("decode.ll",),
-    "borrow": ("borrow.ll",),
+    "decode": ("owning.ll", "decode.ll"),
+    "borrow": ("borrowing.ll", "decode.ll"),
     "encode": ("usable.ll", "measured.ll", "encode.ll"),
     "bridge": ("bridge.ll",),
 }
@@ -59,7 +59,7 @@ USUAL: dict[EntryName, tuple[str, ...]] = {
 
 REST: dict[EntryName, tuple[str, ...]] = {
     "decode": ("any_decode.ll", "unmeasured.ll", "many.ll"),
-    "borrow": ("unmeasured.ll", "many.ll"),
+    "borrow": ("borrowing.ll", "any_borrow.ll", "unmeasured.ll", "many.ll"),
     "encode": ("usable.ll", "measured.ll", "any_encode.ll", "many.ll", "sizes.ll"),
     "bridge": (),
 }

@@ -1,7 +1,7 @@
 """The two blocks of a `when` in rules for both directions: what its condition says of the wire, and how a holder tells them apart.
 
 In the block where `.kind == 2` holds, the message has a `.kind` of 2. A holder is of the block that relates its field to the constant
-that it has, where the other block relates it to other constants.
+that it has, where the other block relates it to other constants; or of the one that sets what it has (`language.both_ways.presence`).
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solved, subject_of
+from rosetta_jit.language.both_ways.presence import may_be_absent, presence_between
 from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.limits import MAX_TESTED
 from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
@@ -52,7 +53,7 @@ def _equal(expr: Expr, constant: Expr, type_of: TypeOf) -> dict[Field, Expr]:
     return {solution.place: solution.value}
 
 
-def asked_of_holder(rule: When[Rule, Expr]) -> Expr:
+def asked_of_holder(rule: When[Rule, Expr], type_of: TypeOf) -> Expr:
     """A condition that asks of the holder what is there on the wire: the one block has a relation between the two, the other has none."""
     pairs: dict[Expr, Path] = {}
     for block, other in ((rule.then, rule.otherwise), (rule.otherwise, rule.then)):
@@ -61,7 +62,7 @@ def asked_of_holder(rule: When[Rule, Expr]) -> Expr:
             match each:
                 case Relation(Path() as place, value) if place not in taken and not fields_of(place, "wire"):
                     fields = fields_of(value, "wire")
-                    pairs |= {fields[0]: place} if len(fields) == 1 else {}
+                    pairs |= {fields[0]: place} if len(fields) == 1 and may_be_absent(place, type_of) else {}
                 case _:
                     pass
     return _asked(rule.condition, pairs)
@@ -77,8 +78,12 @@ def _asked(expr: Expr, pairs: dict[Expr, Path]) -> Expr:
             return rebuilt(expr, lambda part: _asked(part, pairs))
 
 
-def test_between(then: tuple[Rule, ...], otherwise: tuple[Rule, ...]) -> Expr | None:
+def test_between(then: tuple[Rule, ...], otherwise: tuple[Rule, ...], type_of: TypeOf) -> Expr | None:
     """What holds of a holder of the first block and of none of the second; None where nothing does."""
+    return _by_constants(then, otherwise) or presence_between(then, otherwise, type_of)
+
+
+def _by_constants(then: tuple[Rule, ...], otherwise: tuple[Rule, ...]) -> Expr | None:
     for place in _places(then):
         mine, others = _constants(then, place), _constants(otherwise, place)
         if mine is None or others is None or not _differ(mine, others):

@@ -14,6 +14,7 @@ from rosetta_jit.language.both_ways.bits import with_digits
 from rosetta_jit.language.both_ways.checks import checks_of
 from rosetta_jit.language.both_ways.inverse import condition_in
 from rosetta_jit.language.both_ways.packing import Packing
+from rosetta_jit.language.both_ways.presence import with_flags
 from rosetta_jit.language.groups import component
 from rosetta_jit.language.limits import MAX_CONDITIONS
 from rosetta_jit.model.expr import Len, List, Path
@@ -40,7 +41,7 @@ def derive(mapping: model.Mapping, type_of: TypeOf, problems: list[Diagnostic], 
         return mapping
     found: list[Diagnostic] = []
     packing, rules = Packing.of(mapping.pack_rules or (), type_of, found), with_digits(mapping.rules, type_of)
-    pack_rules = packing.block(rules, ())
+    pack_rules = packing.block(with_flags(rules, packing.is_completed), ())
     conditional = _conditional(rules, packing)
     if conditional and depth < MAX_CONDITIONS:
         split = tuple(_by_blocks(rule, conditional) for rule in rules)

@@ -68,11 +68,14 @@ class Knowledge:
     sizes: dict[Key, int] = field(default_factory=dict["Key", int])
     budget: Budget = field(default_factory=Budget)
     beside: dict[int, Beside] = field(default_factory=dict[int, "Beside"])
+    flags: dict[Key, Expr] = field(default_factory=dict["Key", "Expr"])
+    """What of the holder says whether a field of the wire is there."""
 
     def inside(self) -> Knowledge:
         """The same, for a block that may know more."""
         shapes = {shape: list(keys) for shape, keys in self.shapes.items()}
-        return Knowledge(self.type_of, dict(self.setters), dict(self.values), shapes, dict(self.sizes), self.budget, self.beside)
+        known = dict(self.setters), dict(self.values), shapes, dict(self.sizes)
+        return Knowledge(self.type_of, *known, self.budget, self.beside, dict(self.flags))
 
     def learn(self, place: Field, value: Expr, loops: Loops) -> None:
         """That a field has a value, unless that is known."""
@@ -81,6 +84,17 @@ class Knowledge:
             self.values[key] = renamed(value, names)
             self.sizes[key] = sum(1 for _ in parts(value))
             self.shapes.setdefault(_shape(place), []).append(key)
+
+    def learn_flag(self, flag: Path, asked: Path, loops: Loops) -> None:
+        """That a field of the wire is there where a bool of the holder is true."""
+        key, names = key_of(asked, loops)
+        self.flags.setdefault(key, renamed(flag, names))
+
+    def flag(self, asked: Path, loops: Loops) -> Expr | None:
+        """What of the holder says whether a field of the wire is there."""
+        key, names = key_of(asked, loops)
+        found = self.flags.get(key)
+        return None if found is None else renamed(found, {number.name: Name(name) for name, number in names.items()})
 
     def forget(self, places: list[Field], loops: Loops) -> None:
         """Fields that another relation is going to set."""
@@ -120,7 +134,9 @@ class Knowledge:
     def replaced(self, expr: Expr, loops: Loops) -> Expr:
         """An expression with what is known of the wire's fields in place of them; whether one is there does not follow from its value."""
         if isinstance(expr, Call) and expr.function == "has":
-            return expr
+            asked = expr.arguments[0]
+            flag = self.flag(asked, loops) if isinstance(asked, Path) else None
+            return expr if flag is None else flag
         if isinstance(expr, Path | Len) and path_of(expr).side == "wire":
             value = self.value(expr, loops)
             if value is not None:

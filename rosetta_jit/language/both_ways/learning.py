@@ -9,6 +9,7 @@ from rosetta_jit.language.both_ways.array_relations import equal_lengths
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solved
 from rosetta_jit.language.both_ways.inverse_parts import below, part, plain, put_together, rest_of, taken_part
 from rosetta_jit.language.both_ways.knowledge import Beside, Knowledge, Loop, Loops, key_of
+from rosetta_jit.language.both_ways.presence import flag_of, is_kept
 from rosetta_jit.language.both_ways.text_parts import numbers_of_texts
 from rosetta_jit.language.function import Affine, written
 from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
@@ -28,6 +29,9 @@ def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops, is_assigned: 
     Where several tell of one field, it is taken from the one that keeps most of it: the others are checks, and what was unpacked
     must pass them. What ``is_assigned`` is set by rules to pack.
     """
+    for rule in rules:
+        if (flag := flag_of(rule)) is not None and not is_assigned(flag[1]) and is_kept(flag, rules):
+            known.learn_flag(*flag, loops)
     relations = [each for each in _relations(rules, loops) if not _is_left(each[0], is_assigned)]
     done = _pairs(known, relations) | _texts(known, relations, is_assigned)
     done |= {id(rule) for rule, around in sorted(relations, key=_loss) if id(rule) not in done and _solve(known, rule, around)}

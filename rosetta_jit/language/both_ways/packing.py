@@ -20,6 +20,8 @@ from rosetta_jit.language.both_ways.checks import agreement, checks_of, guard
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solve
 from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.learning import learn
+from rosetta_jit.language.both_ways.named_fields import fields_in_rules, is_among, set_by
+from rosetta_jit.language.both_ways.presence import asks_presence, flag_of, presence_between, told_by_setting
 from rosetta_jit.language.folding import folded
 from rosetta_jit.language.function import written
 from rosetta_jit.language.groups import group_of
@@ -41,7 +43,7 @@ from rosetta_jit.model.mapping import (
     When,
 )
 from rosetta_jit.model.printer import show_expr
-from rosetta_jit.model.walk import Field, fields_of, names_of, parts, path_of
+from rosetta_jit.model.walk import Field, fields_of, parts, path_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -82,6 +84,8 @@ class Packing:
     completed: frozenset[tuple[str, ...]]
     assigned: frozenset[tuple[str, ...]]
     owed: tuple[_Owed, ...] = ()
+    is_chained: bool = False
+    """Whether the block is all that a `when` leaves whose blocks are told apart by what is there."""
     blocks: list[Relation] = field(default_factory=list["Relation"])
     written: Mapping[Field, Expr] = field(default_factory=lambda: NOTHING)
 
@@ -89,7 +93,7 @@ class Packing:
     def of(cls, pack_rules: tuple[Rule, ...], type_of: TypeOf, problems: list[Diagnostic]) -> Packing:
         """``pack_rules`` are those of the direction's own block."""
         written: dict[Field, Expr] = {rule.place: rule.value for rule in pack_rules if isinstance(rule, Assign)}
-        completed, assigned = (frozenset(_set_by(pack_rules, lengths=lengths)) for lengths in (True, False))
+        completed, assigned = (frozenset(set_by(pack_rules, lengths=lengths)) for lengths in (True, False))
         return cls(problems, Knowledge(type_of), completed, assigned, written=written)
 
     def block(self, rules: tuple[Rule, ...], loops: Loops) -> tuple[Rule, ...]:
@@ -137,7 +141,7 @@ class Packing:
         start, stop = (self.known.replaced(bound, loops) for bound in (rule.start, rule.stop))
         missing = [*fields_of(start, "wire"), *fields_of(stop, "wire")]
         if missing:
-            if not all(self.is_completed(place) for place in _fields_in_rules(rule.body)):
+            if not all(self.is_completed(place) for place in fields_in_rules(rule.body)):
                 self.problems.append(words.unknown_bound(missing[0].span))
             return ()
         body = self.rules(rule.body, (*loops, Loop(rule.variable, rule.start, rule.stop)))
@@ -149,6 +153,9 @@ class Packing:
             self.problems.append(words.changes(told.span, told.function))
             return ()
         place = with_known_indices(rule.place, self.known, loops)
+        if isinstance(flag := flag_of(rule), tuple) and self.known.flag(flag[1], loops) is not None:
+            is_there = told_by_setting(rule.value, self.known, (), loops)
+            return agreement(place, is_there, rule) if isinstance(is_there, Literal) else ()
         fields = fields_in(rule.value)
         targets = [each for each in fields if self.known.setters.get(key_of(each, loops)[0], (None,))[0] is rule]
         if targets:
@@ -212,34 +219,50 @@ class Packing:
     # --- conditions ----------------------------------------------------------------------------------------------------
 
     def when(self, rule: When[Rule, Expr], loops: Loops) -> tuple[Rule, ...]:
-        condition = self.known.replaced(asked_of_holder(rule), loops)
+        asked = asked_of_holder(rule, self.known.type_of)
+        condition = self.known.replaced(asked, loops)
         if not fields_of(condition, "wire"):
-            then, other = self.enter(rule.then, loops), self.enter(rule.otherwise, loops)
+            by_flag = asks_presence(asked, "wire")
+            then, other = (
+                self.branch(rule, loops, holds=holds) if by_flag and not _rejects(block) else self.enter(block, loops)
+                for holds, block in ((True, rule.then), (False, rule.otherwise))
+            )
             self.owe(then, other)
             return (When(condition, then.rules, other.rules, rule.span),)
-        then, other = (self.branch(rule, loops, holds=holds) for holds in (True, False))
+        test = test_between(rule.then, rule.otherwise, self.known.type_of)
+        is_chained = test is not None and asks_presence(test, "holder")
+        then, other = (self.branch(rule, loops, holds=holds, is_chained=is_chained) for holds in (True, False))
         self.owe(then, other)
         if _rejects(rule.otherwise) or _rejects(rule.then):
-            return other.rules if _rejects(rule.then) else then.rules
+            return self.unrefused(rule, other.rules if _rejects(rule.then) else then.rules, loops)
         if not then.rules and not other.rules:
             return ()
-        test = test_between(rule.then, rule.otherwise)
         if test is None:
             self.problems.append(words.alike_blocks(rule.condition.span, show_expr(fields_of(rule.condition, "wire")[0])))
             return ()
         return (When(test, tuple(each for each in then.rules if not _is_tested(each, test)), other.rules, rule.span),)
 
-    def branch(self, rule: When[Rule, Expr], loops: Loops, *, holds: bool) -> _Block:
+    def unrefused(self, rule: When[Rule, Expr], packed: tuple[Rule, ...], loops: Loops) -> tuple[Rule, ...]:
+        """The block of a `when` whose other one rejects; behind blocks that were told apart by what is there, if it is of this one."""
+        block, refusals = (rule.otherwise, rule.then) if _rejects(rule.then) else (rule.then, rule.otherwise)
+        test = presence_between(block, (), self.known.type_of) if self.is_chained else None
+        if test is None:
+            return packed
+        return (When(test, packed, tuple(self.refusal(each, loops) for each in refusals if isinstance(each, Reject)), rule.span),)
+
+    def branch(self, rule: When[Rule, Expr], loops: Loops, *, holds: bool, is_chained: bool = False) -> _Block:
         """One block with what its condition says of the wire, where it cannot be known before the block is."""
         block = rule.then if holds else rule.otherwise
         if _rejects(block):
             return _Block((), ())
         owed = _Owed(rule, holds)
-        found = self.enter(block, loops, facts_of(rule.condition, self.known.type_of, holds=holds), owed)
+        facts = facts_of(rule.condition, self.known.type_of, holds=holds)
+        found = replace(self, is_chained=is_chained and len(block) == 1).enter(block, loops, facts, owed)
         if any(each is owed for each in found.owed):
             missing = [each for each in fields_in(rule.condition) if self.known.value(each, loops) is None]
             if not all(map(self.is_completed, missing)):
-                self.problems.append(words.undetermined(missing[0].span, show_expr(missing[0]), holds=holds))
+                report = words.unsettled_presence if asks_presence(rule.condition, "wire") else words.undetermined
+                self.problems.append(report(missing[0].span, show_expr(missing[0]), holds=holds))
         return found
 
     def enter(self, block: tuple[Rule, ...], loops: Loops, facts: Mapping[Field, Expr] = NOTHING, owed: _Owed | None = None) -> _Block:
@@ -247,7 +270,7 @@ class Packing:
         inner = replace(self, known=self.known.inside(), owed=self.owed if owed is None else (*self.owed, owed))
         learn(inner.known, block, loops, self.is_assigned)
         settings = [inner.fact(place, value, loops) for place, value in facts.items()]
-        guards = inner.settle(loops)
+        guards = inner.settle(block, loops)
         rules = inner.rules(block, loops)
         return _Block((*(each for each in settings if each is not None), *guards, *rules), inner.owed)
 
@@ -258,13 +281,16 @@ class Packing:
         self.known.learn(place, value, loops)
         return _setting(self.known.placed(path_of(place), loops), value, value.span, length=isinstance(place, Len))
 
-    def settle(self, loops: Loops) -> list[Rule]:
+    def settle(self, block: tuple[Rule, ...], loops: Loops) -> list[Rule]:
         """Checks that unpacking is going to take the blocks that this one is in, as far as that is known by now."""
         guards: list[Rule] = []
         left: list[_Owed] = []
         for owed in self.owed:
-            condition = folded(self.known.replaced(owed.rule.condition, loops))
-            if fields_of(condition, "wire"):
+            other = owed.rule.otherwise if owed.holds else owed.rule.then
+            told = folded(told_by_setting(owed.rule.condition, self.known, block, loops, other=other))
+            condition = folded(self.known.replaced(told, loops))
+            is_other_way = isinstance(told, Literal) and told.value is not owed.holds
+            if fields_of(condition, "wire") or is_other_way:
                 left.append(owed)
             else:
                 guards += guard(condition, owed.rule, holds=owed.holds)
@@ -290,22 +316,17 @@ class Packing:
 
     def is_completed(self, place: Field) -> bool:
         """Whether the rules to pack alone set a field, or something in it or around it."""
-        return _is_among(place, self.completed)
+        return is_among(place, self.completed)
 
     def is_assigned(self, place: Field) -> bool:
         """The same, where a length alone does not count."""
-        return _is_among(place, self.assigned)
+        return is_among(place, self.assigned)
 
 
 def _changes(call: Call) -> bool:
     """Whether a call gives another value for each message."""
     known = written(call.function)
     return known is not None and known.changes
-
-
-def _is_among(place: Field, fields: frozenset[tuple[str, ...]]) -> bool:
-    names = names_of(path_of(place))
-    return any(all(a == b for a, b in zip(names, other, strict=False)) for other in fields)
 
 
 def with_known_indices(place: Field | List, known: Knowledge, loops: Loops) -> Field | List:
@@ -354,37 +375,3 @@ def _reason(rule: Relation, missing: list[Field], place: Expr, type_of: TypeOf) 
     except NoInverseError as error:
         return words.no_inverse(error.part.span, str(error), rule.span, shown[0])
     return words.index_reads(missing[0].span)
-
-
-def _fields_in_rules(rules: tuple[Rule, ...]) -> list[Field]:
-    """The fields of the wire that relations read."""
-    found: list[Field] = []
-    for rule in rules:
-        match rule:
-            case Relation(value=value):
-                found += fields_in(value)
-            case For(body=body):
-                found += _fields_in_rules(body)
-            case When(condition, then, otherwise):
-                found += [*fields_in(condition), *_fields_in_rules((*then, *otherwise))]
-            case _:
-                pass
-    return found
-
-
-def _set_by(rules: tuple[Rule, ...], *, lengths: bool) -> list[tuple[str, ...]]:
-    """The fields that rules set, without indices."""
-    found: list[tuple[str, ...]] = []
-    for rule in rules:
-        match rule:
-            case Assign(place) | Default(place):
-                found.append(names_of(place))
-            case SetLength(place) if lengths:
-                found.append(names_of(place))
-            case For(body=body):
-                found += _set_by(body, lengths=lengths)
-            case When(then=then, otherwise=otherwise):
-                found += _set_by((*then, *otherwise), lengths=lengths)
-            case _:
-                pass
-    return found

@@ -1,8 +1,9 @@
 """Mappings of several wires: which rules a message of each wire runs, and which part of the holder is its share.
 
-Such a mapping is checked like any other: its wire is one message with a field for each wire (`message_of_wires`). A message of a wire then
-runs the rules that read that wire, and those that read none. What it fills is cleared before, and nothing else is touched; so a field
-belongs to one wire, but for arrays of numbers whose elements several wires set: those are *joined*.
+Such a mapping is checked like any other: its wire is one message with a field for each wire (`message_of_wires`). A message of a wire
+then runs the rules that read that wire, and those that read none; a rule that reads several runs where it can be computed
+(`check.across_wires`). What a message fills is cleared before, and nothing else is touched; so all rules of a field run at messages of the
+same wires, but for arrays of numbers whose elements several wires set: those are *joined*.
 """
 
 from __future__ import annotations
@@ -12,10 +13,18 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import wires as words
 from rosetta_jit.language import typed
-from rosetta_jit.language.algebra.normal_form import rebuilt
+from rosetta_jit.language.check.across_wires import (
+    NOTHING_KEPT,
+    Wires,
+    remembered,
+    runs_at,
+    values_of_others,
+    wire_of,
+    wires_read,
+    with_parts,
+)
 from rosetta_jit.language.places import places_in, shown_names
 from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, IndexStep, Reject, SetLength, SetState, When
-from rosetta_jit.language.untouched import places_read
 from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Enum, Field, Float, Int, Ref, Schema, Struct, same_name
 from rosetta_jit.startup.dataclass import dataclass
@@ -24,6 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.check.across_wires import Memory
     from rosetta_jit.language.scope import Message
     from rosetta_jit.language.typed import Expr, Place, Rule
     from rosetta_jit.model import mapping as model
@@ -31,10 +41,7 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 Names = tuple[str, ...]
-Wires = frozenset[str]
-"""The wires that a rule reads, or, of a rule to pack, the one that it sets."""
-
-NO_WIRE: Wires = frozenset()
+NO_WIRE: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,26 +79,48 @@ def message_of_wires(mapping: model.Mapping, schema: Schema) -> Schema:
 # --- which rules are whose -----------------------------------------------------------------------------------------------
 
 
-def _told(rules: tuple[Rule, ...], target: Side, around: Wires = NO_WIRE) -> Iterator[tuple[Rule, Wires]]:
-    """Each rule that is no block, with its wires; the conditions and bounds of the blocks around it count."""
+@dataclass(frozen=True, slots=True)
+class _Told:
+    """What a rule says, with the blocks around it.
+
+    Attributes
+    ----------
+    wires
+        Those that it reads; of a rule to pack, the one that it sets.
+    exprs
+        What it computes.
+    """
+
+    wires: Wires = NO_WIRE
+    exprs: tuple[Expr, ...] = ()
+
+    def within(self, rule: Rule, target: Side) -> _Told:
+        """The same with one more rule."""
+        places = [rule.place] if isinstance(rule, Assign | SetLength | Default | Ignore) else []
+        exprs = _own(rule) if target == "holder" else ()
+        set_ = () if target == "wire" and isinstance(rule, Ignore) else tuple(map(wire_of, places))
+        return _Told(self.wires.union(wires_read(exprs), *set_), (*self.exprs, *exprs))
+
+    @property
+    def runs_at(self) -> Wires:
+        """The wires at whose messages the rule runs; none of one that runs at all of them, or at none."""
+        return self.wires if len(self.wires) < 2 else runs_at(self.exprs, self.wires)
+
+
+NOTHING_AROUND = _Told()
+
+
+def _told(rules: tuple[Rule, ...], target: Side, around: _Told = NOTHING_AROUND) -> Iterator[tuple[Rule, _Told]]:
+    """Each rule that is no block, with what it reads; the conditions and bounds of the blocks around it count."""
     for rule in rules:
+        within = around.within(rule, target)
         match rule:
             case For(body=body):
-                yield from _told(body, target, around | _wires_of(rule, target))
+                yield from _told(body, target, within)
             case When(then=then, otherwise=otherwise):
-                yield from _told((*then, *otherwise), target, around | _wires_of(rule, target))
+                yield from _told((*then, *otherwise), target, within)
             case _:
-                yield rule, around | _wires_of(rule, target)
-
-
-def _wires_of(rule: Rule, target: Side) -> Wires:
-    """The wires that a rule itself is of."""
-    places = [rule.place] if isinstance(rule, Assign | SetLength | Default | Ignore) else []
-    if target == "holder":
-        places = [each for each in (*places, *(read for expr in _own(rule) for read in places_read(expr))) if each.side == "wire"]
-    elif isinstance(rule, Ignore):
-        places = []
-    return frozenset(step.field.name for place in places for step in place.steps[:1] if isinstance(step, FieldStep))
+                yield rule, within
 
 
 def _own(rule: Rule) -> tuple[Expr, ...]:
@@ -114,74 +143,130 @@ def _own(rule: Rule) -> tuple[Expr, ...]:
             assert_never(rule)
 
 
-def rules_of(rules: tuple[Rule, ...], wire: str, target: Side, holder: Message) -> tuple[Rule, ...]:
-    """The rules that a message of a wire runs, with the wire's own message in place of that of all wires."""
+def kept_values(rules: tuple[Rule, ...]) -> list[tuple[str, Expr]]:
+    """What rules to unpack that read several wires need of other messages than the one at hand: each with its wire."""
+    found = [value for _, told in _told(rules, "holder") if len(told.wires) > 1 for value in values_of_others(told.exprs, told.wires)]
+    return [(wire, value) for value in dict.fromkeys(found) for wire in wires_read([value])]
+
+
+def rules_of(rules: tuple[Rule, ...], wire: str, target: Side, holder: Message, memory: Memory = NOTHING_KEPT) -> tuple[Rule, ...]:
+    """The rules that a message of a wire runs, with the wire's own message in place of that of all wires.
+
+    What they need of the other wires' last messages is what ``memory`` has of them.
+    """
     cut = _cutter(holder)
     owners = _owners(rules, cut) if target == "holder" else {}
+    waits = _waits(rules, owners, cut) if memory.arrived else {}
+    return tuple(_Chosen(wire, target, memory, cut, owners, waits).of(rules, NOTHING_AROUND, frozenset([wire])))
 
-    def is_run(rule: Rule, wires: Wires) -> bool:
-        if wires:
-            return wire in wires
-        set_ = [owners.get(cut(place), NO_WIRE) for place in places_in((rule,))]
-        return all(len(each) != 1 or wire in each for each in set_)
 
-    def kept(inner: tuple[Rule, ...], around: Wires) -> Iterator[Rule]:
-        for rule in inner:
-            wires = around | _wires_of(rule, target)
-            match rule:
+@dataclass(frozen=True, slots=True)
+class _Chosen:
+    """The choice of the rules for one wire's messages.
+
+    Attributes
+    ----------
+    owners, waits
+        What `_owners` and `_waits` find.
+    """
+
+    wire: str
+    target: Side
+    memory: Memory
+    cut: Callable[[Place], Names]
+    owners: dict[Names, frozenset[Wires]]
+    waits: dict[Names, Wires]
+
+    def of(self, rules: tuple[Rule, ...], around: _Told, come: Wires) -> Iterator[Rule]:
+        """Those of some rules that run, where the wires that have ``come`` are known to have sent a message."""
+        for rule in rules:
+            told, own = around.within(rule, self.target), of_wire(rule, self.wire, self.memory)
+            others = (self.needed(rule, around) | wires_read(_own(rule))) - come if self.memory.arrived else NO_WIRE
+            match own:
                 case For(body=body):
-                    if within := tuple(kept(body, wires)):
-                        yield replace(_of_wire(rule), body=within)
+                    inner = tuple(self.of(body, told, come | others))
+                    found = (replace(own, body=inner),) if inner else ()
                 case When(then=then, otherwise=otherwise):
-                    chosen, other = tuple(kept(then, wires)), tuple(kept(otherwise, wires))
-                    if chosen or other:
-                        yield replace(_of_wire(rule), then=chosen, otherwise=other)
-                case _ if is_run(rule, wires):
-                    yield _of_wire(rule)
+                    chosen, other = (tuple(self.of(each, told, come | others)) for each in (then, otherwise))
+                    found = (replace(own, then=chosen, otherwise=other),) if chosen or other else ()
                 case _:
-                    pass
+                    found = (own,) if self.is_run(rule, told) else ()
+            for each in sorted(others) if found else ():
+                found = (When(self.memory.arrived[each], found, (), rule.span),)
+            yield from found
 
-    return tuple(kept(rules, NO_WIRE))
+    def is_run(self, rule: Rule, told: _Told) -> bool:
+        """Whether a rule that is no block runs."""
+        if told.wires:
+            return self.wire in told.runs_at
+        set_ = [self.owners.get(self.cut(place), frozenset[Wires]()) for place in places_in((rule,))]
+        return all(len(groups) != 1 or all(self.wire in each for each in groups) for groups in set_)
+
+    def needed(self, rule: Rule, around: _Told) -> Wires:
+        """The wires without a message of which nothing in a rule runs."""
+        told = around.within(rule, self.target)
+        match rule:
+            case For(body=inner):
+                pass
+            case When(then=then, otherwise=otherwise):
+                inner = (*then, *otherwise)
+            case _:
+                return told.wires.union(*(self.waits.get(self.cut(place), NO_WIRE) for place in places_in((rule,))))
+        first, *rest = [self.needed(each, told) for each in inner] or [NO_WIRE]
+        return first.intersection(*rest)
 
 
-def _of_wire(rule: Rule) -> Rule:
-    """A rule that looks at one wire's message itself."""
+def _waits(rules: tuple[Rule, ...], owners: dict[Names, frozenset[Wires]], cut: Callable[[Place], Names]) -> dict[Names, Wires]:
+    """The wires that must have sent a message before any rule of a field runs: its array would have elements that nothing has set.
+
+    The elements of an array that is joined are zeros until then.
+    """
+    found: dict[Names, Wires] = {}
+    for rule, told in _told(rules, "holder"):
+        for place in places_in((rule,)):
+            names = cut(place)
+            if len(owners.get(names, ())) == 1:
+                found[names] = found.get(names, NO_WIRE) | told.wires
+    return found
+
+
+def of_wire(rule: Rule, wire: str, memory: Memory = NOTHING_KEPT) -> Rule:
+    """A rule without the blocks within it, as it looks at one wire's message itself."""
+
+    def seen(expr: Expr) -> Expr:
+        return value_of_wire(expr, wire, memory)
+
     match rule:
         case Assign(place, value) | SetLength(place, value):
-            return replace(rule, place=_place(place), value=_expr(value))
+            steps = tuple(replace(step, index=seen(step.index)) if isinstance(step, IndexStep) else step for step in place.steps)
+            return replace(rule, place=_without_wire(replace(place, steps=steps)), value=seen(value))
         case Default(place) | Ignore(place):
-            return replace(rule, place=_place(place))
+            return replace(rule, place=_without_wire(place))
         case For(_, start, stop, _, kept=kept):
-            count = None if kept is None or kept.count is None else _expr(kept.count)
-            filtered = None if kept is None else replace(kept, condition=_expr(kept.condition), count=count)
-            return replace(rule, start=_expr(start), stop=_expr(stop), kept=filtered)
+            count = None if kept is None or kept.count is None else seen(kept.count)
+            filtered = None if kept is None else replace(kept, condition=seen(kept.condition), count=count)
+            return replace(rule, start=seen(start), stop=seen(stop), kept=filtered)
         case When(condition):
-            return replace(rule, condition=_expr(condition))
+            return replace(rule, condition=seen(condition))
         case Reject(pieces=pieces):
-            return replace(rule, pieces=tuple(map(_expr, pieces)))
+            return replace(rule, pieces=tuple(map(seen, pieces)))
         case SetState(_, value):
-            return replace(rule, value=_expr(value))
+            return replace(rule, value=seen(value))
         case _:
             assert_never(rule)
 
 
-def _expr(expr: Expr) -> Expr:
-    found = rebuilt(expr, _expr)
+def value_of_wire(expr: Expr, wire: str, memory: Memory = NOTHING_KEPT) -> Expr:
+    """What is computed at a message of one wire: of that message, and of what ``memory`` has of others."""
+    known = remembered(expr, wire, memory)
+    if known is not None:
+        return known
+    found = with_parts(expr, lambda part: value_of_wire(part, wire, memory))
     match found:
         case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place) | typed.Search(place):
             return replace(found, place=_without_wire(place))
-        case typed.HostCall(_, arguments):
-            return replace(found, arguments=tuple(map(_expr, arguments)))
-        case typed.Choice(pieces=pieces):
-            return replace(found, pieces=tuple(map(_expr, pieces)))
         case _:
             return found
-
-
-def _place(place: Place) -> Place:
-    """A place that a rule sets; its indices are read."""
-    steps = tuple(replace(step, index=_expr(step.index)) if isinstance(step, IndexStep) else step for step in place.steps)
-    return _without_wire(replace(place, steps=steps))
 
 
 def _without_wire(place: Place) -> Place:
@@ -196,20 +281,23 @@ def share_of(rules: tuple[Rule, ...], wire: str, wires: Sequence[str], holder: M
     cut = _cutter(holder)
     owners = _owners(rules, cut)
     mine = {cut(place) for place in places_in(rules_of(rules, wire, "holder", holder))}
-    joined = frozenset(names for names in mine if len(owners.get(names, NO_WIRE)) > 1)
-    others = {names for names, wires in owners.items() if wires != frozenset([wire])}
+    joined = frozenset(names for names in mine if len(owners.get(names, ())) > 1)
+    others = {names for names, groups in owners.items() if len(groups) != 1 or any(wire not in each for each in groups)}
     around = {names[:count] for names in mine - joined for count in range(1, len(names))}
     alone = (names for names in around if not any(other[: len(names)] == names for other in others))
     return Share(wires.index(wire), frozenset(mine) - joined, frozenset(alone), joined)
 
 
-def _owners(rules: tuple[Rule, ...], cut: Callable[[Place], Names]) -> dict[Names, Wires]:
-    """The wires that set each field, as far as it is no message, or one that can contain itself."""
-    found: dict[Names, Wires] = {}
-    for rule, wires in _told(rules, "holder"):
+def _owners(rules: tuple[Rule, ...], cut: Callable[[Place], Names]) -> dict[Names, frozenset[Wires]]:
+    """The wires at whose messages the rules of each field run, as far as it is no message, or one that can contain itself.
+
+    All rules of most fields run at messages of the same wires; a field whose rules do not has several sets of wires.
+    """
+    found: dict[Names, frozenset[Wires]] = {}
+    for rule, told in _told(rules, "holder"):
         for place in places_in((rule,)):
             names = cut(place)
-            found[names] = found.get(names, NO_WIRE) | wires
+            found[names] = found.get(names, frozenset[Wires]()) | ({told.runs_at} if told.wires else frozenset[Wires]())
     return found
 
 
@@ -237,26 +325,25 @@ def _cutter(holder: Message) -> Callable[[Place], Names]:
 def wrong_wires(rules: tuple[Rule, ...], target: Side, holder: Message) -> list[Diagnostic]:
     """Reports of rules that need several wires at once, and, of rules to unpack, of fields that several wires set."""
     every = list(_told(rules, target))
-    problems = [words.apart(rule.span, sorted(wires)) for rule, wires in every if len(wires) > 1]
+    problems = [words.apart(rule.span, sorted(told.wires)) for rule, told in every if told.wires and not told.runs_at]
     return problems or (_overlaps(rules, every, holder) if target == "holder" else [])
 
 
-def _overlaps(rules: tuple[Rule, ...], every: list[tuple[Rule, Wires]], holder: Message) -> list[Diagnostic]:
+def _overlaps(rules: tuple[Rule, ...], every: list[tuple[Rule, _Told]], holder: Message) -> list[Diagnostic]:
     problems: list[Diagnostic] = []
     cut = _cutter(holder)
-    shared = [names for names, wires in _owners(rules, cut).items() if len(wires) > 1]
+    shared = [names for names, groups in _owners(rules, cut).items() if len(groups) > 1]
     for names in shared:
-        mine = [(rule, wires, place) for rule, wires in every for place in places_in((rule,)) if cut(place) == names]
+        mine = [(rule, told.runs_at, place) for rule, told in every for place in places_in((rule,)) if cut(place) == names]
         if _can_be_joined(names, mine, holder):
             continue
-        first: tuple[str, Span | None] | None = None
-        for rule, wires, _ in mine:
-            for wire in wires:
-                if first is None:
-                    first = wire, rule.span
-                elif wire != first[0]:
-                    problems.append(words.set_by_several(rule.span, shown_names(names, holder), (first[0], wire), first[1]))
-                    break
+        first: tuple[Wires, Span | None] | None = None
+        for rule, wires in ((rule, wires) for rule, wires, _ in mine if wires):
+            if first is None:
+                first = wires, rule.span
+            elif wires != first[0]:
+                both = min(first[0] - wires or first[0]), min(wires - first[0] or wires)
+                problems.append(words.set_by_several(rule.span, shown_names(names, holder), both, first[1]))
     return problems
 
 

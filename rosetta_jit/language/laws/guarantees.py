@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Literal
 from rosetta_jit.language.algebra.equality import given_back, has_state, is_part, reads_other, same_number
 from rosetta_jit.language.algebra.normal_form import normal
 from rosetta_jit.language.laws.chain import UNSHOWN, Lost, Rounding, come_back
-from rosetta_jit.language.laws.roundtrip import FILTERED, Result, Trip
+from rosetta_jit.language.laws.roundtrip import Result, Trip
 from rosetta_jit.language.laws.ways import UnfollowedError, Way, ways
+from rosetta_jit.language.laws.writes import FILTERED
 from rosetta_jit.language.limits import MAX_WORK
 from rosetta_jit.language.places import field_names, shown_names, shown_place
 from rosetta_jit.language.typed import Access, Const, For, IndexStep, LenOf, Local, When
@@ -139,6 +140,8 @@ def _outcomes(way: Way, second: tuple[Rule, ...], message: Message) -> Iterator[
         yield _shown(result), _outcome(result, trip), result.span
     touched = {field_names(result.place) for result in results}
     for names in untouched(touched, message, message.root, ()):
+        if trip.is_absent(names, message):
+            continue
         yield shown_names(names, message), Lost("no rule sets it on the way back"), None
 
 
@@ -172,6 +175,8 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
             is_element = any(isinstance(step, IndexStep) for step in other.steps)
             return None if value in trip.equal_to(goal) else UNSHOWN if is_element else Lost("nothing of it is kept")
         case _ if trip.is_same(value, goal) or value == goal or any(value == other for other in trip.equal_to(goal)):
+            return None
+        case Const(bool(holds)) if trip.truth(goal) is holds:
             return None
         case Const(constant) if any(isinstance(other, Const) and other.value == constant for other in trip.equal_to(goal)):
             return None

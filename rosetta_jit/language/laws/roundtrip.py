@@ -17,6 +17,7 @@ from rosetta_jit.language.laws.chain import come_back, field_in
 from rosetta_jit.language.laws.loop_orders import round_of
 from rosetta_jit.language.laws.parts import simplified
 from rosetta_jit.language.laws.refusals import may_refuse
+from rosetta_jit.language.laws.writes import Write, changed, is_left_absent, is_part_of, is_within, union_depths, writes_of
 from rosetta_jit.language.limits import MAX_LOOKED, MAX_ORDERED
 from rosetta_jit.language.places import field_names
 from rosetta_jit.language.typed import (
@@ -31,7 +32,6 @@ from rosetta_jit.language.typed import (
     Default,
     FieldStep,
     For,
-    Given,
     Has,
     IndexStep,
     LenOf,
@@ -52,13 +52,10 @@ if TYPE_CHECKING:
 
     from rosetta_jit.language.algebra.equality import Ranges
     from rosetta_jit.language.laws.ways import Way
-    from rosetta_jit.language.typed import Assignment, Expr, Place, Rule
+    from rosetta_jit.language.scope import Message
+    from rosetta_jit.language.typed import Expr, Place, Rule
     from rosetta_jit.model.expr import Side
     from rosetta_jit.source import Span
-
-
-FILTERED = Local("filtered")
-"""The value of what a filter sets: which element it is of is not followed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,16 +73,6 @@ class Result:
     may_be_refused: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class _Write:
-    """What a rule sets, in loops over these ranges."""
-
-    is_length: bool
-    place: Place
-    value: Expr
-    ranges: Ranges
-
-
 class Trip:
     """The second direction, run on what one way through the first one leaves."""
 
@@ -95,8 +82,9 @@ class Trip:
     """
 
     def __init__(self, way: Way) -> None:
-        self.writes: dict[tuple[str, ...], list[_Write]] = {}
-        for write in _writes(way.rules, ()):
+        self.writes: dict[tuple[str, ...], list[Write]] = {}
+        self.rules = way.rules
+        for write in writes_of(way.rules, ()):
             self.writes.setdefault(field_names(write.place), []).append(write)
         places = [found[0].place for found in self.writes.values()]
         self.origin: Side = "holder" if places and places[0].side == "wire" else "wire"
@@ -156,12 +144,12 @@ class Trip:
             match rule:
                 case Assign(place, value) | SetLength(place, value):
                     where = placed(place, self.of)
-                    made = self.of(_changed(rule, value))
+                    made = self.of(changed(rule, value))
                     yield Result(where, isinstance(rule, SetLength), made, rule.span, self.ranges, may_refuse(value, self.of))
                 case Default(place):
                     yield Result(place, is_length=False, value=None, span=rule.span, ranges=self.ranges)
                 case For(body=body, kept=Kept()):
-                    for write in _writes((rule,), self.ranges):
+                    for write in writes_of((rule,), self.ranges):
                         yield Result(write.place, write.is_length, write.value, rule.span, write.ranges)
                 case For(_, start, stop, body):
                     around, self.ranges = self.ranges, (*self.ranges, (self.of(start), self.of(stop)))
@@ -186,8 +174,13 @@ class Trip:
                 self.refusals += [rule for rule in otherwise if isinstance(rule, Reject) and rule.written]
                 self.know(condition, self.ranges, holds=True)
                 yield from self.run(then)
+            case Has(place) if not otherwise and all(is_part_of(write.place, place) for write in writes_of(then, ())):
+                known = dict(self.truths)
+                self.know(condition, self.ranges, holds=True)  # where it is not there, nothing is set, and nothing lost
+                yield from self.run(then)
+                self.truths = known
             case _:
-                for write in _writes((*then, *otherwise), ()):
+                for write in writes_of((*then, *otherwise), ()):
                     yield Result(write.place, is_length=False, value=Local("?"), span=None, ranges=self.ranges)
 
     # --- expressions ---------------------------------------------------------------------------------------------------
@@ -199,8 +192,8 @@ class Trip:
                 return self.read(replace(expr, place=placed(place, self.of)), length=False)
             case LenOf(place):
                 return self.read(replace(expr, place=placed(place, self.of)), length=True)
-            case Has(place) if self.is_set(placed(place, self.of)):
-                return Const(value=True, type=BOOL)
+            case Has(place) if (is_there := self.is_there(placed(place, self.of))) is not None:
+                return Const(is_there, BOOL)
             case _:
                 return self.simple(rebuilt(expr, self.of))
 
@@ -221,13 +214,29 @@ class Trip:
                 return LenOf(inner[0]) if length else Access(inner[0], place.type)
         return expr
 
-    def is_set(self, place: Place) -> bool:
-        """Whether the first direction sets a number or a text, which then is there."""
-        is_plain = not isinstance(place.type, Array | Struct | Union | Map)
-        return is_plain and bool(list(self.matching(field_names(place), place, length=False)))
+    def is_there(self, place: Place) -> bool | None:
+        """Whether the first direction sets a place, or a number or text in it, or leaves it absent; None where that does not follow."""
+        names = field_names(place)
+        if not isinstance(place.type, Array | Struct | Union | Map) and list(self.matching(names, place, length=False)):
+            return True
+        if any(is_within(write, place) for found in self.writes.values() for write in found):
+            return True
+        return False if place.side != self.origin and is_left_absent(place, self.rules) else None
+
+    def is_absent(self, names: tuple[str, ...], message: Message) -> bool:
+        """Whether a place is known not to be there, or another case of its union is."""
+        for condition, (holds, ranges) in self.truths.items():
+            if isinstance(condition, Has) and not ranges and condition.place.side == self.origin:
+                asked = field_names(condition.place)
+                unions = union_depths(condition.place, message)
+                if not holds and names[: len(asked)] == asked:
+                    return True
+                if holds and any(asked[:size] == names[:size] and asked[size : size + 1] != names[size : size + 1] for size in unions):
+                    return True
+        return False
 
     def matching(self, names: tuple[str, ...], place: Place, *, length: bool) -> Iterator[Expr]:
-        alike: list[tuple[_Write, Expr]] = []
+        alike: list[tuple[Write, Expr]] = []
         for write in self.writes.get(names, [])[:MAX_LOOKED]:
             bound: dict[str, Expr] = {}
             if write.is_length == length and (unify(write.place.steps, place.steps, bound) or self.alike(write.place, place, bound)):
@@ -292,7 +301,7 @@ class Trip:
         bound.clear()
         return len(write.steps) == len(place.steps) and all(same_number(a, b) and not reads_other(b, side) for a, b in pairs)
 
-    def around(self, place: Place, write: _Write) -> Place | None:
+    def around(self, place: Place, write: Write) -> Place | None:
         """A place within one that was assigned as a whole, where it came from."""
         bound: dict[str, Expr] = {}
         size = len(write.place.steps)
@@ -330,28 +339,6 @@ class Trip:
                 return simplified(expr, self.truth) or expr
             case _:
                 return expr
-
-
-def _changed(rule: Assignment | SetLength[Place, Expr], value: Expr) -> Expr:
-    """The value of a rule; one within which units change is not followed."""
-    return value if isinstance(rule, SetLength) or rule.by is None else Given("in other units", (), value.type)
-
-
-def _writes(rules: tuple[Rule, ...], ranges: Ranges) -> Iterator[_Write]:
-    """What rules set."""
-    for rule in rules:
-        match rule:
-            case Assign(place, value) | SetLength(place, value):
-                yield _Write(isinstance(rule, SetLength), place, _changed(rule, value), ranges)
-            case For(_, start, body=body, kept=Kept(count=count)) if count is not None:
-                for each in _writes(body, (*ranges, (start, count))):
-                    yield replace(each, value=FILTERED)
-            case For(_, start, stop, body):
-                yield from _writes(body, (*ranges, (start, stop)))
-            case When(_, then, otherwise):
-                yield from _writes((*then, *otherwise), ranges)
-            case _:
-                pass
 
 
 def _logic(is_and: bool, left: Expr, right: Expr, expr: Expr) -> Expr:

@@ -68,6 +68,8 @@ class Supplies:
                     self.decide(found, path, otherwise, value)
                 self.source.arrays = known
                 writer.emit(If(holds, block(yes), block(no)))
+            case typed.Default():  # also of a struct that the field is in
+                writer.assign(found, constant(0, found.type))
             case _:
                 writer.assign(found, value(rule, self.here(rule)))
 
