@@ -559,7 +559,7 @@ def test_the_table_and_the_metrics(run):
 
 def test_who_asks_for_metrics_and_says_nothing_holds_up_nobody(monkeypatch):
     monkeypatch.setattr(asking, "MAX_ASKING", 2)
-    monkeypatch.setattr(asking._Handler, "timeout", 0.3)
+    monkeypatch.setattr(asking, "ASKING_S", 0.3)
     metrics = MetricsServer("0", list)
     try:
         with socket.create_connection(("127.0.0.1", metrics.port)), socket.create_connection(("127.0.0.1", metrics.port)):
