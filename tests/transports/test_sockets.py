@@ -219,6 +219,22 @@ def test_all_peers_together_take_bounded_memory(monkeypatch):
             assert len(source.take(5).data) == 1 << 20
 
 
+def test_what_waits_for_all_peers_together_takes_bounded_memory(monkeypatch):
+    monkeypatch.setattr(loops, "MAX_SENDING_BYTES", 12 << 20)
+    port, before = free_port(), loops.loop().sending_bytes
+    with rj.publish(f"tcp:{port}?listen=yes&wait=no&linger=0") as sink:
+        with contextlib.ExitStack() as stack:
+            for _ in range(6):
+                stack.enter_context(socket.create_connection(("127.0.0.1", port)))
+            until(lambda: sink.connections == 6)
+            for _ in range(16):
+                sink.send(bytes(1 << 20))
+            assert 11 << 20 < loops.loop().sending_bytes - before <= 12 << 20
+            assert sink.lost["the peer is too slow"] > 10
+        until(lambda: not sink.connections)
+        assert loops.loop().sending_bytes == before
+
+
 def test_reasons_are_few_short_and_printable():
     source = Source("here", None, None)
     for number in range(100):
