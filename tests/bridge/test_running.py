@@ -289,10 +289,22 @@ def test_what_is_dropped_when_the_queue_is_full(run, monkeypatch, full, kept):
     assert target.got[-1] == bytes([99])  # at once: nothing waits
 
 
-def message(number):
+def test_a_queue_holds_few_large_messages(run, monkeypatch):
+    monkeypatch.setattr("rosetta_jit.bridge.live.MAX_QUEUE_BYTES", 5)
+    bridge, _ = run(route(free_port(), f"{free_port()}?wait=no", "queue = 4"))
+    live = next(iter(bridge.live.values()))
+    live.deliver(message(0))
+    until(lambda: live._held)
+    for each in (b"12", b"34", b"5", b"67", b"123456789"):
+        live.deliver(message(0, each))
+    assert [item[0] for item in live._waiting] == [b"123456789"]
+    assert sum(live.counts.dropped.values()) == 4
+
+
+def message(number, data=b""):
     from rosetta_jit.transports.base import Message
 
-    return Message(bytes([number]), "a", time=1)
+    return Message(data or bytes([number]), "a", time=1)
 
 
 def test_a_message_that_is_refused_for_ever_holds_up_no_others(run, monkeypatch):

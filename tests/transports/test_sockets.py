@@ -14,7 +14,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.errors import AddressError, TransportError
 from rosetta_jit.transports import loop as loops
-from rosetta_jit.transports.base import Source
+from rosetta_jit.transports.base import Message, Server, Source
 from rosetta_jit.transports.installed import installed
 from rosetta_jit.transports.stream import Stream
 from tests.transports.free import free_port, until
@@ -175,6 +175,19 @@ def test_a_full_queue_drops_the_oldest_and_counts():
         assert [source.take(1).data, source.take(1).data] == [b"\3", b"\4"]
         assert source.lost == {"queue full": 3}
         assert told == [("queue full", 1)] * 3
+
+
+def test_queues_hold_few_large_messages(monkeypatch):
+    monkeypatch.setattr("rosetta_jit.transports.base.MAX_QUEUE_BYTES", 5)
+    source, server = Source("nothing", None, None), Server("nothing", lambda _: None)
+    refused = []
+    for each in (b"12", b"34", b"5", b"67", b"123456789"):
+        source.arrived(Message(each, "a"))
+        server.asked(Message(each, "a"), lambda _, error: refused.append(error))
+    assert (source.take(0).data, source.take(0), dict(source.lost)) == (b"123456789", None, {"queue full": 4})
+    source.arrived(Message(b"12345", "a"))
+    assert source.take(0).data == b"12345"
+    assert refused == ["too many questions wait"] * 2
 
 
 def test_a_peer_that_dies_in_the_middle_costs_its_own_message():
