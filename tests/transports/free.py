@@ -7,7 +7,6 @@ import subprocess
 import time
 from contextlib import contextmanager
 
-
 GIVEN = set()
 """Ports that a test has: the system may name one again as soon as nobody listens there."""
 
