@@ -14,6 +14,7 @@ from rosetta_jit.runtime import run
 from rosetta_jit.runtime.holder.classes import settle_lanes
 from rosetta_jit.runtime.holder.message import Message, place
 from rosetta_jit.runtime.limits import MAX_CLASSES
+from rosetta_jit.runtime.places import Places
 from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
 from rosetta_jit.runtime.whole_objects import encoding, encoding_by_steps
 
@@ -184,10 +185,11 @@ class EncoderBase(Program):
         return count
 
     def _written(self, lanes: Lanes, buffer: NDArray[np.uint8], offsets: NDArray[np.int64], first: int, count: int) -> int:
+        places = Places.of(offsets)
         if self._loaded.library is not None:
             many = MANY(self._loaded.library["many"])
-            return many(buffer.ctypes.data, buffer.size, offsets.ctypes.data, first, count, lanes.address)
-        return one_by_one(self._loaded.kernel, buffer, offsets[: count + 1], first, lanes, self._loaded.size)
+            return many(buffer.ctypes.data, buffer.size, *places.addresses, first, count, lanes.address)
+        return one_by_one(self._loaded.kernel, buffer, places, first, count, lanes, self._loaded.size)
 
     def _make_usable(self, holder: Holder) -> None:
         """Bring a valid holder, whose lanes are one's own, into the form that kernels read."""
