@@ -147,6 +147,11 @@ def is_short_and_straight(kernel: Kernel) -> bool:
     return not any(isinstance(each, For | While) for each in every)
 
 
+def is_short(kernel: Kernel) -> bool:
+    """Whether the first of a kernel's bodies has so few statements that it can be compiled once more."""
+    return sum(1 for _ in statements(kernel.bodies[0])) <= SHORT_IN_VECTORS
+
+
 def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
     """The expressions that stand in a statement itself."""
     match stmt:
