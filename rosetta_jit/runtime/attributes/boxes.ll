@@ -60,16 +60,6 @@ done:
   ret ptr %object
 }
 
-define internal ptr @box_signed(i64 %value) alwaysinline {
-  %object = call ptr @PyLong_FromLongLong(i64 %value)
-  ret ptr %object
-}
-
-define internal ptr @box_unsigned(i64 %value) alwaysinline {
-  %object = call ptr @PyLong_FromUnsignedLongLong(i64 %value)
-  ret ptr %object
-}
-
 define internal ptr @box_bool(i8 %value) alwaysinline {
   %is = icmp ne i8 %value, 0
   %object = select i1 %is, ptr @_Py_TrueStruct, ptr @_Py_FalseStruct
