@@ -203,7 +203,7 @@ class DecoderBase(Program):
             if isinstance(error, DecodeError) and errors is not None:
                 errors[done] = error
                 lanes.row_words(0, done, 1)[:] = 0
-                lanes.bear(lanes.plan.births, done, 1)
+                lanes.initialise(lanes.plan.initial, done, 1)
                 done += 1
             elif error is not None:
                 raise error

@@ -260,7 +260,8 @@ def _support(*names: str) -> bytes:
 
 def _emitted(kernel: Kernel, name: str, aside: list[str] | None) -> str:
     module = ir.Module(name)
-    rare = ir.Module(f"{name}.rare") if aside is not None and kernel.rare else None
+    is_split = aside is not None and kernel.rare and not calls_to_host((kernel,))  # what they call is in the program's own module
+    rare = ir.Module(f"{name}.rare") if is_split else None
     llvm.emit(module, kernel, name, whole=aside is None, rare=rare)
     if aside is not None and rare is not None:
         aside.append(str(rare))
