@@ -82,3 +82,17 @@ large:
   %any = call ptr @PyLong_FromUnsignedLongLong(i64 %value)
   ret ptr %any
 }
+
+; The value of an integer that has one digit, or is zero, and whether it is such a one.
+define internal { i64, i1 } @one_digit(ptr %object) alwaysinline {
+  %size = call i64 @word(ptr %object, i64 16)
+  %shifted = add i64 %size, 1
+  %is = icmp ule i64 %shifted, 2
+  %at = getelementptr i8, ptr %object, i64 24
+  %digit = load i32, ptr %at
+  %positive = zext i32 %digit to i64
+  %value = mul i64 %positive, %size
+  %one = insertvalue { i64, i1 } undef, i64 %value, 0
+  %result = insertvalue { i64, i1 } %one, i1 %is, 1
+  ret { i64, i1 } %result
+}
