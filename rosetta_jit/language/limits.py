@@ -64,6 +64,9 @@ MAX_FILE_BYTES = 4 << 20
 MAX_TEXT_BYTES = 64 << 20
 """bytes of all files that a program is made from"""
 
+MAX_LISTED_FILES = 1000
+"""files of a folder among which the one is looked for that an import means"""
+
 MAX_USES = 1000
 """uses of mappings in all: each is a copy of their rules"""
 
