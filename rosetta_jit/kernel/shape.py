@@ -28,6 +28,7 @@ from rosetta_jit.kernel.ir import (
     Let,
     Load,
     Local,
+    Lookup,
     Nearest,
     Nest,
     Place,
@@ -207,6 +208,8 @@ def operands(expr: Expr) -> tuple[Expr, ...]:
             return (_start(address), size, exponent)
         case Digits(value, _) | Scale(value):
             return (value,)
+        case Lookup(_, _, index):
+            return (index,)
         case _:
             assert_never(expr)
 
