@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.habits import instead
 from rosetta_jit.catalogue.names import shorten
+from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
@@ -42,6 +43,18 @@ EXPECTATIONS = (
 )
 """Token kind → how a person calls what may stand there, in the order in which it is listed."""
 
+WORDS = {
+    kind: kind.strip("_").lower()
+    for kind in (
+        *("IMPORT", "PARAMETER", "STATE", "FUNCTION", "_SAME", "NAMES", "IGNORE", "DEFAULT", "REST", "REJECT", "FOR", "FROM", "TO", "BY"),
+        *("END", "WHEN", "ELSE", "IF", "AND", "OR", "NOT", "VIA", "DEPTH", "WHERE", "WITH", "EXCEPT", "OTHERWISE"),
+    )
+} | {
+    kind: f"{kind.lower().replace('_', '-')}:"
+    for kind in ("DATA_HOLDER", "WIRE_SCHEMA", "LIMIT", "ROUNDING", "EDITION", "RULES", "UNPACK_RULES", "PACK_RULES")
+}
+"""Token kind → the word of the language that it is, with the colon that follows a statement's."""
+
 STARTS_VALUE = frozenset({"LPAR", "LSQB", "START", "NAME", "STRING"})
 STARTS_RULE = frozenset({"START"})
 
@@ -56,7 +69,16 @@ def unexpected(span: Span, kind: str, expected: frozenset[str]) -> Diagnostic:
 
 def _help(span: Span, kind: str, expected: frozenset[str]) -> str:
     found = span.source.text[span.start : span.end]
-    return _undotted(span, kind, expected) or instead(span, kind, expected) or _hint(found, kind, expected)
+    return _undotted(span, kind, expected) or instead(span, kind, expected) or _meant(span, kind, expected) or _hint(found, kind, expected)
+
+
+def _meant(span: Span, kind: str, expected: frozenset[str]) -> str:
+    """The word of the language that may stand there and is spelt nearly so; empty where there is none."""
+    if kind != "NAME":
+        return ""
+    written = re.match(r"[A-Za-z_-]+:?", span.source.text[span.start : span.start + 20])
+    meant = None if written is None else closest(written[0], sorted(WORDS[each] for each in expected & WORDS.keys()))
+    return f"did you mean `{meant}`?" if meant else ""
 
 
 BEFORE = {"RSQB": r"(?<![\w.])([A-Za-z_]\w*)\[$", "MEMBER": r"(?<![\w.])([A-Za-z_]\w*\[[^][\n]*\])$"}

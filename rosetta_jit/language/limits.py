@@ -22,6 +22,9 @@ MAX_STATE = 64
 MAX_WIRES = 16
 """wires of a mapping"""
 
+MAX_SIGNAL_BYTES = 64
+"""bytes of a frame of signals: as many as CAN FD has"""
+
 MAX_LIMIT = 1 << 40
 """bytes that a `limit` allows"""
 
