@@ -275,7 +275,7 @@ def test_sum_of_bytes(effort, compare, record):
 
 
 def test_checksum(effort, compare, record):
-    """Against a table of 256 entries by hand; kernels have no tables, and combine the bits of a byte."""
+    """Against a table of 256 entries by hand."""
     what, rules = f"mapping, the CRC-32 of {MANY:,} bytes", '  .n = crc(.data, "CRC-32")\n  .x = 0\n  ignore .numbers\n  ignore .names\n'
     decode = rj.Decoder("m.mapping", schema={**REDUCED_FILES, "m.mapping": REDUCED_HEAD + rules}, encoding="ros1")
     data, table, compiled = np.random.default_rng(1).integers(0, 256, MANY, np.uint8), table_of(0xEDB88320), numba.njit(checksum)
@@ -289,4 +289,4 @@ def test_checksum(effort, compare, record):
             Contender(BY_HAND, "limit", "a number", effort.call(compiled, data, table)),
         ],
     )
-    record(what, outcome.ratio(OURS, BY_HAND), None, "x a table by hand", f"{outcome.took(OURS).median / 1000:.0f} µs")
+    record(what, outcome.ratio(OURS, BY_HAND), AT_MOST, "x a table by hand", f"{outcome.took(OURS).median / 1000:.0f} µs")

@@ -291,12 +291,7 @@ def is_for_types(node):
     return isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
 
 
-TOGETHER = [
-    {"model.expr", "model.types"},
-    {"runtime.batch", "runtime.holder", "runtime.looks.described", "runtime.looks.page"}
-    | {f"runtime.holder.{name}" for name in ("classes", "family", "serialising")}
-    | {f"runtime.holder.objects.{name}" for name in ("foreign", "giving", "reading", "taking")},
-]
+TOGETHER = [{"model.expr", "model.types"}]
 """Modules that name each other's types: a type may have a length that is an expression, and a parameter in an expression has a type.
 There shall be no more of them."""
 

@@ -36,6 +36,28 @@ def numba_specialised() -> Any:
     return decode
 
 
+def numba_many(count: int) -> Any:
+    """Many messages of so many numbers in a loop: into an array of angles, a row each. How many were done."""
+    import numba
+
+    @numba.njit
+    def decode(buffer: Any, offsets: Any, angles: Any) -> int:
+        for row in range(offsets.size - 1):
+            begin, end = offsets[row], offsets[row + 1]
+            if begin < 0 or begin + HEADER > end or end > buffer.size:
+                return row
+            message = buffer[begin:end]
+            head = message[:HEADER].view(np.int32)
+            if head[0] != 266 or head[1] != count or message.size != HEADER + 8 * count:
+                return row
+            degrees = message[HEADER:].view(np.float64)
+            for index in range(count):
+                angles[row, index] = np.float32(degrees[index]) * DEGREE
+        return offsets.size - 1
+
+    return decode
+
+
 def numba_tagged() -> Any:
     """The same with a tag before each number."""
     import numba

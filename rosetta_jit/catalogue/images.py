@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 FORMS = {
     "compress": '`compress(pixels, "png", width, height, channels)`, and behind it a level or quality',
+    "yuv_of": '`yuv_of(pixels, "nv12", width, height)`, and behind it how many bytes apart rows of RGB begin',
     "rgb_of": '`rgb_of(pixels, "bayer_rggb8", width, height)`, and behind it how many bytes apart rows begin',
 }
 
@@ -36,9 +37,11 @@ def unknown_format(span: Span | None, found: str | None, known: Sequence[str]) -
     return error("image-format", message, span, help_=f"choose one of {', '.join(known)}")
 
 
-def unknown_encoding(span: Span | None, found: str | None, known: Sequence[str]) -> Diagnostic:
-    """An encoding of pixels that is not made RGB."""
+def unknown_encoding(span: Span | None, found: str | None, known: Sequence[str], colours: str) -> Diagnostic:
+    """An encoding of pixels that is not made RGB, or an encoding that is no YUV."""
     message = "an encoding is written in quotes" if found is None else f"pixels in `{shorten(found)}` cannot be made RGB"
+    if found is not None and colours == "YUV":
+        message = f"RGB cannot be made `{shorten(found)}`"
     return error("image-encoding", message, span, help_=f"choose one of {', '.join(known)}")
 
 

@@ -51,15 +51,17 @@ def apart(span: Span | None, names: Sequence[str]) -> Diagnostic:
     return error("wires-apart", title, span, "here", help_=help_)
 
 
-def set_by_several(span: Span | None, path: str, names: Sequence[str], first: Span | None) -> Diagnostic:
+def set_by_several(span: Span | None, path: str, names: Sequence[str], first: Span | None, *, is_array: bool) -> Diagnostic:
     """A field that messages of several wires set, though they cannot leave each other's part alone."""
     where = "" if first is None else f"{first.source.name}:{first.source.line_column(first.start)[0]}"
     notes = (f"`{names[0]}` sets it at {where}",) if where else ()
-    help_ = (
+    help_ = f"let one wire set it, or one rule that reads all of them: `{path} = a if condition else b`"
+    arrays = (
         "let one wire set it. Only an array of numbers can have elements of several wires: one of fixed length, "
         f"or with a length that no wire tells, as `len({path}) = 14`"
     )
-    return error("wires-overlap", f"`{path}` is set by messages of {_listed(names)}", span, "and here", notes=notes, help_=help_)
+    message = f"`{path}` is set by messages of {_listed(names)}"
+    return error("wires-overlap", message, span, "and here", notes=notes, help_=arrays if is_array else help_)
 
 
 def unsaid(span: Span | None, names: Sequence[str]) -> Diagnostic:

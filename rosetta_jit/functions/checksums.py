@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import reduce
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import checksums as words
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Select
+from rosetta_jit.kernel.ir import Binary, Const, Convert, Lookup
 from rosetta_jit.language import typed
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
 from rosetta_jit.language.functions.texts import argument
@@ -119,23 +118,16 @@ def _routine(writer: Writer, view: View, name: str, code: Code) -> Expr:
 
 
 def _take(writer: Writer, register: Local, byte: Expr, code: Code) -> None:
-    """One more byte. What it becomes is, bit by bit, what each of its bits would become alone."""
+    """One more byte."""
     if code.reflected:
         shifted: Expr = Binary("shr", register, _number(8))
         mixed = Binary("xor", register, byte)
     else:
         shifted = Binary("and", Binary("shl", register, _number(8)), _number((1 << code.bits) - 1))
         mixed = Binary("xor", Binary("shr", register, _number(code.bits - 8)), byte)
-    taken = writer.let("taken", Binary("and", mixed, _number(255)))
-    rest = writer.let("rest", shifted)
-    terms = [_if_bit(taken, bit, code.of_byte(1 << bit)) for bit in range(8)]
-    while len(terms) > 1:
-        terms = [reduce(lambda left, right: Binary("xor", left, right), terms[at : at + 2]) for at in range(0, len(terms), 2)]
-    writer.assign(register, Binary("xor", rest, terms[0]))
-
-
-def _if_bit(number: Expr, bit: int, value: int) -> Expr:
-    return Select(Compare("ne", Binary("and", number, _number(1 << bit)), _number(0)), _number(value), _number(0))
+    taken = writer.let("taken", Convert("i64", Convert("u8", mixed)))
+    table = tuple(code.of_byte(number) for number in range(256))
+    writer.assign(register, Binary("xor", shifted, Lookup("u32", table, taken)))
 
 
 def _number(value: int) -> Const:

@@ -109,10 +109,11 @@ def _lower_sums(call: typed.Call, values: Evaluation) -> Filling:
 
 def _fill_sums(array: Given, values: Evaluation, put: Put) -> None:
     writer = values.writer
-    total = writer.var("total", Const(put.scalar, 0))
+    total = writer.var("total", index(0))  # and not the element that is put, which would be narrowed and widened in each round
     with array.each() as number:
-        sum_ = binary(writer, "+", _integer(total), _integer(array.at(number)), values.where, values.line)
-        writer.assign(total, put(number, sum_))
+        sum_ = writer.let("sum", binary(writer, "+", total, _integer(array.at(number)), values.where, values.line))
+        put(number, sum_)
+        writer.assign(total, sum_)
 
 
 def _integer(value: Expr) -> Expr:

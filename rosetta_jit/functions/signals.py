@@ -189,5 +189,5 @@ FRAME = Row(
 
 FUNCTIONS = (
     Function("signal", _type_signal, _lower_signal, SEVERAL, NOT_FOLLOWED, (SIGNAL,)),
-    Function("signal_bytes", _type_frame, _lower_frame, SEVERAL, NOT_FOLLOWED, (FRAME,), operation="string manipulation", kept=False),
+    Function("signal_bytes", _type_frame, _lower_frame, SEVERAL, NOT_FOLLOWED, (FRAME,), kept=False),
 )

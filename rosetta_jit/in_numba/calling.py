@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numba.extending import Implementation
 
     from rosetta_jit.kernel.ir import Kernel
-    from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.classes import HolderFamily
 
 REGISTERED = (assigning, boxing, maps, sequences)
 """Modules that tell numba of holders when they are imported."""
@@ -36,7 +36,7 @@ REGISTERED = (assigning, boxing, maps, sequences)
 OUTSIDE = "begin and end of the message fall, or leave the buffer"
 
 
-def callable_kernel(kernel: Kernel, family: Family, program: Program) -> Dispatcher:
+def callable_kernel(kernel: Kernel, family: HolderFamily, program: Program) -> Dispatcher:
     """A kernel as ``kernel(message, holder, begin=0, end=None)`` for compiled code.
 
     Raises
@@ -109,7 +109,7 @@ def _set_valid(reader: Reader, value: int) -> None:
     reader.builder.store(constant(value), state_word(reader.builder, reader.state, VALID), align=8)
 
 
-def _begin_filling(family: Family, program: Program) -> Callable[..., Any]:
+def _begin_filling(family: HolderFamily, program: Program) -> Callable[..., Any]:
     """What comes before a message: the state of the holder, which nobody may read until it is filled."""
 
     @intrinsic

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from llvmlite import ir
     from numba.core.datamodel import DataModelManager
 
-    from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.record import Node
 
 COMMON = (
@@ -67,7 +67,7 @@ NUMBERS: dict[str, types.Type] = dict(
 class MessageType(types.Type):
     """A message of a holder: itself, or one that is nested in it. Each place in a holder class has a type of its own."""
 
-    def __init__(self, family: Family, record: Record) -> None:
+    def __init__(self, family: HolderFamily, record: Record) -> None:
         self.family, self.record = family, record
         super().__init__(name=f"message {record.struct} of {family.struct.name}, lane {record.lane}, byte {record.start} ({id(record):x})")
 
@@ -84,7 +84,7 @@ class MessageType(types.Type):
 class SequenceType(types.IterableType):
     """An array of messages, texts or arrays in a holder."""
 
-    def __init__(self, family: Family, node: Items) -> None:
+    def __init__(self, family: HolderFamily, node: Items) -> None:
         self.family, self.node = family, node
         super().__init__(name=f"elements of lane {node.lane} of {family.struct.name} ({id(node):x})")
 
@@ -113,7 +113,7 @@ class IteratorType(types.SimpleIteratorType):
 class MapType(types.IterableType):
     """A map in a holder; ``shown`` is what iteration gives of each pair."""
 
-    def __init__(self, family: Family, node: Pairs, shown: Shown = "keys") -> None:
+    def __init__(self, family: HolderFamily, node: Pairs, shown: Shown = "keys") -> None:
         self.family, self.node = family, node
         self.shown: Shown = shown
         super().__init__(name=f"{shown} of the map in lane {node.lane} of {family.struct.name} ({id(node):x})")
@@ -146,7 +146,7 @@ class MapIteratorType(types.SimpleIteratorType):
         super().__init__(f"iterator over {table.name}", table.part(table.shown))
 
 
-def type_of(family: Family, node: Node) -> types.Type:
+def type_of(family: HolderFamily, node: Node) -> types.Type:
     """The type that a field is read as."""
     match node:
         case Scalar(cell):
@@ -165,7 +165,7 @@ def type_of(family: Family, node: Node) -> types.Type:
             return MapType(family, node)
 
 
-def _element(family: Family, lane: int) -> types.Type:
+def _element(family: HolderFamily, lane: int) -> types.Type:
     """The type of the numbers of a lane."""
     dtype = family.plan.dtypes[lane]
     return next(type_ for scalar, type_ in NUMBERS.items() if dtype_of(scalar) == dtype)

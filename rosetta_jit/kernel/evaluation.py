@@ -20,6 +20,7 @@ from rosetta_jit.kernel.ir import (
     IsText,
     Load,
     Local,
+    Lookup,
     Nearest,
     Place,
     Register,
@@ -97,6 +98,10 @@ def value_of(machine: Machine, expr: Expr) -> Value:
             return _is_text(bytes(bytes_at(machine, address, integer(machine, size))))
         case Nearest() | Digits() | Scale():
             return _decimal(machine, expr)
+        case Lookup(_, values, index):
+            number = integer(machine, index)
+            demand(0 <= number < len(values), f"no value {number} among {len(values)}")
+            return values[number]
         case _:
             assert_never(expr)
 

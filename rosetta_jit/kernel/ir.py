@@ -12,7 +12,7 @@ r"""The kernel: one small typed function from a message to a holder, or back. Th
     Routine = name, parameters, results, Stmt*, requires, ensures, Site*
     Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane) | Told(what)
            | Register(number) | Unary | Binary | Compare | Fits | Convert | Bits | Select
-           | IsText(address, size) | Nearest(address, size, exponent) | Digits(value) | Scale(value)
+           | IsText(address, size) | Nearest(address, size, exponent) | Digits(value) | Scale(value) | Lookup(values, index)
     Place  = lane, row, offset                            a typed field of a row of a lane
     Address = Wire(at) | Place
 
@@ -271,9 +271,18 @@ class Scale:
     value: Expr
 
 
+@dataclass(frozen=True, slots=True)
+class Lookup:
+    """The one of some integers that has the number ``index`` (i64): 0 <= index < how many they are."""
+
+    type: Scalar
+    values: tuple[int, ...]
+    index: Expr
+
+
 Decimal = Nearest | Digits | Scale
 Known = Used | Capacity | Told | Register
-Expr = Const | Local | Load | Get | Known | Unary | Binary | Compare | Fits | Convert | Bits | Select | IsText | Decimal
+Expr = Const | Local | Load | Get | Known | Unary | Binary | Compare | Fits | Convert | Bits | Select | IsText | Decimal | Lookup
 
 # --- statements --------------------------------------------------------------------------------------------------------
 

@@ -30,6 +30,7 @@ from rosetta_jit.kernel.ir import (
     Let,
     Load,
     Local,
+    Lookup,
     Nearest,
     Place,
     Register,
@@ -139,6 +140,8 @@ def expression_text(expr: Expr) -> str:
             return f"is_text({_address(address)}, {expression_text(size)})"
         case Nearest() | Digits() | Scale():
             return _decimal(expr)
+        case Lookup(type_, values, index):
+            return f"{type_}({', '.join(map(str, values))})[{expression_text(index)}]"
         case _:
             assert_never(expr)
 

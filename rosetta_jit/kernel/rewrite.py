@@ -35,6 +35,7 @@ from rosetta_jit.kernel.ir import (
     Let,
     Load,
     Local,
+    Lookup,
     Nearest,
     Place,
     Register,
@@ -104,8 +105,8 @@ def _rebuilt(expr: Expr, parts: list[Expr]) -> Expr:
             return Nearest(_address(address, change), change(size), change(exponent))
         case Digits(value, places):
             return Digits(change(value), places)
-        case Scale(value):
-            return Scale(change(value))
+        case Scale() | Lookup():
+            return Scale(change(expr.value)) if isinstance(expr, Scale) else Lookup(expr.type, expr.values, change(expr.index))
         case _:
             assert_never(expr)
 

@@ -29,6 +29,7 @@ from rosetta_jit.kernel.ir import (
     Let,
     Load,
     Local,
+    Lookup,
     Nearest,
     Nest,
     Place,
@@ -207,6 +208,7 @@ _OPERANDS: dict[type[Expr], Callable[[Any], tuple[Expr, ...]]] = {
     Select: attrgetter("condition", "then", "otherwise"),
     IsText: lambda expr: (_start(expr.address), expr.size),
     Nearest: lambda expr: (_start(expr.address), expr.size, expr.exponent),
+    Lookup: lambda expr: (expr.index,),
 }
 
 

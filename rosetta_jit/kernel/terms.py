@@ -16,6 +16,7 @@ from rosetta_jit.kernel.ir import (
     IsText,
     Load,
     Local,
+    Lookup,
     Nearest,
     Register,
     Scalar,
@@ -79,7 +80,7 @@ def mul(left: Expr, right: Expr | int) -> Expr:
 def type_of(expr: Expr) -> Scalar:
     """The type of an expression."""
     match expr:
-        case Const() | Local() | Load() | Get() | Convert() | Bits():
+        case Const() | Local() | Load() | Get() | Convert() | Bits() | Lookup():
             return expr.type
         case Used() | Capacity() | Told() | Register():
             return "i64"

@@ -192,6 +192,10 @@ def other_way(source: Type, target: Type) -> str:
     match source, target:
         case ((Map() | Array()), (Map() | Array())) if Map in (type(source), type(target)):
             return "set the `key` and the `value` of each entry: `.a[].key = .b[].key` and `.a[].value = .b[].value`"
+        case Array(one, length), Array(other, wanted) if (
+            isinstance(one, Int | Float) and isinstance(other, Int | Float) and None in (length, wanted)
+        ):
+            return f"convert each element: `.a[] = {describe(other)}(.b[])`, and in `rules:` `.a[] <-> {describe(other)}(.b[])`"
         case Array(), Array():
             return "assign its elements in a loop, and convert each"
         case Struct(), Struct():

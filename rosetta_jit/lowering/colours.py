@@ -1,4 +1,4 @@
-"""Pixels as cameras send them, made RGB: mosaics of Bayer filters, and YUV with a pair of chroma values for several pixels.
+"""Pixels as cameras send them, made RGB: mosaics of Bayer filters, and YUV with a pair of chroma values for several pixels. RGB made YUV.
 
 Encodings have ROS's names (sensor_msgs/image_encodings.h), and all have 8 bits. Where c(x) is x, at least 0 and at most 255:
 
@@ -6,6 +6,9 @@ Encodings have ROS's names (sensor_msgs/image_encodings.h), and all have 8 bits.
              R = c((y + 1673527 * v) >> 20)   G = c((y - 852492 * v - 409993 * u) >> 20)   B = c((y + 2116026 * u) >> 20)
     mosaics  a colour that a pixel lacks is the mean of the 2 or 4 nearest that have it: (a + b + 1) >> 1, (a + b + c + d + 2) >> 2.
              Beyond the border the image goes on as its mirror: row -1 is row 1.
+    to YUV   Y = (269484 * R + 528482 * G + 102760 * B + 33 * 2**19) >> 20, U = (460324 * B - 155188 * R - 305135 * G + 257 * 2**19) >> 20
+             V = (460324 * R - 385875 * G - 74448 * B + 257 * 2**19) >> 20: of the mean of a pair of pixels where each pair has its chroma,
+             of the left upper pixel where four have
 
 That is what OpenCV computes, but for mosaics' outermost pixels. A row's place is checked before its pixels are read, so that all
 other arithmetic is linear.
@@ -26,6 +29,9 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Arithmetic, Expr
     from rosetta_jit.lowering.writer import Where, Writer
 
+    Colour = tuple[Expr, ...]
+    """R, G and B."""
+
 PACKED = {"yuv422": (1, 0, 2), "yuv422_yuy2": (0, 1, 3)}
 """Of each pair of pixels in four bytes: where the first luma lies, the other two bytes behind it; U, V."""
 HALVED = {"nv12": (0, 1), "nv21": (1, 0)}
@@ -35,6 +41,9 @@ MOSAICS = {f"bayer_{pattern}8": pattern for pattern in ("rggb", "bggr", "gbrg", 
 ENCODINGS = (*MOSAICS, *PACKED, *HALVED)
 
 CHANNELS = 3
+
+LUMA, BLUE, RED = (269484, 528482, 102760), (-155188, -305135, 460324), (460324, -385875, -74448)
+"""The weights of R, G and B in Y, U and V, times 2**20."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,18 +80,22 @@ class _Conversion:
             lines = writer.let("lines", Binary("div", picture.height, index(2)))
             self.must(Compare("eq", picture.height, mul(lines, 2)), "an odd number of rows")
         row = writer.let("row", mul(picture.width, CHANNELS))
-        total = writer.checked("mul", picture.height, row, self.where, line=self.line)
-        self.must(Compare("ge", total, index(0)), "no rows")
-        lane = lane_of(writer)
-        writer.emit(Reserve(lane, total))
-        first = writer.let("computed", Used(lane))
-        writer.emit(Advance(lane, total))
-        target = sound(writer, View(lane, first, writer.let("after", add(first, total))))
+        target = self.room(picture.height, row)
         number = Local("i64", writer.fresh("line"))
         with writer.nested() as body:
             self.rows(number, pairs, row, target)
         writer.emit(For(number.name, lines, block(body)))
         return target
+
+    def room(self, rows: Expr, row: Expr) -> View:
+        """New bytes for so many rows."""
+        writer, lane = self.writer, lane_of(self.writer)
+        total = writer.checked("mul", rows, row, self.where, line=self.line)
+        self.must(Compare("ge", total, index(0)), "no rows")
+        writer.emit(Reserve(lane, total))
+        first = writer.let("computed", Used(lane))
+        writer.emit(Advance(lane, total))
+        return sound(writer, View(lane, first, writer.let("after", add(first, total))))
 
     # --- what must be ----------------------------------------------------------------------------------------------------
 
@@ -178,6 +191,61 @@ class _Conversion:
         y = self.writer.let("luma", _i32("mul", _i32("max", _i32("sub", luma, 16), 0), 1220542))
         return tuple(_i32("max", _i32("min", _i32("shr", _i32("add", y, share), 20), 255), 0) for share in shares)
 
+    # --- YUV of RGB --------------------------------------------------------------------------------------------------------
+
+    def check_rgb(self, size: Expr) -> None:
+        """That the pixels of RGB are as many as the width, the height and the step say."""
+        picture = self.picture
+        for side, name in ((picture.width, "width"), (picture.height, "height")):
+            self.must(Compare("ge", side, index(2)), f"a {name} below 2")
+            self.must(Compare("le", side, index(MAX_COLOUR_SIDE)), f"a {name} above {MAX_COLOUR_SIDE}")
+        self.must(Compare("ge", picture.step, mul(picture.width, CHANNELS)), "rows that overlap")
+        self.must(Compare("le", picture.step, size), "fewer bytes than a row has")
+        wanted = self.writer.checked("mul", picture.height, picture.step, self.where, line=self.line)
+        self.must(Compare("eq", size, wanted), "the pixels are not as many as the width, the height and the step say")
+
+    def pair(self, begin: Expr, pair: Expr) -> tuple[Colour, Colour]:
+        """Two pixels of RGB."""
+        at = Binary("add", begin, mul(pair, 6))
+        return self.colour(at), self.colour(add(at, 3))
+
+    def colour(self, at: Expr) -> Colour:
+        """A pixel of RGB."""
+        return tuple(self.byte(add(at, each)) for each in range(CHANNELS))
+
+    def pack(self, number: Expr, pairs: Expr, row: Expr, target: View) -> None:
+        """One row, of which each pair of pixels has its chroma: that of their mean."""
+        writer, (luma, u, v) = self.writer, PACKED[self.encoding]
+        begin, out = self.source(number, mul(self.picture.width, CHANNELS)), self.target(target, number, row)
+        pair = Local("i64", writer.fresh("pair"))
+        with writer.nested() as body:
+            pixels, to = self.pair(begin, pair), Binary("add", out, mul(pair, 4))
+            both = tuple(writer.let("both", _i32("add", one, other)) for one, other in zip(*pixels, strict=True))
+            made = {luma: _luma(pixels[0]), luma + 2: _luma(pixels[1])}
+            made |= {place: _i32("shr", _weighted(both, weights, 514), 21) for place, weights in ((u, BLUE), (v, RED))}
+            self.put(target.lane, to, tuple(made[each] for each in range(4)))
+        writer.emit(For(pair.name, pairs, block(body)))
+
+    def halve(self, number: Expr, pairs: Expr, target: View) -> None:
+        """Two rows, of which each four pixels have their chroma: that of the left upper one."""
+        writer, width, (u, _) = self.writer, self.picture.width, HALVED[self.encoding]
+        upper = mul(number, 2)
+        rows = upper, add(upper, 1)
+        begins = [self.source(each, mul(width, CHANNELS)) for each in rows]
+        outs = [self.target(target, each, width) for each in rows]
+        chroma = self.target(target, Binary("add", self.picture.height, number), width)
+        for begin, out in zip(begins, outs, strict=True):
+            pixel = Local("i64", writer.fresh("pixel"))
+            with writer.nested() as body:
+                self.put(target.lane, Binary("add", out, pixel), (_luma(self.colour(Binary("add", begin, mul(pixel, CHANNELS)))),))
+            writer.emit(For(pixel.name, width, block(body)))
+        pair = Local("i64", writer.fresh("pair"))
+        with writer.nested() as body:
+            left = self.colour(Binary("add", begins[0], mul(pair, 6)))
+            made = tuple(_i32("shr", _weighted(left, weights, 257), 20) for weights in (BLUE, RED))
+            self.put(target.lane, Binary("add", chroma, mul(pair, 2)), made if u == 0 else made[::-1])
+        writer.emit(For(pair.name, pairs, block(body)))
+
     # --- mosaics ---------------------------------------------------------------------------------------------------------
 
     def mosaic(self, number: Expr, pairs: Expr, row: Expr, target: View) -> None:
@@ -223,6 +291,40 @@ class _Conversion:
         cross = _mean(at(0, 1), at(1, 0), at(1, 2), at(2, 1))
         corners = _mean(at(0, 0), at(0, 2), at(2, 0), at(2, 2))
         return tuple(middle if each == own else cross if each == "g" else corners for each in "rgb")
+
+
+def to_yuv(writer: Writer, encoding: str, picture: Picture, where: Where, line: str) -> View:
+    """RGB as YUV, in the hidden lane of what is computed; a picture of another size than it says is an error of kind `image`."""
+    conversion = _Conversion(writer, encoding, picture, where, line)
+    conversion.check_rgb(writer.let("size", picture.pixels.size))
+    pairs = writer.let("pairs", Binary("div", picture.width, index(2)))
+    conversion.must(Compare("eq", picture.width, mul(pairs, 2)), "an odd number of columns")
+    number = Local("i64", writer.fresh("line"))
+    if encoding in PACKED:
+        row, lines = writer.let("row", mul(picture.width, 2)), picture.height
+        target = conversion.room(picture.height, row)
+        with writer.nested() as body:
+            conversion.pack(number, pairs, row, target)
+    else:
+        lines = writer.let("lines", Binary("div", picture.height, index(2)))
+        conversion.must(Compare("eq", picture.height, mul(lines, 2)), "an odd number of rows")
+        target = conversion.room(writer.let("rows", add(picture.height, lines)), picture.width)
+        with writer.nested() as body:
+            conversion.halve(number, pairs, target)
+    writer.emit(For(number.name, lines, block(body)))
+    return target
+
+
+def _luma(pixel: Colour) -> Expr:
+    return _i32("shr", _weighted(pixel, LUMA, 33), 20)
+
+
+def _weighted(pixel: Colour, weights: tuple[int, int, int], halves: int) -> Expr:
+    """The sum of a pixel's colours, each times its weight, and of so many halves times 2**20."""
+    total: Expr = _number(halves << 19)
+    for value, weight in zip(pixel, weights, strict=True):
+        total = _i32("add" if weight > 0 else "sub", total, _i32("mul", value, abs(weight)))
+    return total
 
 
 def _mean(*values: Expr) -> Expr:

@@ -15,16 +15,13 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
 
-    from rosetta_jit.kernel.ir import Expr, Scalar
+    from rosetta_jit.kernel.ir import Expr
     from rosetta_jit.lowering.evaluation import Evaluation
     from rosetta_jit.model.types import Type
 
 
 class Put(Protocol):
-    """Sets the element of a number to a value, and gives that as the ``scalar`` that an element is; what does not fit it is refused."""
-
-    @property
-    def scalar(self) -> Scalar: ...
+    """Sets the element of a number to a value, and gives that as an element has it; what does not fit is refused."""
 
     def __call__(self, number: Expr, value: Expr) -> Expr: ...
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, cast, overload
 
 import numpy as np
 
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from rosetta_jit.errors import DecodeError
     from rosetta_jit.runtime.arrow.arrays import Form, Octets
     from rosetta_jit.runtime.arrow.times import Unit
-    from rosetta_jit.runtime.holder import Family, Holder, Manners
+    from rosetta_jit.runtime.holder import Holder, Manners
+    from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.record import Entry
 
 
@@ -47,7 +48,7 @@ class Batch:
 
     __slots__ = ("errors", "family_", "kept_", "lanes")
 
-    def __init__(self, family: Family, lanes: Lanes) -> None:
+    def __init__(self, family: HolderFamily, lanes: Lanes) -> None:
         self.family_ = family
         self.lanes = lanes
         self.errors: dict[int, DecodeError] = {}
@@ -317,6 +318,6 @@ def _revived(
 ) -> Batch:
     """Unpickle, or copy."""
     family = family_of(text, manners)
-    batch = Batch(family, revived(family.layout, family.tree.initial, family.array_type, found))
+    batch = Batch(cast("HolderFamily", family), revived(family.layout, family.tree.initial, family.array_type, found))
     batch.errors, batch.kept_ = errors, kept
     return batch

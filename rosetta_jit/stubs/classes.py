@@ -18,7 +18,7 @@ from rosetta_jit.stubs.names import is_attribute
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.record import Entry
     from rosetta_jit.stubs.fields import Shapes
 
@@ -27,7 +27,7 @@ OVERRIDE = "  # type: ignore  # pyright: ignore"
 """Behind fields that stand in the way of a method."""
 
 
-def class_text(family: Family, shapes: Shapes) -> Iterator[str]:
+def class_text(family: HolderFamily, shapes: Shapes) -> Iterator[str]:
     """The lines of the class of a struct."""
     base = family.manners.base
     holder = family.holder()
@@ -54,7 +54,7 @@ def _in_docstring(name: str) -> str:
     return escaped(name).replace('"', "'")
 
 
-def _field(entry: Entry, holder: Holder, family: Family, shapes: Shapes) -> Iterator[str]:
+def _field(entry: Entry, holder: Holder, family: HolderFamily, shapes: Shapes) -> Iterator[str]:
     """The lines of a field, or the reason why it has none."""
     words = field_words(entry.field, family.schema)
     if not is_attribute(entry.name) or entry.name in OWN_NAMES:
@@ -95,7 +95,7 @@ def _returned(function: Any) -> str:
     return word if isinstance(word, str) and word in {"bool", "int", "float", "str", "bytes", "None"} else "typing.Any"
 
 
-def _constructor(family: Family, fields: dict[str, list[str]]) -> Iterator[str]:
+def _constructor(family: HolderFamily, fields: dict[str, list[str]]) -> Iterator[str]:
     """The constructor, with its fields by name where the framework's takes them."""
     taken = inspect.signature(family.manners.base.__init__).parameters.values()
     kinds = {each.kind for each in taken}

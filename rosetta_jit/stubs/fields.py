@@ -12,7 +12,7 @@ from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.record import Entry, Node, ScalarType
 
 WORDS = ("bool_", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32", "float64")
@@ -60,7 +60,7 @@ class Annotation:
     takes: str | None = None
 
 
-def annotation(entry: Entry, holder: Any, family: Family, shapes: Shapes) -> Annotation:
+def annotation(entry: Entry, holder: Any, family: HolderFamily, shapes: Shapes) -> Annotation:
     """The annotation of a field; ``holder`` is an empty one, which shows its arrays and maps."""
     whole = "typing.Any" if family.assigns_whole else ""
     match entry.node:

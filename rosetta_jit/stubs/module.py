@@ -13,7 +13,7 @@ from rosetta_jit.stubs.names import class_names
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.record import Node
 
 HEAD = """\
@@ -99,7 +99,7 @@ class {name}({base}):
 """
 
 
-def stub(family: Family, what: str, options: Mapping[str, object], *, is_mapping: bool, wires: Sequence[str] | None = None) -> str:
+def stub(family: HolderFamily, what: str, options: Mapping[str, object], *, is_mapping: bool, wires: Sequence[str] | None = None) -> str:
     """The text of a stub of a holder class; ``what`` is the mapping or the type that was asked for, with these options.
 
     ``wires`` are those of a mapping of several whose programs are attributes.
@@ -130,7 +130,7 @@ def _head(what: str, options: Mapping[str, object], made: tuple[str, str], *, is
     return head + "".join(f"import {module}\n" for module in sorted(modules))
 
 
-def _modules(families: Iterable[Family], shapes: Shapes) -> set[str]:
+def _modules(families: Iterable[HolderFamily], shapes: Shapes) -> set[str]:
     """The modules of the classes that the text names."""
     bases = [*(each.manners.base for each in families), *(key[0] for key in (*shapes.sequences, *shapes.mappings))]
     return {each.__module__ for each in (*bases, *(each.array_type for each in families)) if each.__module__ != "numpy"}

@@ -17,7 +17,7 @@ SCHEMAS = {
     "lab.proto": """syntax = "proto3"; package lab;
 message Seen {
   string frame = 1; double lead = 2; repeated double ranges = 3; optional int64 count = 4; double least = 5; bool ready = 6;
-  double tilt = 7; repeated double joined = 8; int64 steps = 9;
+  double tilt = 7; repeated double joined = 8; int64 steps = 9; string kind = 10; double pick = 11;
 }""",
 }
 MAPPING = """import "lab/Scan.msg"
@@ -44,6 +44,12 @@ unpack-rules:
   .joined[0] = .pose.sigma[1]
   .joined[1] = .pose.sigma[0] * .tilt.step
   .steps = steps
+  .kind = .scan.frame + "!" if .pose.x > 0.0 else "none"
+  when .scan.good
+    .pick = .pose.x
+  else
+    .pick = .tilt.angle
+  end
   state steps = steps + .pose.seq + .tilt.step
   reject "{.scan.frame}: too far from {.pose.x}" when .scan.level > .pose.x + 100
 """
@@ -90,6 +96,7 @@ class Model:
         self.last, found = last, {}
         if wire == "scan":
             found = {"frame": scan["frame"], "ranges": [each + pose["x"] for each in scan["ranges"]] if pose else [], "count": None}
+            found["kind"] = (scan["frame"] + "!" if pose["x"] > 0 else "none") if pose else ""
             if pose and scan["good"]:
                 found["count"] = pose["seq"] + len(scan["ranges"])
         if wire == "tilt":
@@ -105,6 +112,7 @@ class Model:
             found["least"] = min(scan["ranges"]) if known else 0.0
         if wire in ("scan", "tilt"):
             found["ready"] = bool(scan and tilt and scan["frame"] == "map" and tilt["step"] > 0)
+        found["pick"] = (pose["x"] if scan["good"] else tilt["angle"]) if scan and pose and tilt else 0.0
         self.fields = {**self.fields, **found, "joined": list(self.joined), "steps": self.steps}
         if wire in ("pose", "tilt") and pose and tilt:
             self.steps += pose["seq"] + tilt["step"]

@@ -7,7 +7,22 @@ import struct
 import numpy as np
 import pytest
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expect, Fits, Load, Place, Require, Return, Select, SetField, Unary
+from rosetta_jit.kernel.ir import (
+    Binary,
+    Compare,
+    Const,
+    Convert,
+    Expect,
+    Fits,
+    Load,
+    Lookup,
+    Place,
+    Require,
+    Return,
+    Select,
+    SetField,
+    Unary,
+)
 from rosetta_jit.kernel.terms import BEGIN as AT
 from rosetta_jit.kernel.terms import ROW, add, index
 from tests.backends import kernels
@@ -164,6 +179,24 @@ def test_integer_arithmetic(type_):
     least = min(NUMBERS[type_])
     pairs = [(a, b) for a in NUMBERS[type_] for b in NUMBERS[type_] if b and not (a == least < 0 and b == -1)]
     agree(expressions, type_, pairs)
+
+
+TABLES = {"u8": (0, 1, 128, 255), "i16": (-(2**15), -1, 2**15 - 1), "u64": (0, 2**63, 2**64 - 1), "i64": (-(2**63), -1, 2**63 - 1)}
+TABLES |= {"i8": (-128, 127), "u16": tuple(range(0, 65536, 257)), "i32": (-(2**31), 5), "u32": (2**32 - 1,)}
+
+
+@pytest.mark.parametrize("type_", TABLES)
+def test_tables(type_):
+    """Whatever the byte, its remainder is a place of the table."""
+    values = TABLES[type_]
+    number = (
+        Convert("i64", Binary("rem", operands("u8")[0], Const("u8", len(values))))
+        if len(values) < 256
+        else Convert("i64", operands("u8")[0])
+    )
+    agree(
+        [Convert("i64" if type_ != "u64" else "u64", Lookup(type_, values, number))], "u8", [(each, 0) for each in (0, 1, 2, 3, 128, 255)]
+    )
 
 
 def test_fits():

@@ -19,7 +19,7 @@ FILES = {
 ("cells" (:list :int)) ("counts" (:list :int)) ("mask" :blob))""",
     "m.proto": """syntax = "proto2"; package lab;
 message M { repeated double a = 1; repeated int32 n = 2; repeated string names = 3; repeated int64 ticks = 4; repeated int32 cells = 5;
-  repeated bool flags = 6; }""",
+  repeated bool flags = 6; required uint32 check = 7; }""",
     "m.mapping": """import "m.bottle-schema"
 import "m.proto"
 data-holder: lab.M
@@ -32,7 +32,9 @@ unpack-rules:
   .a = .a where isfinite(.a[]) and .a[] < 2.0
   .n = .n where index() % 2 == 0
   .names = .names where .names[] != "off"
+  .check = crc(.mask, "CRC-16/MODBUS")
 pack-rules:
+  ignore .check
   .a = .a where not isnan(.a[])
   .n = .n where .n[] > 0
   .names = .names

@@ -54,6 +54,11 @@ def test_integer_arithmetic(type_):
     test_agreement.test_integer_arithmetic(type_)
 
 
+@pytest.mark.parametrize("type_", ["u8", "i16", "u64", "i64"])
+def test_tables(type_):
+    test_agreement.test_tables(type_)
+
+
 @pytest.mark.parametrize("type_", ["f64", "f32", "i64", "u64", "u8"])
 def test_comparisons_and_selection(type_):
     test_agreement.test_comparisons_and_selection(type_)

@@ -87,3 +87,47 @@ def test_pixels_in_another_order(order, backend):
         assert (image.height, image.width) == (height, width)
         assert bytes(image.data) == ordered(pixels, order).tobytes()
         assert decode(encode(image)) == image
+
+
+def yuv(pixels: np.ndarray, encoding: str) -> bytes:
+    """RGB as YUV, by the formulas of the reference."""
+    red, green, blue = (pixels[..., number].astype(np.int64) for number in range(3))
+
+    def weighted(colours: tuple[np.ndarray, ...], weights: tuple[int, int, int], halves: int, shift: int) -> np.ndarray:
+        total = sum(weight * colour for weight, colour in zip(weights, colours, strict=True)) + (halves << 19)
+        return (total >> shift).astype(np.uint8)
+
+    luma = weighted((red, green, blue), (269484, 528482, 102760), 33, 20)
+    weights = (-155188, -305135, 460324), (460324, -385875, -74448)
+    if encoding.startswith("nv"):
+        corner = tuple(colour[::2, ::2] for colour in (red, green, blue))
+        chroma = [weighted(corner, each, 257, 20) for each in weights]
+        return luma.tobytes() + np.stack(chroma if encoding == "nv12" else chroma[::-1], -1).tobytes()
+    pair = tuple(colour[:, ::2] + colour[:, 1::2] for colour in (red, green, blue))
+    u, v = (weighted(pair, each, 514, 21) for each in weights)
+    parts = [luma[:, ::2], u, luma[:, 1::2], v] if encoding.endswith("yuy2") else [u, luma[:, ::2], v, luma[:, 1::2]]
+    return np.stack(parts, -1).tobytes()
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_rgb_as_yuv(backend):
+    encodings = ("nv12", "nv21", "yuv422", "yuv422_yuy2")
+    orders = dict.fromkeys(encodings, ".data") | {"nv21": "permuted(permuted(.data, [2, 1, 0]), [2, 1, 0])"}
+    rules = "".join(f'  .{each} = yuv_of({orders[each]}, "{each}", .width, .height)\n' for each in encodings)
+    files = {
+        **FILES,
+        "cam/msg/All.msg": "".join(f"uint8[] {each}\n" for each in encodings),
+        "m.mapping": 'import "cam/msg/Image.msg"\nimport "cam/msg/All.msg"\ndata-holder: cam/msg/All\nwire-schema: cam/msg/Image\n'
+        f"unpack-rules:\n{rules}  ignore .step\n",
+    }
+    decode = rj.Decoder("m.mapping", schema=files, backend=backend)
+    write = rj.Encoder.of("cam/msg/Image", schema=files, imports=["cam/msg/Image.msg"], backend="interpreter")
+    for height, width in ((2, 2), (4, 6)):
+        pixels = np.random.default_rng(2).integers(0, 256, (height, width, 3), np.uint8)
+        given = {"height": height, "width": width, "data": pixels.reshape(-1)}
+        found = decode(write(write.holder_type.from_dict(given)))
+        assert {each: bytes(getattr(found, each)) for each in encodings} == {each: yuv(pixels, each) for each in encodings}
+    for wrong in ({"height": 3}, {"width": 5}, {"data": pixels.reshape(-1)[:-1]}):
+        with pytest.raises(rj.DecodeError) as error:
+            decode(write(write.holder_type.from_dict({**given, **wrong})))
+        assert error.value.kind in ("image", "range")

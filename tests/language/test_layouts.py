@@ -51,6 +51,7 @@ BOTH = [
     ("reversed(.a, 3)", N, N.reshape(4, 3)[:, ::-1]),
     ("reversed(.a, .k)", N, N.reshape(4, 3)[:, ::-1]),
     ("permuted(.a, [2, 0, 1])", N, N.reshape(4, 3)[:, [2, 0, 1]]),
+    ("permuted(permuted(.a, [2, 0, 1]), [1, 0, 2])", N, N.reshape(4, 3)[:, [2, 0, 1]][:, [1, 0, 2]]),
     ("permuted(reversed(.a), [1, 3, 0, 2])", N, N[::-1].reshape(3, 4)[:, [1, 3, 0, 2]]),
     ("transposed(.a, 3, 4)", N, N.reshape(3, 4).T),
     ("transposed(.a, .k, 4)", N, N.reshape(3, 4).T),

@@ -43,3 +43,19 @@ def test_numbers_are_not_separated_by_what_they_are_written_with():
 def test_a_part_that_no_relation_reads():
     rules = 'rules:\n  .x <-> number(part(.t, ",", 0))\n  .y <-> number(part(.t, ",", 2))\n'
     assert codes('("t" :string)', "required double x = 1; required double y = 2;", rules) == ["no-inverse"] * 2
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_text_of_numbers(backend):
+    rules = 'rules:\n  .t <-> text(.x) + ", " + text(.n) + ", " + text(.y)\n'
+    both = pair('("x" :double) ("n" :int) ("y" :double)', "required string t = 1;", rules, backend)
+    assert both.unpack(x=0.1, n=-2, y=1e100) == {"t": "0.1, -2, 1e+100"}
+    assert both.pack(t="0.10, -2, 1e100") == {"x": 0.1, "n": -2, "y": 1e100}
+    for text, kind in (("1, 2", "rejected"), ("1, 2, 3, 4", "rejected"), ("1, 2.5, 3", "text"), ("1, 3000000000, 3", "range")):
+        assert both.refused(t=text).kind == kind
+
+
+def test_a_text_of_numbers_that_nothing_separates():
+    wire = '("x" :double) ("y" :double) ("s" :string)'
+    for value in ('text(.x) + "." + text(.y)', 'text(.x) + "," + text(.y) + ";" + text(.x)', '.s + "," + text(.y)', "text(.x) + text(.y)"):
+        assert codes(wire, "required string t = 1;", f"rules:\n  .t <-> {value}\n  ignore rest\n") == ["several-fields"]

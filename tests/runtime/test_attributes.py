@@ -375,3 +375,25 @@ def test_an_element_is_asked_for_again():
     assert [each.position.x for each in array.poses] == [1.0, 5.0, 7.0]
     with pytest.raises(IndexError):
         array.poses[3]
+
+
+@needs_code
+def test_integers_of_every_size_stay_as_they_are():
+    """As of floats; CPython's own small ones are the same objects everywhere."""
+    holder = rj.Decoder.of("t.All", **PROTO).new()
+    edges = [0, 1, 5, 6, 255, 256, 257, (1 << 30) - 1, 1 << 30, (1 << 59) + 1, (1 << 60) - 1, 1 << 60, (1 << 60) + 1, (1 << 63) - 1]
+    values = [*edges, *(-each for each in edges), -(1 << 63)]
+    for kept in (0, 3, 8, 100):
+        held = []
+        for number, value in enumerate(values * 3):
+            holder.i64, holder.u64, holder.i32 = value, value % (1 << 64), number
+            read = [holder.i64, holder.u64, holder.i32, holder.i64 + 1, -holder.i64]
+            assert read == [value, value % (1 << 64), number, value + 1, -value]
+            assert str(holder.i64) == str(value)
+            assert hash(holder.i64) == hash(value)
+            assert {value: 1}[holder.i64] == 1
+            assert holder.i64.bit_length() == value.bit_length()
+            assert (holder.i64 is holder.i64) or not -5 <= value <= 256
+            held.append((holder.i64, value))
+            del held[: max(0, len(held) - kept)]
+            assert all(one == other for one, other in held)

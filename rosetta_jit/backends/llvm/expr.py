@@ -31,6 +31,7 @@ from rosetta_jit.kernel.ir import (
     Known,
     Load,
     Local,
+    Lookup,
     Nearest,
     Order,
     Place,
@@ -44,6 +45,7 @@ from rosetta_jit.kernel.ir import (
     Wire,
 )
 from rosetta_jit.kernel.terms import BEGIN, type_of
+from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
     from rosetta_jit.backends.llvm.frame import Frame
@@ -88,6 +90,8 @@ def expression(frame: Frame, expr: Expr) -> ir.Value:
             return frame.builder.call(declared(frame.module, "rosetta_is_text"), [pointer(frame, address), expression(frame, size)])
         case Nearest() | Digits() | Scale():
             return _decimal(frame, expr)
+        case Lookup(type_, values, index):
+            return _looked_up(frame, type_, values, expression(frame, index))
         case _:
             assert_never(expr)
 
@@ -122,6 +126,19 @@ def _decimal(frame: Frame, expr: Nearest | Digits | Scale) -> ir.Value:
             return llvm_decimals.shortest(frame.module, frame.builder, expression(frame, value), 1)
         case _:
             assert_never(expr)
+
+
+def _looked_up(frame: Frame, type_: Scalar, values: tuple[int, ...], index: ir.Value) -> ir.Value:
+    """A value of a constant of the module; equal tables are one."""
+    kind = LLVM_TYPES[type_]
+    name = f"rosetta_table_{type_}_{sha256(repr(values).encode()).hexdigest()[:16]}"
+    table = frame.module.globals.get(name)
+    if table is None:
+        array = ir.ArrayType(kind, len(values))
+        table = ir.GlobalVariable(frame.module, array, name)
+        table.linkage, table.global_constant, table.initializer = "internal", True, ir.Constant(array, list(values))
+    builder = frame.builder
+    return builder.load(builder.gep(table, [index], inbounds=True, source_etype=kind), typ=kind, align=WIDTH[type_])
 
 
 def pointer(frame: Frame, address: Address) -> ir.Value:

@@ -7,6 +7,7 @@ takes failures; so the hot path holds compares and branches alone.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
 from llvmlite import ir
@@ -232,11 +233,15 @@ def _host_call(frame: Frame, call: HostCall) -> None:
 
 
 def _site(builder: ir.IRBuilder, number: ir.Value, sites: tuple[int, ...]) -> ir.Value:
-    """The caller's site for a routine's failure."""
-    found: ir.Value = constant(sites[-1]) if sites else constant(0)
-    for own, site in enumerate(sites[:-1], 1):
-        found = builder.select(builder.icmp_signed("==", number, constant(own)), constant(site), found)
-    return found
+    """The caller's site for a routine's failure: mostly they follow one another as the routine's own do."""
+    if len(sites) < 2:
+        return constant(sites[0] if sites else 0)
+    runs = [(own, site - own) for own, site in enumerate(sites, 1)]
+    runs = [runs[0], *(run for before, run in pairwise(runs) if run[1] != before[1])]
+    further: ir.Value = constant(runs[0][1])
+    for own, distance in runs[1:]:
+        further = builder.select(builder.icmp_signed(">=", number, constant(own)), constant(distance), further)
+    return builder.add(number, further)
 
 
 def _assign(frame: Frame, name: str, value: Expr) -> None:

@@ -27,6 +27,7 @@ from rosetta_jit.kernel.ir import (
     Known,
     Load,
     Local,
+    Lookup,
     Nearest,
     Place,
     Register,
@@ -110,6 +111,8 @@ def expression(names: Names, expr: Expr) -> str:
             return f"is_text({part(names, address, expression(names, size))})"
         case Nearest() | Digits() | Scale():
             return _decimal(names, expr)
+        case Lookup(_, values, index):
+            return f"{values!r}[{expression(names, index)}]"
         case _:
             assert_never(expr)
 

@@ -7,7 +7,6 @@ shifts of negative numbers, goes through the other signedness or through a funct
 from __future__ import annotations
 
 import math
-from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
@@ -31,6 +30,7 @@ from rosetta_jit.kernel.ir import (
     Known,
     Load,
     Local,
+    Lookup,
     Nearest,
     Place,
     Register,
@@ -43,11 +43,9 @@ from rosetta_jit.kernel.ir import (
     Wire,
 )
 from rosetta_jit.kernel.terms import END, type_of
-from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.backends.base import Namespace
-    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.scope import Scope
 
 OPERATORS = {"add": "+", "sub": "-", "mul": "*", "div": "/", "rem": "%", "and": "&", "or": "|", "xor": "^", "shr": ">>"}
 LOGICAL = {"and": "&&", "or": "||", "xor": "!="}
@@ -55,72 +53,6 @@ COMPARISONS = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": "
 OF_FLOATS = {"abs": "fabs", "sqrt": "sqrt", "floor": "floor", "ceil": "ceil", "trunc": "trunc", "rint": "rint"}
 """Functions of `math.h`; those of single precision end in ``f``."""
 FMOD = {"rem": "fmod"}
-
-
-@dataclass(slots=True)
-class Scope:
-    """What the printers of a function share: names, how lanes are reached, and what they find that the function needs.
-
-    ``parameters`` are those that it must be given, ``touched`` the lanes whose rows it reads or writes, ``counted`` those whose rows in use
-    it counts, ``moved`` those that it makes room in, ``support`` the functions of `support.c` that it calls, ``hidden`` the hidden lanes
-    that its kernel uses, ``registers`` those that it reads.
-    """
-
-    locals: Namespace
-    lanes: Lanes
-    support: set[str]
-    hidden: set[int]
-    parameters: set[str] = field(default_factory=set[str])
-    touched: set[int] = field(default_factory=set[int])
-    counted: set[int] = field(default_factory=set[int])
-    moved: set[int] = field(default_factory=set[int])
-    registers: set[int] = field(default_factory=set[int])
-
-    def calls(self, function: str) -> str:
-        """A function of the support, which will be part of the file."""
-        self.support.add(function)
-        return function
-
-    def takes(self, parameter: str) -> str:
-        """A parameter, which the function will have."""
-        self.parameters.add(parameter)
-        return parameter
-
-    def rows(self, lane: int) -> str:
-        """The pointer to the rows of a lane."""
-        self.parameters.add("holder")
-        self.touched.add(lane)
-        self._note(lane)
-        return self.lanes.rows(lane)
-
-    def used(self, lane: int) -> str:
-        """The variable that counts a lane's rows in use."""
-        if lane:
-            self.parameters.add("holder")
-        self.counted.add(lane)
-        self._note(lane)
-        return self.lanes.used(lane)
-
-    def capacity(self, lane: int) -> str:
-        """How many rows a lane has room for."""
-        self.parameters.add("holder")
-        self._note(lane)
-        return self.lanes.capacity(lane)
-
-    def register(self, number: int) -> str:
-        """The constant with what a register holds when the function starts."""
-        self.parameters.add("holder")
-        self.registers.add(number)
-        return register_name(number)
-
-    def _note(self, lane: int) -> None:
-        if lane >= self.lanes.own:
-            self.hidden.add(lane - self.lanes.own)
-
-
-def register_name(number: int) -> str:
-    """What the constant is called that has what a register holds when a function starts."""
-    return f"register_{number}"
 
 
 def expression(scope: Scope, expr: Expr) -> str:
@@ -156,6 +88,8 @@ def expression(scope: Scope, expr: Expr) -> str:
             return f"{scope.calls('is_text')}({memory}, {start}, {expression(scope, size)})"
         case Nearest() | Digits() | Scale():
             return _decimal(scope, expr)
+        case Lookup(type_, values, index):
+            return f"{scope.table(type_, values)}[{bare(expression(scope, index))}]"
         case _:
             assert_never(expr)
 

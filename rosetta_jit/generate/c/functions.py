@@ -11,7 +11,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer, counted_lanes
-from rosetta_jit.generate.c.expressions import Scope, bare, expression, register_name
+from rosetta_jit.generate.c.expressions import bare, constant, expression
+from rosetta_jit.generate.c.scope import Scope, register_name
 from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.statements import Callable, Function, leaves, moved, print_block, reached, read_names
 from rosetta_jit.generate.c.support import function_names
@@ -133,10 +134,20 @@ def _head(writer: Writer, head: str, scope: Scope, direction: Direction) -> None
         writer.line()
     writer.line(head)
     writer.line("{")
+    _tables(writer, scope)
     for lane in sorted(scope.touched):
         constant = "const " if lane == 0 and direction != "decode" else ""
         fixed = "" if lane in scope.moved else " const"
         writer.line(f"    {constant}{scope.lanes.type(lane)} *restrict{fixed} {scope.lanes.rows(lane)} = {scope.lanes.member(lane)};")
+
+
+def _tables(writer: Writer, scope: Scope) -> None:
+    """The constants of a function that are tables."""
+    for (type_, values), name in scope.tables.items():
+        texts = [constant(scope, type_, value, wide=True) for value in values]
+        writer.line(f"    static const {C_TYPES[type_]} {name}[{len(values)}] = {{")
+        writer.lines += [f"        {', '.join(texts[at : at + 8])}," for at in range(0, len(texts), 8)]
+        writer.line("    };")
 
 
 def _declared(parameters: tuple[str, ...], direction: Direction, lanes: Lanes) -> list[str]:

@@ -53,8 +53,8 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Mapping, Sequence
 
-    from rosetta_jit.generate.c.expressions import Scope
     from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.scope import Scope
     from rosetta_jit.generate.origins import Origin
     from rosetta_jit.generate.unit import Role
     from rosetta_jit.kernel.ir import Effect, Site

@@ -33,6 +33,7 @@ from rosetta_jit.kernel.ir import (
     Known,
     Load,
     Local,
+    Lookup,
     Nearest,
     Place,
     Register,
@@ -120,8 +121,17 @@ def expression(scope: Scope, expr: Expr) -> str:
             return f"(text-p {memory} {start} {expression(scope, size)})"
         case Nearest() | Digits() | Scale():
             return _decimal(scope, expr)
+        case Lookup(type_, values, index):
+            return f"(aref {_table(type_, values)} {expression(scope, index)})"
         case _:
             assert_never(expr)
+
+
+def _table(type_: Scalar, values: tuple[int, ...]) -> str:
+    """An array that is made when the file is loaded."""
+    element = f"({'signed' if type_ in SIGNED else 'unsigned'}-byte {8 * WIDTH[type_]})"
+    made = f"(make-array {len(values)} :element-type '{element} :initial-contents '({' '.join(map(str, values))}))"
+    return f"(the (simple-array {element} ({len(values)})) (load-time-value {made} t))"
 
 
 def _known(scope: Scope, expr: Known) -> str:

@@ -34,6 +34,7 @@ from rosetta_jit.kernel.ir import (
     Known,
     Load,
     Local,
+    Lookup,
     Nearest,
     Place,
     Register,
@@ -208,6 +209,8 @@ def expression(scope: Scope, expr: Expr) -> str:
             return _is_text(scope, address, expression(scope, size))
         case Nearest() | Digits() | Scale():
             return _decimal(scope, expr)
+        case Lookup(_, values, index):
+            return f"{values!r}[{bare(expression(scope, index))}]"
         case _:
             assert_never(expr)
 

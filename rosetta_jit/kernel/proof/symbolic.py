@@ -24,6 +24,7 @@ from rosetta_jit.kernel.ir import (
     IsText,
     Load,
     Local,
+    Lookup,
     Nearest,
     Place,
     Register,
@@ -180,8 +181,8 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
         case IsText(address, size):
             check_extent(scope, address, integer(scope, size))
             return "bool", None
-        case Nearest() | Digits() | Scale():
-            return _decimal(scope, expr)
+        case Nearest() | Digits() | Scale() | Lookup():
+            return _looked_up(scope, expr) if isinstance(expr, Lookup) else _decimal(scope, expr)
         case _:
             assert_never(expr)
 
@@ -190,6 +191,16 @@ def _fits(scope: Scope, expr: Fits) -> Formula:
     low, high = limits("i64")
     result = _integer_binary(scope, expr.op, "i64", integer(scope, expr.left), integer(scope, expr.right))
     return All((shifted(result, -low), shifted(times(result, -1), high)))
+
+
+def _looked_up(scope: Scope, expr: Lookup) -> Typed:
+    demand(bool(expr.values), "a value among none")
+    low, high = limits(expr.type)
+    demand(expr.type != "bool" and all(low <= value <= high for value in expr.values), f"a value that is no {expr.type}")
+    number = integer(scope, expr.index)
+    oblige(scope, number, claims.WITHIN_TABLE)
+    oblige(scope, shifted(times(number, -1), len(expr.values) - 1), claims.WITHIN_TABLE)
+    return expr.type, scope.facts.fresh(min(expr.values), max(expr.values))
 
 
 def _decimal(scope: Scope, expr: Nearest | Digits | Scale) -> Typed:

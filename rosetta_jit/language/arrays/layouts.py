@@ -238,7 +238,9 @@ def _permuted(view: View, order: Expr, call: Call) -> View:
     split = _split(view, (Literal(len(numbers)),), call)
     *outer, last = split.axes
     assert isinstance(order, List)
-    return replace(split, axes=(*outer, _listed(numbers, last.step, order)))
+    listed = last.listed
+    chosen = numbers if listed is None else tuple(listed[number] for number in numbers)  # groups that are permuted already
+    return replace(split, axes=(*outer, _listed(chosen, last.step, order)))
 
 
 def listed_numbers(order: Expr) -> tuple[int, ...]:

@@ -20,11 +20,13 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.both_ways.inverse import CONVERSIONS, NoInverseError, Solution, fields_in, nearest, solve, undone_group
 from rosetta_jit.language.folding import folded
 from rosetta_jit.language.function import functions, written
 from rosetta_jit.language.groups import component, function_of
-from rosetta_jit.model.expr import Binary, Call, Len, List, Literal, Path
+from rosetta_jit.model.expr import Binary, Call, Choice, Len, List, Literal, Path
+from rosetta_jit.model.types import Float, Int
 from rosetta_jit.model.walk import parts, rebuilt
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -90,6 +92,8 @@ def _part(expr: Expr, value: Expr, type_of: TypeOf) -> Parted:
         case Call(function, (argument, *_)) if function in CONVERSIONS:
             whole = value if function != "uint64" else Call("int64", (value,), expr.span)  # parts are computed in int64
             return _part(argument, whole, type_of)
+        case Binary("+") if (spelt := _spelt(expr, type_of)) is not None:
+            return _numbers_of(spelt, value, type_of)
         case Binary("+" | "-"):
             return _digits(expr, value, type_of)
         case _:
@@ -103,6 +107,58 @@ def _both(first: Parted, second: Parted) -> Parted:
 def _all(found: Iterable[Parted]) -> Parted:
     several = list(found)
     return Parted(tuple(each for one in several for each in one.settings), tuple(each for one in several for each in one.digits))
+
+
+@dataclass(frozen=True, slots=True)
+class _Spelt:
+    """Numbers as text, with a separator between each two."""
+
+    numbers: tuple[Expr, ...]
+    separator: Literal
+
+
+def _spelt(expr: Expr, type_of: TypeOf) -> _Spelt | None:
+    """A text that is put together of numbers; None where it is another sum."""
+    pieces = list(_terms(expr))
+    numbers, separators = tuple(pieces[::2]), pieces[1::2]
+    first = separators[0]
+    if not (isinstance(first, Literal) and isinstance(first.value, str) and separates(first.value) and len(pieces) % 2):
+        return None
+    is_spelt = all(isinstance(each, Call) and each.function == "text" and len(each.arguments) == 1 for each in numbers)
+    types = [type_of(each.arguments[0]) for each in numbers if isinstance(each, Call)] if is_spelt else []
+    known = bool(types) and all(isinstance(each, Int | Float) for each in types)
+    return _Spelt(numbers, first) if known and all(each == first for each in separators) else None
+
+
+def _terms(expr: Expr) -> Iterator[Expr]:
+    """The terms of a sum, from the left."""
+    if isinstance(expr, Binary) and expr.operator == "+":
+        yield from _terms(expr.left)
+        yield from _terms(expr.right)
+    else:
+        yield expr
+
+
+def _numbers_of(spelt: _Spelt, value: Expr, type_of: TypeOf) -> Parted:
+    """Each number as its part of a text; the first one is refused if the text has other parts."""
+    span = spelt.separator.span
+    found = [
+        _part(each, Call("part", (value, spelt.separator, Literal(number, span)), span), type_of)
+        for number, each in enumerate(spelt.numbers)
+    ]
+    first, *rest = _all(found).settings
+    count = Binary("==", Call("parts", (value, spelt.separator), span), Literal(len(found), span), span)
+    checked = replace(first, value=Choice(((count, first.value),), None, words.OTHER_PARTS, span))
+    return Parted((checked, *rest), ())
+
+
+SPELT = frozenset("0123456789+-.einfa")
+"""Characters of numbers as text: none of them separates numbers."""
+
+
+def separates(text: str) -> bool:
+    """Whether a text can stand between numbers."""
+    return bool(text) and not SPELT & set(text)
 
 
 def _digits(expr: Binary, value: Expr, type_of: TypeOf) -> Parted:

@@ -9,7 +9,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.inverse import Solution, fields_in, solve
-from rosetta_jit.language.both_ways.inverse_parts import until
+from rosetta_jit.language.both_ways.inverse_parts import separates, until
 from rosetta_jit.model.expr import Binary, Call, Literal
 from rosetta_jit.model.walk import fields_of, parts
 from rosetta_jit.startup.dataclass import dataclass
@@ -19,9 +19,6 @@ if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.knowledge import Loops
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Relation
-
-SPELT = frozenset("0123456789+-.einfa")
-"""Characters of numbers as text: none of them separates numbers."""
 
 Related = tuple["Relation", "Loops"]
 
@@ -84,12 +81,8 @@ def _numbered_part(rule: Relation) -> Call | None:
         return None
     for each in parts(rule.value):
         match each:
-            case Call("number" | "integer", (Call("part", (_, Literal(str(separator)), Literal(int()))) as call,)) if _separates(separator):
+            case Call("number" | "integer", (Call("part", (_, Literal(str(separator)), Literal(int()))) as call,)) if separates(separator):
                 return call
             case _:
                 pass
     return None
-
-
-def _separates(text: str) -> bool:
-    return bool(text) and not SPELT & set(text)

@@ -23,7 +23,7 @@ from rosetta_jit.language.check.across_wires import (
     wires_read,
     with_parts,
 )
-from rosetta_jit.language.places import places_in, shown_names
+from rosetta_jit.language.places import places_in, shown_names, shown_place
 from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, IndexStep, Reject, SetLength, SetState, When
 from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Enum, Field, Float, Int, Ref, Schema, Struct, same_name
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.typed import Expr, Place, Rule
     from rosetta_jit.model import mapping as model
     from rosetta_jit.model.expr import Side
+    from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
 Names = tuple[str, ...]
@@ -110,17 +111,32 @@ class _Told:
 NOTHING_AROUND = _Told()
 
 
-def _told(rules: tuple[Rule, ...], target: Side, around: _Told = NOTHING_AROUND) -> Iterator[tuple[Rule, _Told]]:
-    """Each rule that is no block, with what it reads; the conditions and bounds of the blocks around it count."""
+def _told(rules: tuple[Rule, ...], target: Side, around: _Told = NOTHING_AROUND, *, chosen: bool = False) -> Iterator[tuple[Rule, _Told]]:
+    """Each rule that is no block, with what it reads; the conditions and bounds of the blocks around it count.
+
+    Rules of one place that conditions choose among, ``chosen`` ones, are as one: each of them reads what all of them read.
+    """
     for rule in rules:
         within = around.within(rule, target)
         match rule:
             case For(body=body):
-                yield from _told(body, target, within)
+                yield from _told(body, target, within, chosen=chosen)
             case When(then=then, otherwise=otherwise):
-                yield from _told((*then, *otherwise), target, within)
+                inner = _told((*then, *otherwise), target, within, chosen=True)
+                yield from inner if chosen else _as_one(list(inner))
             case _:
                 yield rule, within
+
+
+def _as_one(chosen: list[tuple[Rule, _Told]]) -> Iterator[tuple[Rule, _Told]]:
+    together: dict[str, tuple[Wires, dict[int, Expr]]] = {}
+    for rule, told in chosen:
+        for place in places_in((rule,)):
+            wires, exprs = together.get(shown_place(place.steps), (NO_WIRE, dict[int, "Expr"]()))
+            together[shown_place(place.steps)] = wires | told.wires, exprs | {id(each): each for each in told.exprs}
+    for rule, told in chosen:
+        found = [together[shown_place(place.steps)] for place in places_in((rule,))]
+        yield rule, _Told(found[0][0], tuple(found[0][1].values())) if found else told
 
 
 def _own(rule: Rule) -> tuple[Expr, ...]:
@@ -157,7 +173,8 @@ def rules_of(rules: tuple[Rule, ...], wire: str, target: Side, holder: Message, 
     cut = _cutter(holder)
     owners = _owners(rules, cut) if target == "holder" else {}
     waits = _waits(rules, owners, cut) if memory.arrived else {}
-    return tuple(_Chosen(wire, target, memory, cut, owners, waits).of(rules, NOTHING_AROUND, frozenset([wire])))
+    told = {id(rule): each for rule, each in _told(rules, target)}
+    return tuple(_Chosen(wire, target, memory, cut, owners, waits, told).of(rules, NOTHING_AROUND, frozenset([wire])))
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,8 +183,8 @@ class _Chosen:
 
     Attributes
     ----------
-    owners, waits
-        What `_owners` and `_waits` find.
+    owners, waits, told
+        What `_owners`, `_waits` and `_told` find; the last by the ids of rules.
     """
 
     wire: str
@@ -176,6 +193,7 @@ class _Chosen:
     cut: Callable[[Place], Names]
     owners: dict[Names, frozenset[Wires]]
     waits: dict[Names, Wires]
+    told: dict[int, _Told]
 
     def of(self, rules: tuple[Rule, ...], around: _Told, come: Wires) -> Iterator[Rule]:
         """Those of some rules that run, where the wires that have ``come`` are known to have sent a message."""
@@ -190,7 +208,7 @@ class _Chosen:
                     chosen, other = (tuple(self.of(each, told, come | others)) for each in (then, otherwise))
                     found = (replace(own, then=chosen, otherwise=other),) if chosen or other else ()
                 case _:
-                    found = (own,) if self.is_run(rule, told) else ()
+                    found = (own,) if self.is_run(rule, self.told[id(rule)]) else ()
             for each in sorted(others) if found else ():
                 found = (When(self.memory.arrived[each], found, (), rule.span),)
             yield from found
@@ -343,14 +361,20 @@ def _overlaps(rules: tuple[Rule, ...], every: list[tuple[Rule, _Told]], holder: 
                 first = wires, rule.span
             elif wires != first[0]:
                 both = min(first[0] - wires or first[0]), min(wires - first[0] or wires)
-                problems.append(words.set_by_several(rule.span, shown_names(names, holder), both, first[1]))
+                path, is_array = shown_names(names, holder), isinstance(_type_at(names, mine, holder), Array)
+                problems.append(words.set_by_several(rule.span, path, both, first[1], is_array=is_array))
     return problems
+
+
+def _type_at(names: Names, mine: list[tuple[Rule, Wires, Place]], holder: Message) -> Type:
+    """The type of a field that some rules set."""
+    last = next(step.field for _, _, place in mine for step in place.steps[len(names) - 1 : len(names)] if isinstance(step, FieldStep))
+    return holder.value_type(last.type)
 
 
 def _can_be_joined(names: Names, mine: list[tuple[Rule, Wires, Place]], holder: Message) -> bool:
     """Whether a field is an array of numbers, whose length no wire tells, and of which wires set single elements."""
-    last = next(step.field for _, _, place in mine for step in place.steps[len(names) - 1 : len(names)] if isinstance(step, FieldStep))
-    type_ = holder.value_type(last.type)
+    type_ = _type_at(names, mine, holder)
     if not isinstance(type_, Array) or not isinstance(holder.value_type(type_.element), Bool | Int | Float | Enum):
         return False
     elements = [(rule, place) for rule, wires, place in mine if wires]

@@ -60,16 +60,6 @@ done:
   ret ptr %object
 }
 
-define internal ptr @box_signed(i64 %value) alwaysinline {
-  %object = call ptr @PyLong_FromLongLong(i64 %value)
-  ret ptr %object
-}
-
-define internal ptr @box_unsigned(i64 %value) alwaysinline {
-  %object = call ptr @PyLong_FromUnsignedLongLong(i64 %value)
-  ret ptr %object
-}
-
 define internal ptr @box_bool(i8 %value) alwaysinline {
   %is = icmp ne i8 %value, 0
   %object = select i1 %is, ptr @_Py_TrueStruct, ptr @_Py_FalseStruct
@@ -95,15 +85,20 @@ no:
 define internal { i64, i1 } @unbox_signed(ptr %object) alwaysinline {
   %overflow = alloca i32
   %is = call i1 @is_exactly(ptr %object, ptr @PyLong_Type)
-  br i1 %is, label %read, label %no
+  br i1 %is, label %look, label %no
+look:
+  %digit = call { i64, i1 } @one_digit(ptr %object)
+  %short = extractvalue { i64, i1 } %digit, 0
+  %is.short = extractvalue { i64, i1 } %digit, 1
+  br i1 %is.short, label %no, label %read
 read:
   %value = call i64 @PyLong_AsLongLongAndOverflow(ptr %object, ptr %overflow)
   %over = load i32, ptr %overflow
   %fits = icmp eq i32 %over, 0
   br label %no
 no:
-  %found = phi i64 [ 0, %0 ], [ %value, %read ]
-  %good = phi i1 [ false, %0 ], [ %fits, %read ]
+  %found = phi i64 [ 0, %0 ], [ %short, %look ], [ %value, %read ]
+  %good = phi i1 [ false, %0 ], [ true, %look ], [ %fits, %read ]
   %one = insertvalue { i64, i1 } undef, i64 %found, 0
   %result = insertvalue { i64, i1 } %one, i1 %good, 1
   ret { i64, i1 } %result

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
 from functools import cache
 from pathlib import Path
@@ -84,7 +85,13 @@ def _assembled(whole: str) -> bytes:
 def text() -> str:
     """The module."""
     calling = Template(_read("calling.ll")).substitute(HEAP_TYPE_BYTES=HEAP_TYPE_BYTES, NAMES_AT=HEAP_TYPE_BYTES + 8)
-    return "\n".join([*(_read(file) for file in FILES), calling, *_scalars()])
+    return "\n".join([*(_read(file) for file in FILES), _read(_integers()), calling, *_scalars()])
+
+
+def _integers() -> str:
+    """How integers are made: those of the one Python whose layout of them is known are given out again."""
+    known = sys.version_info[:2] == (3, 11) and (sys.int_info.bits_per_digit, sys.int_info.sizeof_digit) == (30, 4)
+    return "integers_again.ll" if known else "integers.ll"
 
 
 def _scalars() -> Iterator[str]:

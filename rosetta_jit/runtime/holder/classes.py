@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar, cast
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from rosetta_jit.runtime.attributes.makers import call_as_any, class_of_holder_c
 from rosetta_jit.runtime.attributes.names import take_names
 from rosetta_jit.runtime.holder import arena, grid, values
 from rosetta_jit.runtime.holder.access import raw
-from rosetta_jit.runtime.holder.message import Message, View, in_row, place
+from rosetta_jit.runtime.holder.message import Family, Message, View, in_row, place
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Text
 from rosetta_jit.runtime.lanes import Lanes
 
@@ -22,8 +22,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.holder.family import Family
-    from rosetta_jit.runtime.holder.record import Entry
+    from rosetta_jit.model.layout import Layout
+    from rosetta_jit.runtime.holder.message import Access
+    from rosetta_jit.runtime.holder.objects.foreign import Foreign, Wholes
+    from rosetta_jit.runtime.holder.record import Entry, Record
     from rosetta_jit.runtime.plan import Plan
 
 if TYPE_CHECKING:
@@ -58,12 +60,48 @@ class HolderClass(_HolderClassBase, type):  # noqa: D101 - its __doc__ is that o
 let_call(HolderClass)
 
 
+class HolderFamily(Family, Protocol):
+    """What the holders of one type share; `rosetta_jit.runtime.holder.Family` is it."""
+
+    latest: tuple[Any, Any, Any]
+    plan: Plan
+    cell: list[Plan]
+    text: str
+    layout: Layout
+    manners: Any
+    programs: Any
+
+    @property
+    def holder(self) -> type[Holder]: ...
+    @property
+    def root(self) -> Access: ...
+    @property
+    def described(self) -> dict[str, Any]: ...
+    @property
+    def foreign(self) -> Foreign: ...
+    @property
+    def wholes(self) -> Wholes: ...
+    @property
+    def takers(self) -> Any: ...
+    @property
+    def givers(self) -> Any: ...
+    def shown(self, record: Record) -> frozenset[str]: ...
+    def recipe(self, plan: Plan) -> tuple[Any, ...] | None: ...
+    def offer(self) -> None: ...
+    def fresh(self) -> Any: ...
+    def row(self, lanes: Lanes, row: int) -> View: ...
+    def new(self, plan: Plan) -> Any: ...
+    @property
+    def roomy(self) -> Plan: ...
+    def pickled(self, contents: tuple[int, int, list[bytes]]) -> tuple[Any, ...]: ...
+
+
 class Holder(Message, metaclass=HolderClass):
     """A message with lanes of its own. Subclasses are made by `holder_class`."""
 
     __slots__ = ()
 
-    family_: Family
+    family_: HolderFamily
     begins_alike_: ClassVar[bool] = False
     """Whether a subclass with a constructor of its own makes the same message each time that it is called without arguments."""
 
@@ -205,13 +243,9 @@ class Holder(Message, metaclass=HolderClass):
         return holder
 
     def __reduce__(self) -> tuple[Any, ...]:
-        from rosetta_jit.runtime.holder.family import revived
-
         if isinstance(self, View) or self.lanes_.source[0] is not None:
             return self.__deepcopy__({}).__reduce__()
-        family = self.family_
-        manners = family.manners.place or family.manners
-        return revived, (family.mark, family.text, manners, self.lanes_.consistent(_contents, self))
+        return self.family_.pickled(self.lanes_.consistent(_contents, self))
 
 
 def _listed(holder_type: type[Holder], names: Iterable[str]) -> list[str]:

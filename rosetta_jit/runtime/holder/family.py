@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import sys
 from functools import partial
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakValueDictionary
 
@@ -21,9 +20,10 @@ from rosetta_jit.runtime.attributes.makers import make_quickly, set_recipe
 from rosetta_jit.runtime.attributes.sameness import Sameness
 from rosetta_jit.runtime.holder.access import getter, setter
 from rosetta_jit.runtime.holder.classes import Holder, HolderClass
+from rosetta_jit.runtime.holder.manners import PLAIN, Manners, manners_at
 from rosetta_jit.runtime.holder.message import OWN_NAMES, Access, View, in_row, read_field, recipe, write_field
-from rosetta_jit.runtime.holder.objects.foreign import ORDINARY, Foreign, Wholes
-from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES, Dictionary, Sequence
+from rosetta_jit.runtime.holder.objects.foreign import Wholes
+from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES
 from rosetta_jit.runtime.holder.serialising import building_method, serialising_methods
 from rosetta_jit.runtime.holder.tree import Tree, written_within
 from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes
@@ -33,87 +33,23 @@ from rosetta_jit.runtime.looks.described import Constructor, Described
 from rosetta_jit.runtime.plan import plan
 from rosetta_jit.runtime.room import begun_as, initialised, roomier
 from rosetta_jit.startup.cached import cached_property
-from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.runtime.attributes.methods import Kind
     from rosetta_jit.runtime.attributes.places import KeptFields, OfSequences
+    from rosetta_jit.runtime.holder.classes import HolderFamily
+    from rosetta_jit.runtime.holder.objects.foreign import Foreign
     from rosetta_jit.runtime.holder.objects.giving import Givers
     from rosetta_jit.runtime.holder.objects.taking import Takers
-    from rosetta_jit.runtime.holder.record import Entry, Record
+    from rosetta_jit.runtime.holder.record import Record
     from rosetta_jit.runtime.plan import Plan
-
-
-def no_methods(family: Family) -> Mapping[str, Kind]:  # noqa: ARG001  a plain class has none
-    """None."""
-    return {}
-
-
-@dataclass(frozen=True, slots=True)
-class Manners:
-    """How holders of a framework behave.
-
-    Attributes
-    ----------
-    base : type
-        What holder classes inherit from: a subclass of `Holder` without slots of its own.
-    array_type : type
-        What arrays of numbers are shown as: numpy's class, or a subclass with a slot ``owner_`` for message and field.
-    sequence, mapping : callable
-        What shows arrays of anything else, and maps.
-    assigns_whole : bool
-        Whether arrays, maps and messages can be assigned to.
-    members : callable
-        What else the class of a struct has, by name, given its family: constants, nested classes.
-    serialising : tuple of str
-        Framework and encoding of the base's methods that serialise; with it, ``programs_`` of every holder is what
-        `rosetta_jit.runtime.holder.serialising.Programs` says.
-    foreign : Foreign
-        What is particular about the objects of the framework's own package.
-    methods : callable
-        Which of the base's methods do nothing but serialise, and how, given the family: compiled code does so where it can.
-    place : str
-        ``module:name`` of these manners, by which pickles name them; empty if they are pickled by value.
-    """
-
-    base: type[Holder]
-    array_type: type[np.ndarray[Any, Any]]
-    sequence: Callable[[View, Entry], Any]
-    mapping: Callable[[View, Entry], Any]
-    assigns_whole: bool
-    members: Callable[[Family], dict[str, Any]]
-    serialising: tuple[str, str] | None = None
-    foreign: Foreign = ORDINARY
-    methods: Callable[[Family], Mapping[str, Kind]] = no_methods
-    place: str = ""
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """By the place, where there is one."""
-        fields = tuple(getattr(self, each) for each in self.__slots__)
-        return (manners_at, (self.place,)) if self.place else (Manners, fields)
-
-
-def no_members(family: Family) -> dict[str, Any]:  # noqa: ARG001  a plain class has nothing but its fields
-    """Nothing."""
-    return {}
 
 
 _ONE_AT_A_TIME = shared_lock()
 """Held where a class is made: two of one type would take each other's holders for foreign."""
-
-PLAIN = Manners(
-    Holder, np.ndarray, Sequence, Dictionary, assigns_whole=True, members=no_members, place="rosetta_jit.runtime.holder.family:PLAIN"
-)
-
-
-def manners_at(place: str) -> Manners:
-    """The manners at a place."""
-    module, _, name = place.partition(":")
-    return getattr(import_module(module), name)
 
 
 class Family:
@@ -157,9 +93,9 @@ class Family:
         properties = {name: property(read_field(name), write_field(name)) for name in shown}
         members = {"family_": self, "__slots__": (self._mark, *slots), **self.described}
         base = self.manners.base if code is None else descriptors.assignable(self.manners.base)
-        methods = {} if code is None else serialising_methods(self)
+        methods = {} if code is None else serialising_methods(self.manners.base, self.manners.methods(self), self)
         if code is not None and self.manners.base.from_dict.__func__ is Holder.from_dict.__func__:
-            methods["from_dict"] = building_method(self)
+            methods["from_dict"] = building_method(self.manners.base, self)
         made = _class(self.struct.name, (base,), {**methods, **self.manners.members(self), **properties, **members})
         for each in methods.values():
             each.holder_type = made
@@ -179,7 +115,7 @@ class Family:
         """Where messages of a struct keep what shows their fields; None where no compiled code reads them."""
         if not struct or library() is None:  # the pairs of a map have no name, and no attributes
             return None
-        family = self.of_struct(struct).family_
+        family = cast("Family", self.of_struct(struct).family_)
         return family._kept  # noqa: SLF001 - of the same class
 
     @property
@@ -243,24 +179,29 @@ class Family:
         """What tells whether two messages are the same."""
         return self._sameness
 
+    @property
+    def foreign(self) -> Foreign:
+        """What is particular about the objects of the framework's own package."""
+        return self.manners.foreign
+
     @cached_property
     def wholes(self) -> Wholes:
         """How objects of other classes are handed over at once."""
-        return Wholes(self)
+        return Wholes(self.foreign, self)
 
     @cached_property
     def takers(self) -> Takers:
         """What takes objects of other classes into the holders."""
         from rosetta_jit.runtime.holder.objects.taking import Takers
 
-        return Takers(self)
+        return Takers(cast("HolderFamily", self))  # its properties are made once
 
     @cached_property
     def givers(self) -> Givers:
         """What hands the holders on as objects of other classes."""
         from rosetta_jit.runtime.holder.objects.giving import Givers
 
-        return Givers(self)
+        return Givers(cast("HolderFamily", self))
 
     def shown(self, record: Record) -> frozenset[str]:
         """The fields of a record that are attributes of its messages."""
@@ -307,6 +248,10 @@ class Family:
         mark = sha256(said.encode()).hexdigest()[:32]
         _MARKED[mark] = self
         return mark
+
+    def pickled(self, contents: tuple[int, int, list[bytes]]) -> tuple[Any, ...]:
+        """A holder as pickles have it, of two words of its state and the bytes of its lanes."""
+        return revived, (self.mark, self.text, self.manners.place or self.manners, contents)
 
     @cached_property
     def root(self) -> Access:

@@ -28,10 +28,11 @@ from rosetta_jit.runtime.specs import slot_offset
 if TYPE_CHECKING:
     import numpy as np
 
-    from rosetta_jit.model.types import Schema
+    from rosetta_jit.model.types import Schema, Struct
     from rosetta_jit.runtime.attributes.places import KeptFields, OfSequences
     from rosetta_jit.runtime.attributes.sameness import Sameness
     from rosetta_jit.runtime.holder.record import Entry
+    from rosetta_jit.runtime.holder.tree import Tree
     from rosetta_jit.runtime.plan import Plan
 
     Base = object
@@ -86,7 +87,11 @@ class Family(Protocol):
     """What the accessors of one holder class share; `rosetta_jit.runtime.holder.Family` is it."""
 
     @property
+    def struct(self) -> Struct: ...
+    @property
     def schema(self) -> Schema: ...
+    @property
+    def tree(self) -> Tree: ...
     @property
     def array_type(self) -> type[np.ndarray[Any, Any]]: ...
     @property

@@ -11,7 +11,7 @@ from rosetta_jit.runtime.attributes.methods import Kind, method
 from rosetta_jit.runtime.holder.message import View
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.family import Family
+    from collections.abc import Mapping
 
 
 class Programs(Protocol):
@@ -59,14 +59,23 @@ def encoded(message: Any) -> bytes:
     return programs_of(message).encode(deepcopy(message) if isinstance(message, View) else message)
 
 
-def serialising_methods(family: Family) -> dict[str, Any]:
-    """The methods of a holder class that compiled code does, by name."""
-    return {name: _method(family, name, kind) for name, kind in family.manners.methods(family).items()}
+class Serialised(Protocol):
+    """What holders of one class are serialised by: a family."""
+
+    programs: Any
+
+    @property
+    def takers(self) -> Any: ...
 
 
-def building_method(family: Family) -> Any:
+def serialising_methods(base: type, kinds: Mapping[str, Kind], family: Serialised) -> dict[str, Any]:
+    """The methods of a holder class, of those of its base, that compiled code does, by name."""
+    return {name: _method(base, family, name, kind) for name, kind in kinds.items()}
+
+
+def building_method(base: type, family: Serialised) -> Any:
     """The method of a holder class that makes a holder of plain values, of which compiled code does those that are a dict of all fields."""
-    found = getattr_static(family.manners.base, "from_dict")
+    found = getattr_static(base, "from_dict")
 
     def bind(made: Any) -> None:
         steps = family.takers.steps_of(dict)
@@ -76,8 +85,8 @@ def building_method(family: Family) -> Any:
     return method("build", found.__func__, bind)
 
 
-def _method(family: Family, name: str, kind: Kind) -> Any:
-    found = getattr_static(family.manners.base, name)
+def _method(base: type, family: Serialised, name: str, kind: Kind) -> Any:
+    found = getattr_static(base, name)
     direction = "encode" if kind in ("encode", "write") else "decode"
 
     def bind(made: Any) -> None:

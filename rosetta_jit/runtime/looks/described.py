@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import inspect
     from collections.abc import Container
 
-    from rosetta_jit.runtime.holder import Family, Holder
+    from rosetta_jit.runtime.holder.message import Family
 
 
 INTERNAL = frozenset({"_attributes", "_code", "_is_native", "_members", "_is_view", "__annotations__", "__signature__", "__weakref__"})
@@ -32,7 +32,7 @@ class _Left:
 class Constructor:
     """``__signature__`` of a holder class: its fields, where its constructor takes them."""
 
-    def __get__(self, _: object, owner: type[Holder]) -> inspect.Signature | None:
+    def __get__(self, _: object, owner: type[Any]) -> inspect.Signature | None:
         import inspect  # slow, as most of what only people need
         import keyword
 

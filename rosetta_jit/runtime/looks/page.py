@@ -6,7 +6,7 @@ import base64
 from collections.abc import Mapping, Sequence
 from html import escape
 from itertools import chain, islice
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 
@@ -31,8 +31,16 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.batch import Batch
-    from rosetta_jit.runtime.holder import Holder
+    from rosetta_jit.runtime.holder.message import Family
+
+
+class Rows(Protocol):
+    """Messages of one type: a batch."""
+
+    @property
+    def family_(self) -> Family: ...
+    def __iter__(self) -> Iterator[Message]: ...
+
 
 CURVE_POINTS, CURVE_WIDTH, CURVE_HEIGHT = 100, 160, 24
 CELL = "text-align:left;vertical-align:top;padding:1px 8px"
@@ -41,14 +49,14 @@ NAME = f"{CELL};white-space:nowrap"
 MEDIA = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg"}
 
 
-def page(holder: Holder) -> str:
+def page(holder: Message) -> str:
     """A message as HTML; one line of a holder that cannot be read."""
     if not holder.lanes_.words[VALID]:
         return escape(repr(holder))
     return f"<div>{''.join(_Page().message(holder, 0))}</div>"
 
 
-def batch_page(batch: Batch) -> str:
+def batch_page(batch: Rows) -> str:
     """The first messages of a batch, a row each."""
     names = list(batch.family_.tree.root.entries)[:MAX_PAGE_COLUMNS]
     head = "".join(f'<th style="{NAME}">{escape(name)}</th>' for name in names)
@@ -68,7 +76,7 @@ class _Page:
 
     def message(self, message: Message, depth: int) -> Iterator[str]:
         yield f"<b>{escape(message.access_.record.struct)}</b>"
-        picture = cast("Holder", message).picture_()
+        picture = cast("Any", message).picture_()
         if picture is not None:
             yield _picture(picture)
         rows = "".join(self.rows(message, depth))

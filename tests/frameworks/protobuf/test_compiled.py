@@ -216,6 +216,17 @@ def test_what_is_wrong_has_a_kind(wire, kind):
         assert caught.value.kind == kind
 
 
+@pytest.mark.parametrize("backend", ["llvm", "interpreter"])
+def test_what_is_wrong_in_an_element_is_told_with_its_index(backend):
+    files = {"a.proto": "syntax = 'proto3'; message J { string t = 1; } message I { repeated J j = 1; } message M { repeated I i = 1; }"}
+    decode = rj.Decoder.of("M", encoding="protobuf", schema=files, backend=backend)
+    good, bad = b"\x0a\x00", b"\x0a\x07" + b"\x0a\x00" + b"\x0a\x03\x0a\x01\xff"
+    for count in range(3):
+        with pytest.raises(rj.DecodeError) as caught:
+            decode(good * count + bad)
+        assert caught.value.path == f".i[{count}].j[1].t"
+
+
 def test_depth_is_bounded_and_wide_trees_are_not():
     decode, encode = programs("rst.generic.Value", "llvm")
     value = b"\x08\x01"

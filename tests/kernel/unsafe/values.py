@@ -17,6 +17,7 @@ from rosetta_jit.kernel.ir import (
     Let,
     Load,
     Local,
+    Lookup,
     Return,
     Scale,
     Select,
@@ -52,6 +53,27 @@ CASES.add(
     (*LOADED, expect(Compare("le", OCTET, Const("u8", 86))), Let("x", Binary("mul", OCTET, Const("u8", 3)))),
     (*LOADED, expect(Compare("le", OCTET, Const("u8", 85))), Let("x", Binary("mul", OCTET, Const("u8", 3)))),
 )
+TABLE = (3, 5, 250)
+CASES.add(
+    "a value beyond its table",
+    "a value that the table may not have",
+    (*LOADED, Let("x", Lookup("u8", TABLE, Convert("i64", OCTET)))),
+    (*LOADED, expect(Compare("le", OCTET, Const("u8", 2))), Let("x", Lookup("u8", TABLE, Convert("i64", OCTET)))),
+)
+CASES.add(
+    "a value before its table",
+    "a value that the table may not have",
+    (*WORD, expect(compare("le", N, 2)), Let("x", Lookup("u8", TABLE, N))),
+    (*WORD, expect(compare("le", N, 2)), expect(compare("ge", N, 0)), Let("x", Lookup("u8", TABLE, N))),
+)
+CASES.add(
+    "a sum with a value of a table that wraps",
+    "u8 arithmetic that may wrap",
+    (*WORD, Let("x", Binary("add", Lookup("u8", TABLE, index(1)), Const("u8", 6)))),
+    (*WORD, Let("x", Binary("add", Lookup("u8", TABLE, index(1)), Const("u8", 5)))),
+)
+CASES.add("a value that a table cannot have", "a value that is no u8", (*WORD, Let("x", Lookup("u8", (256,), index(0)))))
+CASES.add("a table without a value", "a value among none", (*WORD, Let("x", Lookup("u8", (), index(0)))))
 CASES.add("a position that wraps", "i64 arithmetic that may wrap", (*WORD, Let("x", plus(N, 1))))
 CASES.accept(
     "a position that wraps",

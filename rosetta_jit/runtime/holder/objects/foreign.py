@@ -10,7 +10,6 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rosetta_jit.runtime.holder.family import Family
     from rosetta_jit.runtime.holder.record import Record
     from rosetta_jit.runtime.holder.serialising import Programs
 
@@ -58,7 +57,7 @@ def no_class(owner: type, struct: str) -> type | None:  # noqa: ARG001  whatever
     return None
 
 
-def no_whole(family: Family, object_type: type) -> Whole | None:  # noqa: ARG001  whatever they are
+def no_whole(family: Any, object_type: type) -> Whole | None:  # noqa: ARG001  whatever they are
     """None."""
     return None
 
@@ -82,7 +81,7 @@ class Foreign:
 
     names: Callable[[Record, str], tuple[str, ...]] = same_name
     class_of: Callable[[type, str], type | None] = no_class
-    whole: Callable[[Family, type], Whole | None] = no_whole
+    whole: Callable[[Any, type], Whole | None] = no_whole
     besides: frozenset[str] = frozenset()
 
 
@@ -93,11 +92,11 @@ ORDINARY = Foreign()
 class Wholes(dict[type, "Whole | None"]):
     """How objects of each class are handed over at once to the holders of a family; None where they are not."""
 
-    def __init__(self, family: Family) -> None:
-        self._family = family
+    def __init__(self, foreign: Foreign, family: object) -> None:
+        self._foreign, self._family = foreign, family
 
     def __missing__(self, object_type: type) -> Whole | None:
-        found = self._family.manners.foreign.whole(self._family, object_type)
+        found = self._foreign.whole(self._family, object_type)
         if len(self) < MAX_CLASSES:
             self[object_type] = found
         return found

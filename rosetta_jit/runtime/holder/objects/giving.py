@@ -20,7 +20,7 @@ from rosetta_jit.runtime.holder.objects.source import ByClass, Source, assignmen
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.record import Choice, Entry, Node
 
 INLINED = 3
@@ -39,7 +39,7 @@ class Givers:
         The classes of messages within messages, by the names of their structs, where neither an object nor its class tells them.
     """
 
-    def __init__(self, family: Family, types: Types | None = None) -> None:
+    def __init__(self, family: HolderFamily, types: Types | None = None) -> None:
         self._family = family
         self._types = types or {}
         self._fillers: dict[int, ByClass] = {}
@@ -150,7 +150,7 @@ class Givers:
     def _attributes(self, record: Record, object_type: type, path: str) -> Iterator[tuple[Entry, str]]:
         """The fields of a record, and what a class calls their attributes."""
         for entry in record.entries.values():
-            names = self._family.manners.foreign.names(record, entry.name)
+            names = self._family.foreign.names(record, entry.name)
             if names:
                 yield entry, _spelled(object_type, names, f"{path}.{entry.name}")
 
@@ -248,7 +248,7 @@ class Givers:
 
     def _class_of(self, record: Record, owner: type, said: Any, name: str = "") -> type | None:
         found = shapes.class_named(self._types, record.struct) or shapes.class_in(said, owner) or shapes.made_by_default(owner, name)
-        return found or self._family.manners.foreign.class_of(owner, record.struct)
+        return found or self._family.foreign.class_of(owner, record.struct)
 
 
 def _spelled(object_type: type, names: tuple[str, ...], path: str) -> str:

@@ -21,13 +21,13 @@ from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs
 from rosetta_jit.runtime.limits import MAX_DEPTH
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.family import Family
+    from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.record import Choice, Entry, Node
 
 _MISSING = object()
 
 
-def plain_record(record: Record, value: Any, family: Family, path: str = "", depth: int = 0) -> dict[str, Any]:
+def plain_record(record: Record, value: Any, family: HolderFamily, path: str = "", depth: int = 0) -> dict[str, Any]:
     """The fields of an object, or of a mapping, as `Holder.from_dict` takes them.
 
     Raises
@@ -54,7 +54,7 @@ def plain_record(record: Record, value: Any, family: Family, path: str = "", dep
     return _by_attributes(record, value, family, path, depth)
 
 
-def _of_union(record: Record, entry: Entry, choice: Choice, value: object, family: Family, path: str, depth: int) -> dict[str, Any]:
+def _of_union(record: Record, entry: Entry, choice: Choice, value: object, family: HolderFamily, path: str, depth: int) -> dict[str, Any]:
     discriminator, inner = unions.parts_of(value, path)
     told = number(discriminator)
     case = unions.case_of(record, choice, told) if isinstance(told, int) else None
@@ -66,11 +66,11 @@ def _of_union(record: Record, entry: Entry, choice: Choice, value: object, famil
     return found
 
 
-def _by_attributes(record: Record, value: object, family: Family, path: str, depth: int) -> dict[str, Any]:
+def _by_attributes(record: Record, value: object, family: HolderFamily, path: str, depth: int) -> dict[str, Any]:
     found: dict[str, Any] = {}
     known = set(without_meaning(record, family))
     for entry in record.entries.values():
-        names = family.manners.foreign.names(record, entry.name)
+        names = family.foreign.names(record, entry.name)
         known.update(names)
         own = _attribute(value, names, entry, path)
         if own is not _MISSING:
@@ -81,14 +81,14 @@ def _by_attributes(record: Record, value: object, family: Family, path: str, dep
     return found
 
 
-def without_meaning(record: Record, family: Family) -> frozenset[str]:
+def without_meaning(record: Record, family: HolderFamily) -> frozenset[str]:
     """Attributes that an object may have though they are no fields: constants, and what is particular to its framework."""
     struct = family.struct if record.struct == family.struct.name else family.schema.types.get(record.struct)
     constants = struct.constants if isinstance(struct, Struct) else ()
-    return family.manners.foreign.besides.union(each.name for each in constants)
+    return family.foreign.besides.union(each.name for each in constants)
 
 
-def _of_mapping(record: Record, name: str, value: Any, family: Family, path: str, depth: int) -> Any:
+def _of_mapping(record: Record, name: str, value: Any, family: HolderFamily, path: str, depth: int) -> Any:
     entry = record.entries.get(name)
     return value if entry is None else plain(entry.node, value, family, f"{path}.{name}", depth + 1)
 
@@ -104,7 +104,7 @@ def _attribute(value: object, names: tuple[str, ...], entry: Entry, path: str) -
     return _MISSING if found is None and entry.presence is not None else found
 
 
-def plain(node: Node, value: Any, family: Family, path: str = "", depth: int = 0) -> Any:
+def plain(node: Node, value: Any, family: HolderFamily, path: str = "", depth: int = 0) -> Any:
     """A value of an attribute as `rosetta_jit.runtime.holder.values` takes it."""
     match node:
         case Scalar():

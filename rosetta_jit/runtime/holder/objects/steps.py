@@ -6,7 +6,7 @@ value that lies in the message's own row, or in a lane of its own: there is none
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from rosetta_jit.runtime.attributes.places import KeptFields
+    from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.record import Entry
 
 LEFT = (AttributeError, LookupError, TypeError, ValueError, OverflowError, RosettaError)
@@ -41,21 +41,6 @@ ACCEPTED: Mapping[type, tuple[type, ...]] = {
     Items: (list,),
 }
 """Of which classes the value of a field is as it is, where others are converted."""
-
-
-class Known(Protocol):
-    """What is known of the objects of a framework, and of the holders that take them."""
-
-    assigns_whole: bool
-    array_type: type[np.ndarray[Any, Any]]
-
-    def shown(self, record: Record) -> frozenset[str]:
-        """The fields of a record that are attributes of its messages."""
-        ...
-
-    def kept_of(self, struct: str) -> KeptFields | None:
-        """Where messages of a struct keep what shows their fields."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +81,7 @@ class Steps:
         If there can be no such table.
     """
 
-    def __init__(self, family: Known, ways: Ways, record: Record, like: Any) -> None:
+    def __init__(self, family: HolderFamily, ways: Ways, record: Record, like: Any) -> None:
         if library() is None:
             raise TypeError("there is no compiled code")
         self.covers = True

@@ -22,7 +22,7 @@ from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.record import Entry
 
 Take = Callable[[Any, Any], None]
@@ -37,7 +37,7 @@ _UNKNOWN: Any = object()
 class Takers:
     """What takes objects into the holders of a family."""
 
-    def __init__(self, family: Family) -> None:
+    def __init__(self, family: HolderFamily) -> None:
         self._family = family
         self._of_records: dict[int, ByClass] = {}
         self._steps: dict[type, Steps | None] = {}
@@ -72,7 +72,7 @@ class Takers:
     def _ways(self) -> Ways:
         family = self._family
         return Ways(
-            family.manners.foreign.names,
+            family.foreign.names,
             lambda record: reading.without_meaning(record, family),
             lambda record, object_type: family.of_struct(record.struct).family_.wholes[object_type] is not None,
             {Scalar: reading.number, Blob: reading.octets, Numbers: reading.numbers, Items: reading.listed},
@@ -156,7 +156,7 @@ class Takers:
         if unions.discriminator_of(record) is not None or not shapes.has_messages(object_type) or is_whole:
             raise TypeError("left to the slow way")
         source = Source("take")
-        names = {each: self._family.manners.foreign.names(record, each) for each in record.entries}
+        names = {each: self._family.foreign.names(record, each) for each in record.entries}
         known = reading.without_meaning(record, self._family).union(*names.values())
         if not shapes.declared(object_type) <= known:
             raise TypeError("left to the slow way")
