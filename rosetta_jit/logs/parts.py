@@ -32,8 +32,8 @@ BYTES, MESSAGES = 4 << 20, 16_384
 """The most that a part is made of; a longer message is alone."""
 
 LARGE, LARGE_BYTES = 1 << 17, 16 << 20
-"""From which size on messages are large, and the most that a part of these is made of. To make a table takes as long as to decode a megabyte,
-however few messages it has."""
+"""From which size on messages are large, and the most that a part of these is made of: to make a table takes as long as to decode a
+megabyte, however few messages it has."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,9 +9,11 @@ import numpy as np
 from rosetta_jit.errors import DecodeError
 from rosetta_jit.kernel.state import CAPACITY, CLEAN, USED, VALID, lane_word
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.program import MANY, one_by_one
+from rosetta_jit.runtime.program import one_by_one
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.batch import Batch
@@ -36,9 +38,9 @@ class Filling:
         How many there are going to be, as far as is known: lanes that grow get room for the rest, too.
     """
 
-    def __init__(self, loaded: Loaded, batch: Batch, on_error: OnError, expected: int) -> None:
+    def __init__(self, loaded: Loaded, many: Callable[..., int] | None, batch: Batch, on_error: OnError, expected: int) -> None:
         self.batch, self.count, self.expected = batch, 0, expected
-        self._loaded, self._on_error = loaded, on_error
+        self._loaded, self._compiled, self._on_error = loaded, many, on_error
 
     def begin(self) -> None:
         """Forget what the batch holds."""
@@ -68,7 +70,7 @@ class Filling:
             if isinstance(error, DecodeError) and self._on_error != "raise":
                 errors[done] = error
                 lanes.row_words(0, done, 1)[:] = 0
-                lanes.bear(lanes.plan.births, done, 1)
+                lanes.initialise(lanes.plan.initial, done, 1)
                 done += 1
             elif error is not None:
                 raise error
@@ -107,9 +109,8 @@ class Filling:
 
     def _many(self, data: NDArray[np.uint8], places: Places, first: int, lanes: Lanes) -> int:
         """Decode from one message on; the first that could not be."""
-        if self._loaded.library is not None:
-            many = MANY(self._loaded.library["many"])
-            return many(data.ctypes.data, data.size, *places.addresses, first, self.count, lanes.address)
+        if self._compiled is not None:
+            return self._compiled(data.ctypes.data, data.size, *places.addresses, first, self.count, lanes.address)
         return one_by_one(self._loaded.kernel, data, places, first, self.count, lanes)
 
     def _error(self, result: int, data: NDArray[np.uint8], places: Places, done: int) -> Exception:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from rosetta_jit.runtime.memory import address_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -49,6 +50,8 @@ class Places:
     @property
     def addresses(self) -> tuple[int, int]:
         """Where compiled code finds begins and ends."""
+        if len(self.begins) and self.begins.flags.writeable:
+            return address_of(self.begins), address_of(self.ends)
         return self.begins.ctypes.data, self.ends.ctypes.data
 
     def span(self, number: int) -> tuple[int, int]:
