@@ -201,8 +201,7 @@ class DecoderBase(Program):
             raise ValueError(f'on_error is "raise", "skip" or "mask", not {on_error!r}')
         batch = self._batch(count) if into is None else into
         self._lanes_of(batch)
-        many = None if self._loaded.library is None else self._compiled_many
-        return Filling(self._loaded, many, batch, on_error, count)
+        return Filling(self._loaded, batch, on_error, count, self._compiled_many)
 
     def fill_(self, filling: Filling, data: NDArray[np.uint8], places: Places, count: int) -> None:
         """One step, inside ``with lanes:``. Message ``i`` of all steps lies at place ``i``; there are ``count`` behind this step."""

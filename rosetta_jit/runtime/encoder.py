@@ -188,7 +188,7 @@ class EncoderBase(Program):
 
     def _written(self, lanes: Lanes, buffer: NDArray[np.uint8], offsets: NDArray[np.int64], first: int, count: int) -> int:
         places = Places.of(offsets)
-        if self._loaded.library is not None:
+        if self._compiled_many is not None:
             return self._compiled_many(buffer.ctypes.data, buffer.size, *places.addresses, first, count, lanes.address)
         return one_by_one(self._loaded.kernel, buffer, places, first, count, lanes, self._loaded.size)
 

@@ -38,9 +38,9 @@ class Filling:
         How many there are going to be, as far as is known: lanes that grow get room for the rest, too.
     """
 
-    def __init__(self, loaded: Loaded, many: Callable[..., int] | None, batch: Batch, on_error: OnError, expected: int) -> None:
+    def __init__(self, loaded: Loaded, batch: Batch, on_error: OnError, expected: int, compiled: Callable[..., int] | None) -> None:
         self.batch, self.count, self.expected = batch, 0, expected
-        self._loaded, self._compiled, self._on_error = loaded, many, on_error
+        self._loaded, self._on_error, self._compiled = loaded, on_error, compiled
 
     def begin(self) -> None:
         """Forget what the batch holds."""

@@ -50,9 +50,7 @@ class Places:
     @property
     def addresses(self) -> tuple[int, int]:
         """Where compiled code finds begins and ends."""
-        if len(self.begins) and self.begins.flags.writeable:
-            return address_of(self.begins), address_of(self.ends)
-        return self.begins.ctypes.data, self.ends.ctypes.data
+        return _address_of(self.begins), _address_of(self.ends)
 
     def span(self, number: int) -> tuple[int, int]:
         """The first byte of a message, and the one behind its last."""
@@ -67,6 +65,10 @@ class Places:
         """The error of a message that does not lie in a buffer of so many bytes."""
         begin, end = self.span(number)
         return ValueError(f"offsets {begin} and {end} of message {number} fall, or leave the buffer of {size} bytes")
+
+
+def _address_of(numbers: NDArray[np.int64]) -> int:
+    return address_of(numbers) if numbers.size and numbers.flags.writeable else numbers.ctypes.data
 
 
 def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | memoryview, Places]:

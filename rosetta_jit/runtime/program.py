@@ -268,10 +268,9 @@ class Program(Told):
         return {}
 
     @cached_property
-    def _compiled_many(self) -> Callable[..., int]:
-        """The compiled `many`, which takes addresses."""
-        assert self._loaded.library is not None, "there is code"
-        return MANY(self._loaded.library["many"])
+    def _compiled_many(self) -> Callable[..., int] | None:
+        """The compiled `many`, which takes addresses; None where there is no code."""
+        return None if self._loaded.library is None else MANY(self._loaded.library["many"])
 
     def _is_plain(self, encodings: frozenset[str | None]) -> bool:  # noqa: ARG002  whatever they are
         """Whether its bytes are those of its holders in one of some encodings, with nothing mapped. Who makes programs knows that."""
