@@ -87,6 +87,10 @@ yarp: $(YARP)/cmake/.built ## build the real YARP out of PyPI for tests and benc
 YARP_RELEASE := yarp_middleware-3.5.0
 YARP_HEADERS := utility cstdint limits memory iterator sstream functional mutex algorithm string
 YARP_WITHOUT := GUIS TESTS BINDINGS EXAMPLES libYARP_math CARRIER_PLUGINS DEVICE_PLUGINS PORTMONITOR_PLUGINS
+# Where an older build lacks the programs, it is made whole.
+ifeq ($(wildcard $(YARP)/cmake/bin/yarpserver),)
+.PHONY: $(YARP)/cmake/.built
+endif
 $(YARP)/cmake/.built: | $(BIN)/python
 	$(BIN)/python -m pip download --quiet --disable-pip-version-check --no-deps --no-binary yarp-middleware --dest $(YARP) $(subst _,-,$(subst -,==,$(YARP_RELEASE)))
 	tar -xzf $(YARP)/$(YARP_RELEASE).tar.gz -C $(YARP)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import struct
 import sys
 import time
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -12,16 +15,18 @@ from mcap.reader import make_reader
 from mcap.writer import CompressionType, Writer
 
 import rosetta_jit as rj
-from bench.figures import Spread
+from bench.figures import Spread, ratio
 from bench.peers.mcap import definition
+from bench.peers.rosbags import store
 from bench.processes import run
 from bench.subjects import IMAGE_2, POINT_CLOUD_2
-from bench.test_logs import mcap_file
+from bench.test_logs import mcap_file, run_pybag
 from rosetta_jit.logs.mcap.grammar import CHANNEL, CHUNK_INDEX, DATA_END, FOOTER, HEADER, MAGIC, PREFIX, SCHEMA, STATISTICS
 from rosetta_jit.logs.storage import Storage
+from rosetta_jit.runtime.arrow.files import write_tables
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Callable
 
 GIGABYTE = 1e9
 SIZE, QUICK_SIZE = 600_000_000, 200_000_000
@@ -43,32 +48,52 @@ def uncompressed(path: Path, subject: Any, size: int) -> Path:
     return path
 
 
-def seconds_a_gigabyte(work: Any, size: int, rounds: int) -> Spread:
-    """Seconds of all threads on processors."""
-    taken: list[float] = []
-    work()
-    for _ in range(rounds):
-        begin = time.process_time()
+def seconds_a_gigabyte(jobs: dict[str, Callable[[], Any]], size: int, rounds: int) -> dict[str, list[float]]:
+    """Seconds of all threads on processors, of jobs in turns."""
+    taken: dict[str, list[float]] = {what: [] for what in jobs}
+    for work in jobs.values():
         work()
-        taken.append((time.process_time() - begin) * GIGABYTE / size)
-    return Spread.of(taken)
+    for _ in range(rounds):
+        for what, work in jobs.items():
+            begin = time.process_time()
+            work()
+            taken[what].append((time.process_time() - begin) * GIGABYTE / size)
+    return taken
+
+
+COLUMNS, ARROW, PARQUET, ALONE = "columns", "Arrow", "Parquet", "pyarrow's Parquet, of tables in memory"
+BYTES, ROSBAGS, PYBAG = "the mcap package, messages as bytes", "mcap and rosbags' deserialize_cdr", "pybag"
+
+
+def counted(path: Path, decode: Callable[[bytes], Any] = bytes) -> int:
+    """The messages that the mcap package gives, decoded by somebody else."""
+    with path.open("rb") as file:
+        return sum(decode(message.data) is not None for _, _, message in make_reader(file).iter_messages())
 
 
 @pytest.mark.parametrize(("what", "subject"), [("point clouds", POINT_CLOUD_2), ("images", IMAGE_2)])
 def test_large_messages(what, subject, effort, record, tmp_path):
     size = QUICK_SIZE if effort.quick else SIZE
     path = uncompressed(tmp_path / "a.mcap", subject, size)
-    channel, rounds = rj.open(path)["/x"], 3 if effort.quick else 9
-    columns = seconds_a_gigabyte(lambda: sum(len(part.batch) for part in channel.parts()), path.stat().st_size, rounds)
-    record(f"{what}, uncompressed MCAP to columns", columns, 1 / RATE, "s a GB", "of processor; checksums compared")
-    tables = seconds_a_gigabyte(lambda: sum(table.num_rows for table in channel.tables()), path.stat().st_size, rounds)
-    record(f"{what}, uncompressed MCAP to Arrow", tables, None, "s a GB", "the same, with a copy for Arrow")
-
-    def theirs() -> int:
-        with path.open("rb") as file:
-            return sum(1 for _ in make_reader(file).iter_messages())
-
-    record(f"{what}, the mcap package, messages as bytes", seconds_a_gigabyte(theirs, path.stat().st_size, 3), None, "s a GB")
+    channel, types, sink = rj.open(path)["/x"], store("ros2"), Path(os.devnull)
+    deserialize = partial(types.deserialize_cdr, typename=subject.type)
+    made, count = list(channel.tables()), size // len(subject.message)
+    jobs = {
+        COLUMNS: lambda: sum(len(part.batch.data) for part in channel.parts()),
+        ARROW: lambda: sum(table.num_rows for table in channel.tables()),
+        PARQUET: lambda: write_tables(channel.tables(), sink, ".parquet"),
+        ALONE: lambda: write_tables(made, sink, ".parquet"),
+        BYTES: lambda: counted(path),
+        ROSBAGS: lambda: counted(path, deserialize),
+        PYBAG: lambda: run_pybag(path, "/x"),
+    }
+    assert {jobs[each]() for each in (COLUMNS, ARROW, BYTES, ROSBAGS, PYBAG)} == {count}
+    taken = seconds_a_gigabyte(jobs, path.stat().st_size, 3 if effort.quick else 9)
+    record(f"{what}, uncompressed MCAP to columns", Spread.of(taken[COLUMNS]), 1 / RATE, "s a GB", "of processor; checksums compared")
+    record(f"{what}, uncompressed MCAP to Arrow", Spread.of(taken[ARROW]), 1 / RATE, "s a GB", "the same, with a copy for Arrow")
+    record(f"{what}, uncompressed MCAP to Parquet", ratio(taken[PARQUET], taken[ALONE]), None, "x pyarrow's writing of tables in memory")
+    for peer in (BYTES, ROSBAGS, PYBAG):
+        record(f"{what}, {peer}", Spread.of(taken[peer]), None, "s a GB")
 
 
 def sparse(path: Path, size: int) -> Path:

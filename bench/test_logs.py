@@ -97,9 +97,9 @@ def run_mcap(path, *factories):
         return sum(1 for _ in (reader.iter_decoded_messages() if factories else reader.iter_messages()))
 
 
-def run_pybag(path):
+def run_pybag(path, topic="/imu"):
     with McapFileReader.from_file(path) as reader:
-        return sum(1 for _ in reader.messages("/imu"))
+        return sum(1 for _ in reader.messages(topic))
 
 
 def run_rosbags(path):

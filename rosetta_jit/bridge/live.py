@@ -77,7 +77,7 @@ class LiveRoute:
         self._waiting_bytes = 0
         self._held = 0
         self._changed = threading.Condition()
-        self._closed = False
+        self._closed = self._given_up = False
         self._thread: threading.Thread | None = None
         self._sending = threading.Lock()
         self._sender = 0
@@ -163,7 +163,8 @@ class LiveRoute:
                 taken = sink.send(data, time=time)
             except TransportError as error:
                 self._sender = 0
-                self.lost(f"{error.kind}: {error.detail}")
+                if not self._given_up:
+                    self.lost(f"{error.kind}: {error.detail}")
                 return True  # there is nothing to be tried again
             finally:
                 self._sender = 0
@@ -245,7 +246,8 @@ class LiveRoute:
             pause = min(2 * pause, MOST_S)
         else:
             return
-        self.lost(self._refusal or "not sent in time")
+        if not self._given_up:
+            self.lost(self._refusal or "not sent in time")
 
     def _ask(self, caller: Caller, data: bytes, begun: int) -> None:
         try:
@@ -267,8 +269,9 @@ class LiveRoute:
             self._thread.join(linger_s + 1)
         with self._changed:
             left = self.waiting
-            self._waiting.clear()  # or the thread would count them, too, as it finds the target closed
+            self._waiting.clear()
             self._waiting_bytes = 0
+            self._given_up = True  # what the thread still holds is counted here
         if left:
             self.lost("not sent before the end", left)
         if self._sink is not None:

@@ -31,6 +31,10 @@ CLOCKS = ("log_time", "publish_time")
 BYTES, MESSAGES = 4 << 20, 16_384
 """The most that a part is made of; a longer message is alone."""
 
+LARGE, LARGE_BYTES = 1 << 17, 16 << 20
+"""From which size on messages are large, and the most that a part of these is made of: to make a table takes as long as to decode a
+megabyte, however few messages it has."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Refused:
@@ -80,13 +84,16 @@ class Collector:
     first
         How many messages of the channel were read before.
     size
-        The most bytes that the messages of a part have together.
+        The most bytes that the messages of a part have together; if they are small, `BYTES`.
     expected
         How many messages there are, if that is known: memory is taken for as many as are going to be in a part.
     """
 
-    def __init__(self, decoder: Decoder, on_error: OnError, *, first: int = 0, size: int = BYTES, expected: int | None = None) -> None:
-        self._decoder, self._first, self._size, self._expected = decoder, first, size, expected or 0
+    def __init__(
+        self, decoder: Decoder, on_error: OnError, *, first: int = 0, size: int | None = None, expected: int | None = None
+    ) -> None:
+        self._decoder, self._first, self._expected = decoder, first, expected or 0
+        self._size = LARGE_BYTES if size is None else size
         self._on_error: OnError = on_error
         self._batch: Batch | None = None
         self._filling: Filling | None = None
@@ -109,10 +116,13 @@ class Collector:
         DecodeError
             A message is not what its type promises; the path begins with its number among all.
         """
-        done, ends = 0, np.cumsum(rows.ends - rows.begins)
+        if not len(rows):
+            return
+        done, sizes = 0, rows.ends - rows.begins
+        ends, size = np.cumsum(sizes), self._size if int(sizes.min()) >= LARGE else min(BYTES, self._size)
         while done < len(rows):
             before = int(ends[done - 1]) if done else 0
-            most = int(np.searchsorted(ends, self._size - self._bytes + before, side="right")) - done
+            most = max(int(np.searchsorted(ends, size - self._bytes + before, side="right")) - done, 0)
             taken = min(most, MESSAGES - self._count) or (0 if self._count else 1)
             if taken:
                 self._take(block, rows.only(slice(done, done + taken)))
@@ -145,7 +155,8 @@ class Collector:
     def _likely(self, rows: Rows) -> int:
         """How many messages a part is going to have that begins with some."""
         mean = max(1, int((rows.ends - rows.begins).sum()) // len(rows))
-        return max(len(rows), min(self._size // mean, MESSAGES, self._expected - self._first))
+        size = self._size if mean >= LARGE else min(BYTES, self._size)
+        return max(len(rows), min(size // mean, MESSAGES, self._expected - self._first))
 
     def rest(self) -> Iterator[Part]:
         """What is decoded and was not given yet; nothing is left."""

@@ -36,6 +36,9 @@ if TYPE_CHECKING:
 WINDOW = 4 << 20
 """Bytes that are read at once where records are not in chunks."""
 
+MOST_AT_ONCE = 16 << 20
+"""Bytes of a segment that are read before its chunk has told its own size."""
+
 PEEK = 4096
 """Bytes from which it is told what a record is."""
 
@@ -157,7 +160,13 @@ class Records:
         """The bytes of a chunk, and whether there is one, and no larger one than the index says; of a region nothing, which is true."""
         if isinstance(segment, Region):
             return memoryview(b""), True
-        record = self._storage.read_into(segment.at, scratch.record(segment.size))
+        size = segment.size
+        if size > MOST_AT_ONCE:  # an index of a bag tells where chunks begin, not where they end
+            _, head = self._head(segment.at, size)
+            if head.kind != "chunk" or head.size > size:
+                return memoryview(b""), False
+            size = head.size
+        record = self._storage.read_into(segment.at, scratch.record(size))
         head = self._grammar.head(bytes(record[:PEEK])) if len(record) > 9 else Head("damaged")
         return record, head.kind == "chunk" and head.size <= segment.size
 

@@ -388,6 +388,27 @@ def test_many_targets_that_take_nothing_are_closed_side_by_side(run):
     assert all(sum(each.counts.dropped.values()) == 1 for each in bridge.live.values())
 
 
+def test_each_message_for_a_target_that_takes_nothing_is_counted_once(run):
+    source, target = free_port(), free_port()
+    with socket.create_server(("127.0.0.1", target)) as stuck:
+        bridge, _ = run(route(source, f"{target}?timeout=0.05&linger=0.05", "queue = 5"))
+        live = next(iter(bridge.live.values()))
+        peer, _ = stuck.accept()
+        with peer, rj.publish(f"tcp:{source}") as robot:
+            for _ in range(40):
+                robot.send(bytes(1 << 20))
+            until(lambda: live.counts.taken == 40)
+            bridge.stop(0.1)
+            peer.setblocking(False)
+            arrived = 0
+            while piece := peer.recv(1 << 20):
+                arrived += len(piece)
+        dropped = live.counts.dropped
+        assert live.counts.sent == dropped["closed before it was sent"] + arrived // ((1 << 20) + 4)
+        assert live.counts.sent + sum(dropped.values()) - dropped["closed before it was sent"] == 40
+        assert dropped["closed before it was sent"] > 4
+
+
 def test_services(run, bottles):
     """An answer that goes through, one that cannot be translated, and messages that ask."""
     outer, inner, source = free_port(), free_port(), free_port()

@@ -19,7 +19,7 @@ from rosetta_jit.logs.converting.journal import NAME, PART, Journal, Progress
 from rosetta_jit.logs.converting.parts import Parts
 from rosetta_jit.logs.converting.rejected import Damaged, Rejected
 from rosetta_jit.logs.folder_names import folder_names
-from rosetta_jit.logs.parts import BYTES, CLOCKS, Collector
+from rosetta_jit.logs.parts import CLOCKS, LARGE_BYTES, Collector
 from rosetta_jit.logs.tables import table_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -136,7 +136,7 @@ class FolderConversion:
             raise LogError((words.not_empty(str(output)),))
 
     def _convert(self, journal: Journal, progress: Progress, parts: Parts, rejected: Rejected) -> None:
-        names, room = folder_names(each.topic for each in self.channels), min(BYTES, WAITING_BYTES // max(len(self.channels), 1))
+        names, room = folder_names(each.topic for each in self.channels), min(LARGE_BYTES, WAITING_BYTES // max(len(self.channels), 1))
         streams = [_Stream(each, names[each.topic], self._collector(each, progress, rejected, room)) for each in self.channels]
         done = 0
         for piece, within, block in ahead(self._blocks(progress)):
