@@ -35,6 +35,7 @@ ORDER = (
     "logs",
     "large_logs",
     "start",
+    "compile",
     "memory",
     "limits",
     "curves",

@@ -1,0 +1,142 @@
+"""How long types take to compile: large ones, ones of many arrays, and fifty at once. Seconds of processor time, without a cache."""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+from bench.figures import Series, Spread
+from bench.processes import run, took_s
+
+COMPILE = """
+import json, sys, time
+import rosetta_jit as rj
+of = {"decode": rj.Decoder.of, "encode": rj.Encoder.of}
+of[sys.argv[1]]("std_msgs/Header", encoding="ros1")
+for type, options in map(json.loads, sys.argv[2:]):
+    started = time.process_time()
+    of[sys.argv[1]](type, **options)
+    print(time.process_time() - started)
+"""
+"""After a first program, which pays for the compiler's import."""
+
+WARM = "import runpy, sys; sys.argv[0] = 'rosetta-jit'; runpy.run_module('rosetta_jit', run_name='__main__')"
+NONE = "import numpy, rosetta_jit as rj; rj.Decoder"
+FIFTY = """
+import sys
+import rosetta_jit as rj
+for type in sys.argv[1:]:
+    rj.Decoder.of(type, encoding="cdr")
+"""
+
+EVERYDAY = """
+geometry_msgs Accel AccelStamped Inertia Point Point32 PointStamped Polygon PolygonStamped Pose PoseArray PoseStamped PoseWithCovariance
+    PoseWithCovarianceStamped Quaternion QuaternionStamped Transform TransformStamped Twist TwistStamped TwistWithCovarianceStamped Vector3
+    Vector3Stamped Wrench WrenchStamped
+sensor_msgs BatteryState CameraInfo CompressedImage FluidPressure Illuminance Image Imu JointState Joy LaserScan MagneticField
+    MultiDOFJointState NavSatFix PointCloud2 Range RegionOfInterest RelativeHumidity Temperature TimeReference
+nav_msgs OccupancyGrid Odometry Path MapMetaData
+tf2_msgs TFMessage
+diagnostic_msgs DiagnosticArray
+trajectory_msgs JointTrajectory
+"""
+
+
+def everyday():
+    """The names of fifty types of ROS 2."""
+    package = ""
+    for word in EVERYDAY.split():
+        if word.endswith("_msgs"):
+            package = word
+        else:
+            yield f"{package}/msg/{word}"
+
+
+LARGE = {
+    "RST HeadObjects": ("rst.vision.HeadObjects", {"encoding": "protobuf"}, 0.5),
+    "ROS 2 InteractiveMarkerUpdate": ("visualization_msgs/msg/InteractiveMarkerUpdate", {"encoding": "cdr"}, 0.4),
+}
+"""Types, and how they are asked for; the aim in seconds."""
+
+
+def ros1(fields, kind):
+    text = "\n".join(f"{kind} field{index}" for index in range(fields))
+    return "bench/Fields", {"encoding": "ros1", "schema": {"bench/msg/Fields.msg": text}}
+
+
+def proto(fields, kind):
+    text = "\n".join(f"  {kind} field{index} = {index + 1};" for index in range(fields))
+    return "bench.Fields", protobuf(f"message Fields {{\n{text}\n}}")
+
+
+def protobuf(text):
+    return {"encoding": "protobuf", "schema": {"bench.proto": f'syntax = "proto3"; package bench;\n{text}'}}
+
+
+def lists(depth):
+    """A message of doubles in lists, so many in one another."""
+    levels = "\n".join(f"message Level{level} {{ repeated Level{level - 1} inner = 1; }}" for level in range(1, depth))
+    text = f"message Level0 {{ repeated double values = 1; }}\n{levels}"
+    return f"bench.Level{depth - 1}", protobuf(text)
+
+
+MADE = {
+    "ROS 1, 70 arrays": (*ros1(70, "float64[]"), 0.2),
+    "ROS 1, 200 arrays": (*ros1(200, "float64[]"), 0.6),
+    "ROS 1, 1,000 doubles": (*ros1(1000, "float64"), 1),
+    "ROS 1, 1,000 strings": (*ros1(1000, "string"), 2),
+    "protobuf, 1,000 integers": (*proto(1000, "int64"), 2),
+    "protobuf, 1,000 strings": (*proto(1000, "string"), 2),
+    "protobuf, 30 lists in one another": (*lists(30), 1),
+}
+
+
+def compiled_s(direction, *wanted):
+    """Seconds for each of some types, in a process of their own."""
+    asked = [json.dumps(each) for each in wanted]
+    return [float(line) for line in run("-c", COMPILE, direction, *asked, ROSETTA_JIT_CACHE="off").split()]
+
+
+@pytest.mark.parametrize("what", [*LARGE, *MADE])
+def test_types(what, effort, record):
+    type_, options, aim = {**LARGE, **MADE}[what]
+    rounds = 1 if effort.quick else 3
+    for direction, does in (("decode", "decoder"), ("encode", "encoder")):
+        took = [compiled_s(direction, (type_, options))[0] for _ in range(rounds)]
+        record(f"compile, {what}, {does}", Spread.of(took), None, "s", f"aim {aim} s")
+
+
+def test_conformance_type(record):
+    """The largest type of protobuf's own conformance tests."""
+    folder = os.environ.get("CONFORMANCE_PROTOS")
+    if folder is None:
+        pytest.skip("CONFORMANCE_PROTOS does not name the folder of protobuf's own test messages")
+    name = "google/protobuf/test_messages_proto3.proto"
+    options = {"encoding": "protobuf", "schema": str(Path(folder) / name)}
+    for direction, does in (("decode", "decoder"), ("encode", "encoder")):
+        took = compiled_s(direction, ("protobuf_test_messages.proto3.TestAllTypesProto3", options))
+        record(f"compile, protobuf's TestAllTypesProto3, {does}", Spread.of(took), None, "s", "aim 3 s")
+
+
+def test_fifty(record, tmp_path):
+    """What a log or a bridge brings at once, by `rosetta-jit cache warm` on all processors; then from the cache it has filled."""
+    types, cache = tuple(everyday()), {"ROSETTA_JIT_CACHE_DIR": str(tmp_path / "cache")}
+    assert len(set(types)) == 50
+    started, cores = time.perf_counter(), len(os.sched_getaffinity(0))
+    busy = took_s(WARM, "cache", "warm", *types, "--encoding", "cdr", "--direction", "decode", **cache)
+    elapsed, said = time.perf_counter() - started, f"{cores} processors, {{:.1f}} s of theirs; aim 1.5 s"
+    record("compile, fifty everyday types, elapsed", Spread.of([elapsed]), None, "s", said.format(busy))
+    loaded, alone = ([took_s(program, *types, **cache) for _ in range(3)] for program in (FIFTY, NONE))
+    more = Spread.of([1000 * (each - min(alone)) for each in loaded])
+    record("fifty everyday types, from the cache", more, None, "ms", "beyond a process that imports us and numpy; aim 100 ms")
+
+
+@pytest.mark.parametrize(("what", "kind"), [("fields", "float64"), ("texts", "string")])
+def test_growth(what, kind, effort, draw):
+    counts = [10, 100] if effort.quick else [30, 100, 300, 1000]
+    points = [(count, Spread.of(compiled_s("decode", ros1(count, kind)))) for count in counts]
+    draw(f"compile of a ROS 1 message of {what}", what, "s", (Series("decoder", "ours", tuple(points)),))
