@@ -57,6 +57,9 @@ class ReportError(RosettaError):
         self.diagnostics = diagnostics
         super().__init__(render_all(diagnostics))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.diagnostics,)
+
 
 class SchemaError(ReportError):
     """An IDL file or a wire schema that cannot be used."""

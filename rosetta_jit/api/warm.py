@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import time
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import replace
+from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
     from rosetta_jit.pipeline.request import Direction
 
 SUFFIX = ".mapping"
+LEAST = 4
+"""For how many programs a process of their own pays."""
+
 DIRECTIONS: tuple[Direction, ...] = ("decode", "encode")
 
 
@@ -68,11 +72,22 @@ def warm(programs: Iterable[Request], jobs: int | None = None) -> Iterator[tuple
     """Compile programs, ``jobs`` at a time (by default as many as there are processors); yields what became of each when it is done.
 
     That is nothing where the mapping has no rules for the direction, and several programs where the encoding stands for several dialects,
-    of which a writer must choose one.
+    of which a writer must choose one. Many programs are compiled in processes of their own, because LLVM works for one thread of a process
+    at a time; the first one here, and with it, into the cache, what all of them need.
+
+    Raises
+    ------
+    BrokenProcessPool
+        One of these processes was ended from outside.
     """
-    with ThreadPoolExecutor(jobs or os.cpu_count() or 1) as pool:
-        for done in as_completed([pool.submit(_made, each) for each in programs]):
-            yield done.result()
+    wanted = tuple(programs)
+    processes = min(jobs or os.cpu_count() or 1, len(wanted) // LEAST)
+    alone = wanted[:1] if processes > 1 else wanted
+    yield from map(_made, alone)
+    if processes > 1:
+        with ProcessPoolExecutor(processes, get_context("spawn")) as pool:
+            for done in as_completed([pool.submit(_made, each) for each in wanted[1:]]):
+                yield done.result()
 
 
 def _members(name: str) -> Iterable[str]:

@@ -38,16 +38,24 @@ def add_programs(command: argparse.ArgumentParser, *, nargs: str, of: str = "") 
 
 def run(arguments: argparse.Namespace) -> int:
     """One line a program: how long it took to compile or to load. Exit code 1 if one is wrong, there is none, or the cache keeps none."""
+    from concurrent.futures.process import BrokenProcessPool
+
     from rosetta_jit.api.warm import DIRECTIONS, programs_of, warm
     from rosetta_jit.runtime.cache.kernels import Cache
 
     directions = cast("list[Direction] | None", arguments.direction) or DIRECTIONS
     programs = programs_of(arguments.names, directions, encoding_of(arguments), parameters_of(arguments))
     started, made, wrong = time.perf_counter(), 0, 0
-    for number, several in enumerate(warm(programs, cast("int | None", arguments.jobs)), 1):
-        for each in several:
-            made, wrong = made + 1, wrong + (each.error is not None)
-            _show(each, as_json=arguments.json, progress=f"{number}/{len(programs)}")
+    try:
+        for number, several in enumerate(warm(programs, cast("int | None", arguments.jobs)), 1):
+            for each in several:
+                made, wrong = made + 1, wrong + (each.error is not None)
+                _show(each, as_json=arguments.json, progress=f"{number}/{len(programs)}")
+    except BrokenProcessPool:
+        wrong += 1
+        print(
+            "error: a process that compiled was ended from outside, as the system does where memory is short: try --jobs 1", file=sys.stderr
+        )
     if not arguments.json:
         print(f"{made - wrong} ready, {wrong} wrong, in {time.perf_counter() - started:.1f} s")
     is_kept = Cache.default().is_kept

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from concurrent.futures.process import BrokenProcessPool
 
 import pytest
 
@@ -37,6 +38,28 @@ def test_later_processes_find_them(tmp_path, monkeypatch, capsys):
     program, whole = capsys.readouterr().out.splitlines()
     assert program.startswith(f"[1/1] {BOOL}: decode, ")
     assert whole.startswith("1 ready, 0 wrong, in ")
+
+
+def test_many_are_compiled_in_several_processes(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("ROSETTA_JIT_CACHE_DIR", str(tmp_path))
+    types = [f"std_msgs/msg/{name}" for name in ("Bool", "Byte", "Char", "Empty", "Float32", "Float64", "Int8", "Nothing")]
+    assert main(["compile", *types, "--direction", "decode", "--jobs", "2"]) == 1
+    out, err = capsys.readouterr()
+    assert "7 ready, 1 wrong" in out
+    assert "no file declares a message `std_msgs/msg/Nothing`" in err
+    kept = {path.name for path in tmp_path.rglob("*") if path.is_file()}
+    assert all(Decoder.of(name) for name in types[:-1])
+    assert {path.name for path in tmp_path.rglob("*") if path.is_file()} == kept
+
+
+def test_a_process_that_is_gone_is_told(monkeypatch, capsys):
+    def broken(*_):
+        raise BrokenProcessPool
+        yield
+
+    monkeypatch.setattr("rosetta_jit.api.warm.warm", broken)
+    assert main(["compile", BOOL]) == 1
+    assert "was ended from outside" in capsys.readouterr().err
 
 
 def test_what_is_wrong_is_told_and_the_others_are_made(tmp_path, monkeypatch, capsys):
