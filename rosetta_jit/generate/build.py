@@ -61,7 +61,7 @@ class LowByteFirst(AheadOfTime):
     """The same for machines whose numbers lie as most encodings have them: arrays of them are copied as they are."""
 
     def _optimised(self, kernel: Kernel) -> Kernel:
-        return postpone(alone(passes.run(kernel)))
+        return postpone(alone(passes.run(kernel, passes.FIELD_BY_FIELD)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any, cast, overload
 
 import numpy as np
 
-from rosetta_jit.kernel.state import VALID
+from rosetta_jit.kernel.state import EPOCH, VALID
 from rosetta_jit.runtime.columns import column, presence_mask
 from rosetta_jit.runtime.holder.family import family_of
 from rosetta_jit.runtime.holder.record import Record
-from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.lanes import Lanes, in_use
 from rosetta_jit.runtime.parts import contents, joined, revived
 from rosetta_jit.runtime.plan import plan
 
@@ -122,9 +122,12 @@ class Batch:
                 return Batch(self.family_, joined([(self.lanes, index)]))
 
     def _row(self, index: int) -> Any:
+        epoch = self.lanes.words[EPOCH]
         try:
             row = range(len(self))[index]
         except IndexError:
+            if epoch < 0 or self.lanes.words[EPOCH] != epoch:
+                raise in_use() from None
             raise IndexError(f"message {index} of {len(self)}") from None
         return self.family_.row(self.lanes, row)
 

@@ -92,7 +92,20 @@ def entry_of(library: Library | None, state: Kept) -> int | None:
     return None if library is None or state.is_shared else library["call"]
 
 
-INTERNAL = frozenset({"__annotations__", "__signature__", "__vectorcalloffset__", "__weakref__", "announced", "shared_", "wires_"})
+INTERNAL = frozenset(
+    (
+        "__annotations__",
+        "__signature__",
+        "__vectorcalloffset__",
+        "__weakref__",
+        "announced",
+        "borrows_",
+        "fill_",
+        "filling_",
+        "shared_",
+        "wires_",
+    )
+)
 """What programs need for themselves and each other, besides attributes that begin with an underscore."""
 
 

@@ -44,7 +44,10 @@ PASSES: tuple[Pass, ...] = (
     sink,
 )
 
-ANY_MACHINE = tuple(bulk_of_bytes if each is bulk else each for each in PASSES if each not in {group, join})
+FIELD_BY_FIELD = tuple(each for each in PASSES if each is not join)
+"""Those for source that people read, and that may see what is done with each field."""
+
+ANY_MACHINE = tuple(bulk_of_bytes if each is bulk else each for each in FIELD_BY_FIELD if each is not group)
 """Those for code that may run where numbers lie with their high byte first."""
 
 
