@@ -1,13 +1,31 @@
 """Fields that lie side by side in the message and in a row become one move, and what is moved over a whole row need not be emptied before.
 
-Only numbers that both have in the same byte order, on a machine that has it, too: the low byte first.
+Only numbers that both have in the same byte order, on a machine that has it, too: the low byte first. What a For does with its elements
+is left as it is: LLVM does it for several of them at once.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import WIDTH, Const, Copy, Expect, Fill, Get, IsText, Let, Load, Nearest, Place, Require, SetField, Store, Wire
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Const,
+    Copy,
+    Expect,
+    Fill,
+    For,
+    Get,
+    IsText,
+    Let,
+    Load,
+    Nearest,
+    Place,
+    Require,
+    SetField,
+    Store,
+    Wire,
+)
 from rosetta_jit.kernel.limits import MAX_PIECE, MAX_PIECES
 from rosetta_jit.kernel.rewrite import reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.shape import expressions_of, subexpressions
@@ -42,7 +60,7 @@ def join(kernel: Kernel) -> Kernel:
     """The kernel with one move where fields lie side by side."""
 
     def block(body: Block) -> Block:
-        return _uncovered(tuple(_joined([with_blocks(stmt, block) for stmt in body])))
+        return _uncovered(tuple(_joined([stmt if isinstance(stmt, For) else with_blocks(stmt, block) for stmt in body])))
 
     return with_bodies(kernel, tuple(map(block, kernel.bodies)))
 
