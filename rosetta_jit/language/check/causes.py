@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 OF_NAMES = frozenset(("unknown-function", "unknown-name", "unknown-field"))
 """Mistakes that leave open what a rule means."""
 
+OF_CALLS = frozenset(("arguments", "signal"))
+"""Mistakes in what a function is given, which leave open what undoes it."""
+
 CLASHES = frozenset(("type-clash",))
 """Mistakes after which another field is probably meant."""
 
@@ -56,9 +59,10 @@ def unclear(problems: Iterable[Diagnostic], relations: list[Span]) -> bool:
 def causes(problems: list[Diagnostic], relations: list[Span]) -> list[Diagnostic]:
     """The reports without those that follow from others, in their order; ``relations`` are in the order of the text.
 
-    A function that there is not has no inverse either, and what has the wrong type for one direction of a relation has it for the other.
+    A function that there is not, or that is given what it does not take, has no inverse either, and what has the wrong type for one
+    direction of a relation has it for the other.
     """
-    named = {_relation(each, relations) for each in problems if each.code in OF_NAMES}
+    named = {_relation(each, relations) for each in problems if each.code in OF_NAMES | OF_CALLS}
     clashes = unclear(problems, relations)
     undeclared = {_quoted(each) for each in problems if each.code == "unknown-state"}
     found: list[Diagnostic] = []
