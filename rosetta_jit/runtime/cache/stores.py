@@ -86,7 +86,7 @@ class MemoryStore:
         self._files.pop(name, None)
 
     def stored(self) -> list[Stored]:
-        return [Stored(name, len(data), used) for name, (data, used) in list(self._files.items())]
+        return [Stored(name, len(data), used) for name, (data, used) in self._files.copy().items()]
 
 
 class FolderStore:
