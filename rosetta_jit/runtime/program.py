@@ -92,21 +92,8 @@ def entry_of(library: Library | None, state: Kept) -> int | None:
     return None if library is None or state.is_shared else library["call"]
 
 
-INTERNAL = frozenset(
-    (
-        "__annotations__",
-        "__signature__",
-        "__vectorcalloffset__",
-        "__weakref__",
-        "announced",
-        "borrows_",
-        "fill_",
-        "filling_",
-        "shared_",
-        "wires_",
-    )
-)
-"""What programs need for themselves and each other, besides attributes that begin with an underscore."""
+INTERNAL = frozenset({"__annotations__", "__signature__", "__vectorcalloffset__", "__weakref__", "announced"})
+"""What programs need for themselves and each other, besides attributes that begin or end with an underscore."""
 
 
 class CallSignature:
@@ -188,7 +175,7 @@ class Told:
         __signature__ = CallSignature()
 
     def __dir__(self) -> list[str]:
-        return [name for name in super().__dir__() if name not in INTERNAL and (name.startswith("__") or not name.startswith("_"))]
+        return [name for name in super().__dir__() if name not in INTERNAL and (name.startswith("__") or "_" not in (name[0], name[-1]))]
 
     @cached_property
     def builtin(self) -> Callable[..., Any]:

@@ -120,17 +120,18 @@ def _copy(first: _Move, begin: int, size: int) -> Copy:
 
 def _uncovered(block: Block) -> Block:
     """A block without what empties bytes of a row that are then all set, by statements that only check, name values, or set fields."""
-    return tuple(stmt for number, stmt in enumerate(block) if not (isinstance(stmt, Fill) and _is_covered(stmt, block[number + 1 :])))
+    return tuple(stmt for number, stmt in enumerate(block) if not _is_covered(block, number))
 
 
-def _is_covered(fill: Fill, behind: Block) -> bool:
-    match fill:
+def _is_covered(block: Block, number: int) -> bool:
+    """Whether a statement is one that empties bytes, all of which are set behind it."""
+    match block[number]:
         case Fill(Place() as place, Const(_, size)) if not reads_memory(place.row):
-            begin, end = place.offset, place.offset + int(size)
+            free = [(place.offset, place.offset + int(size))]
         case _:
             return False
-    free = [(begin, end)]
-    for stmt in behind:
+    for later in range(number + 1, len(block)):
+        stmt = block[later]
         covered = _span(stmt, place)
         if covered is not None:
             free = [each for span in free for each in _without(span, covered)]
