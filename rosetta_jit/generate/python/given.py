@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
+from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.python.classes import member_names
-from rosetta_jit.generate.python.direct import slots_of
 from rosetta_jit.generate.python.expressions import Scope, bare, expression, within
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.kernel.ir import Binary, Expr, Local, Place

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.python.direct import numbers_of, slots_of
+from rosetta_jit.generate.cleared import slots_of
+from rosetta_jit.generate.python.direct import numbers_of
 from rosetta_jit.generate.python.expressions import CODES, bare, expression
 from rosetta_jit.generate.python.given import Binder
 from rosetta_jit.generate.python.groups import turned
