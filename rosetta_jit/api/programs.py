@@ -56,6 +56,9 @@ class _Made:
         build = _build(self._request)
         return build.holder_framework.definition_of(build.types.holder, build.types.schema)
 
+    def _is_plain(self, encodings: frozenset[str | None]) -> bool:
+        return self._request.mapping is None and self._request.encoding in encodings
+
     def announced(self, framework: str) -> dict[str, str]:
         """What a publisher says of the type on the wire, by the names of transports' options; as of a bridge. It is made anew."""
         build = _build(self._request)

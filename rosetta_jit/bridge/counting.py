@@ -94,6 +94,12 @@ class RouteCounts:
         """Count messages that do not go on; whether this is worth a line, as it is at the first, the tenth, the hundredth …"""
         return self._count(self.dropped, reason, count)
 
+    def lose(self, reason: str, count: int) -> str:
+        """Count as `drop`; the line that says so, empty where it is not worth one. A count of 0: a peer was refused, and tries again."""
+        if not count:
+            return reason if reason not in self.dropped and self.drop(reason, 0) else ""
+        return f"{self.dropped[reason] or 'many'} dropped: {reason}" if self.drop(reason, count) else ""
+
     def fail(self, cause: str) -> bool:
         """Count a message that could not be translated; as `drop`."""
         return self._count(self.failed, cause, 1)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.bridge.counting import RouteCounts
 from rosetta_jit.errors import MessageError, TransportError
+from rosetta_jit.transports.limits import MAX_QUEUE_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -73,6 +74,7 @@ class LiveRoute:
         self._interval_ns = 0 if route.rate is None else int(1e9 / route.rate)
         self._due_ns = 0
         self._waiting: deque[Waiting] = deque()
+        self._waiting_bytes = 0
         self._held = 0
         self._changed = threading.Condition()
         self._closed = False
@@ -143,11 +145,8 @@ class LiveRoute:
         if self._sender == threading.get_ident():
             self._refusal, self._refused = reason, self._refused + count  # of the message that is being sent, which may be sent again
             return
-        if not count:  # a peer was refused, and tries again and again
-            if reason not in self.counts.dropped and self.counts.drop(reason, 0):
-                self._say(f"{self.route.name}: {reason}")
-        elif self.counts.drop(reason, count):
-            self._say(f"{self.route.name}: {self.counts.dropped[reason]} dropped: {reason}")
+        if line := self.counts.lose(reason, count):
+            self._say(f"{self.route.name}: {line}")
 
     def _failed(self, error: MessageError) -> None:
         cause = f"{error.kind}: {error.detail} - at `{error.path}`" if error.path else f"{error.kind}: {error.detail}"
@@ -184,22 +183,35 @@ class LiveRoute:
 
     def _wait(self, item: Waiting) -> None:
         """Let a message wait for the target, or drop one."""
-        reason = ""
+        dropped = 0
         with self._changed:
             if self._thread is None:
                 self._thread = threading.Thread(target=self._empty, name=f"queue of {self.route.name}", daemon=True)
                 self._thread.start()
             if self.route.full == "block":
-                self._changed.wait_for(lambda: len(self._waiting) < self.route.queue or self._closed)
-            elif len(self._waiting) >= self.route.queue:
-                reason = f"queue full ({self._refusal})" if self._refusal else "queue full"
-                if self.route.full == "oldest":
-                    self._waiting.popleft()
-            if not reason or self.route.full == "oldest":
+                self._changed.wait_for(lambda: self._has_room(item) or self._closed)
+            elif self.route.full == "oldest":
+                while not self._has_room(item):
+                    self._next()
+                    dropped += 1
+            elif not self._has_room(item):
+                dropped = 1
+            if not dropped or self.route.full == "oldest":
                 self._waiting.append(item)
+                self._waiting_bytes += len(item[0])
                 self._changed.notify_all()
-        if reason:
-            self.lost(reason)
+        if dropped:
+            self.lost(f"queue full ({self._refusal})" if self._refusal else "queue full", dropped)
+
+    def _has_room(self, item: Waiting) -> bool:
+        is_short = not self._waiting or self._waiting_bytes + len(item[0]) <= MAX_QUEUE_BYTES
+        return is_short and len(self._waiting) < self.route.queue
+
+    def _next(self) -> Waiting:
+        """Take the oldest message out of the queue."""
+        item = self._waiting.popleft()
+        self._waiting_bytes -= len(item[0])
+        return item
 
     def _empty(self) -> None:
         """The queue's thread."""
@@ -208,7 +220,7 @@ class LiveRoute:
                 self._changed.wait_for(lambda: self._waiting or self._closed)
                 if not self._waiting:
                     return
-                item, self._held = self._waiting.popleft(), 1
+                item, self._held = self._next(), 1
                 self._changed.notify_all()
             self._offer(item)
             with self._changed:
@@ -256,6 +268,7 @@ class LiveRoute:
         with self._changed:
             left = self.waiting
             self._waiting.clear()  # or the thread would count them, too, as it finds the target closed
+            self._waiting_bytes = 0
         if left:
             self.lost("not sent before the end", left)
         if self._sink is not None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.bridge.limits import MAX_ASKING
 from rosetta_jit.errors import TransportError
+from rosetta_jit.transports.conversation import Conversation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -27,6 +28,10 @@ REASONS = {
     "failed": ("messages_failed_total", "cause", "Messages that could not be translated."),
 }
 CONTENT = "text/plain; version=0.0.4; charset=utf-8"
+
+
+ASKING_S = 5.0
+"""How long one question may take."""
 
 
 def text(snapshot: list[dict[str, Any]]) -> str:
@@ -123,6 +128,11 @@ class _Server(ThreadingHTTPServer):
         super().__init__(place, handler)
         self._room = threading.Semaphore(MAX_ASKING)
 
+    def get_request(self) -> tuple[Any, Any]:
+        """The next connection, for one question."""
+        sock, place = super().get_request()
+        return Conversation.over(sock, ASKING_S), place
+
     def process_request(self, request: Any, client_address: Any) -> None:
         """Answer in a thread of its own, unless too many ask at the same time; then hang up."""
         if self._room.acquire(blocking=False):
@@ -142,7 +152,7 @@ class _Server(ThreadingHTTPServer):
 
 
 class _Handler(BaseHTTPRequestHandler):
-    timeout = 5
+    timeout = ASKING_S
 
     def do_GET(self) -> None:
         """Answer one question."""

@@ -235,7 +235,7 @@ class Running:
                 self._open_route(each)
             else:
                 each.open(call(each.route.call, **announced(each.route.call, each.request)))
-                each.server = serve(each.route.serve, each.answer, **served(each.route.serve, each.request, each.reply))
+                each.server = serve(each.route.serve, each.answer, lost=each.lost, **served(each.route.serve, each.request, each.reply))
         except RosettaError as error:
             if each.problem != str(error):
                 self._say(f"{name}: {error}")

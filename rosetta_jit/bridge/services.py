@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.bridge.counting import RouteCounts
 from rosetta_jit.errors import MessageError, TransportError
+from rosetta_jit.transports.base import ANSWER_FAILED
 
 if TYPE_CHECKING:
     from rosetta_jit.bridge.configuration import Rpc
@@ -59,6 +60,11 @@ class LiveService:
         counts.bytes_out += len(reply)
         counts.latencies.add(perf_counter_ns() - begun)
         return bytes(reply)
+
+    def lost(self, reason: str, count: int) -> None:
+        """Count questions that never came to `answer`."""
+        if reason != ANSWER_FAILED and (line := self.counts.lose(reason, count)):
+            self._say(f"{self.route.name}: {line}")
 
     def close(self, linger_s: float = 0.0) -> None:
         """Stop answering."""

@@ -9,6 +9,8 @@ from rosetta_jit.diagnostics import Diagnostic
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rosetta_jit.source import Span
+
 
 def unknown_language(name: str, known: Sequence[str]) -> Diagnostic:
     """A language that is not installed."""
@@ -76,3 +78,9 @@ def not_in_object(function: str) -> Diagnostic:
 def no_object(language: str) -> Diagnostic:
     """A language without headers for objects."""
     return Diagnostic("error", "no-object", f"objects have no header in `{language}`", help="use --language c")
+
+
+def not_of_wires(span: Span | None) -> Diagnostic:
+    """Decoders of several wires in a language that has none, with bytes left in a message, or in an object file."""
+    help_ = "choose `--language c --directions decode`; encoders are made in every language, by `--directions encode --wire NAME`"
+    return Diagnostic("error", "not-generated", "such source cannot join messages of several wires", span, help=help_)

@@ -53,6 +53,12 @@ def scalar_needs_each(span: Span | None) -> Diagnostic:
     return error("needs-each", "one value for many elements", span, help_="write `[]` behind the elements: `.a[0 to 3][] = 0`")
 
 
+def numbers_of_image(span: Span | None) -> Diagnostic:
+    """Numbers in the bytes that a function of images makes or takes."""
+    message = "the bytes of an image stand in another order as bytes, not as numbers of several bytes"
+    return error("image-order", message, span, help_="`numbers` and `number_bytes` take a field: set one to the image's bytes first")
+
+
 def out_of_place(span: Span | None) -> Diagnostic:
     """Many elements where a rule cannot use them."""
     help_ = "an array in another order is assigned as a whole: `.a = .b[0 to 3]`, or element by element: `.a[] = 2 * .b[]`"

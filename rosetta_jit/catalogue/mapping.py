@@ -6,7 +6,9 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.habits import instead
 from rosetta_jit.catalogue.names import shorten
+from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
@@ -41,6 +43,18 @@ EXPECTATIONS = (
 )
 """Token kind → how a person calls what may stand there, in the order in which it is listed."""
 
+WORDS = {
+    kind: kind.strip("_").lower()
+    for kind in (
+        *("IMPORT", "PARAMETER", "STATE", "FUNCTION", "_SAME", "NAMES", "IGNORE", "DEFAULT", "REST", "REJECT", "FOR", "FROM", "TO", "BY"),
+        *("END", "WHEN", "ELSE", "IF", "AND", "OR", "NOT", "VIA", "DEPTH", "WHERE", "WITH", "EXCEPT", "OTHERWISE"),
+    )
+} | {
+    kind: f"{kind.lower().replace('_', '-')}:"
+    for kind in ("DATA_HOLDER", "WIRE_SCHEMA", "LIMIT", "ROUNDING", "EDITION", "RULES", "UNPACK_RULES", "PACK_RULES")
+}
+"""Token kind → the word of the language that it is, with the colon that follows a statement's."""
+
 STARTS_VALUE = frozenset({"LPAR", "LSQB", "START", "NAME", "STRING"})
 STARTS_RULE = frozenset({"START"})
 
@@ -50,7 +64,21 @@ def unexpected(span: Span, kind: str, expected: frozenset[str]) -> Diagnostic:
     found = span.source.text[span.start : span.end]
     name = "the end of the file" if kind == "$END" else f"`{shorten(found)}`"
     message = f"expected {_listed(_expected(expected))}, found {name}"
-    return error("syntax", message, span, "not expected here", help_=_undotted(span, kind, expected) or _hint(found, kind, expected))
+    return error("syntax", message, span, "not expected here", help_=_help(span, kind, expected))
+
+
+def _help(span: Span, kind: str, expected: frozenset[str]) -> str:
+    found = span.source.text[span.start : span.end]
+    return _undotted(span, kind, expected) or instead(span, kind, expected) or _meant(span, kind, expected) or _hint(found, kind, expected)
+
+
+def _meant(span: Span, kind: str, expected: frozenset[str]) -> str:
+    """The word of the language that may stand there and is spelt nearly so; empty where there is none."""
+    if kind != "NAME":
+        return ""
+    written = re.match(r"[A-Za-z_-]+:?", span.source.text[span.start : span.start + 20])
+    meant = None if written is None else closest(written[0], sorted(WORDS[each] for each in expected & WORDS.keys()))
+    return f"did you mean `{meant}`?" if meant else ""
 
 
 BEFORE = {"RSQB": r"(?<![\w.])([A-Za-z_]\w*)\[$", "MEMBER": r"(?<![\w.])([A-Za-z_]\w*\[[^][\n]*\])$"}
@@ -72,7 +100,7 @@ def _undotted(span: Span, kind: str, expected: frozenset[str]) -> str:
 
 def _expected(kinds: frozenset[str]) -> list[str]:
     implied = (STARTS_VALUE if "INTEGER" in kinds else frozenset[str]()) | (STARTS_RULE if "FOR" in kinds else frozenset[str]())
-    return [name for kind, name in EXPECTATIONS if kind in kinds - implied]
+    return [name for kind, name in EXPECTATIONS if kind in kinds - implied] or (["`else`"] if "ELSE" in kinds else [])
 
 
 def _hint(found: str, kind: str, expected: frozenset[str]) -> str:
@@ -210,8 +238,8 @@ def no_rules(span: Span | None) -> Diagnostic:
     )
 
 
-def import_not_found(span: Span | None, name: str, folders: Iterable[str]) -> Diagnostic:
-    """An imported file that is nowhere on the search path."""
+def import_not_found(span: Span | None, name: str, folders: Iterable[str], near: str | None = None) -> Diagnostic:
+    """An imported file that is nowhere on the search path; ``near`` is one that may be meant."""
     searched = tuple(f"searched {folder}" for folder in folders)
     return error(
         "import-not-found",
@@ -219,7 +247,7 @@ def import_not_found(span: Span | None, name: str, folders: Iterable[str]) -> Di
         span,
         "imported here",
         notes=searched,
-        help_="correct the name, or name its folder in ROSETTA_JIT_PATH",
+        help_=f'did you mean "{shorten(near)}"?' if near else "correct the name, or name its folder in ROSETTA_JIT_PATH",
     )
 
 
@@ -296,10 +324,11 @@ def file_unreadable(name: str, why: str) -> Diagnostic:
     return error("file-unreadable", f"{name} cannot be read: {why}", None)
 
 
-def mapping_not_found(name: str, folders: Iterable[str]) -> Diagnostic:
-    """A mapping that is neither a file nor on the search path."""
+def mapping_not_found(name: str, folders: Iterable[str], near: str | None = None) -> Diagnostic:
+    """A mapping that is neither a file nor on the search path; ``near`` is one that may be meant."""
     searched = tuple(f"searched {folder}" for folder in folders)
-    return error("mapping-not-found", f'there is no mapping "{shorten(name)}"', None, notes=searched)
+    help_ = f'did you mean "{shorten(near)}"?' if near else ""
+    return error("mapping-not-found", f'there is no mapping "{shorten(name)}"', None, notes=searched, help_=help_)
 
 
 def placed(problem: Diagnostic, span: Span | None) -> Diagnostic:

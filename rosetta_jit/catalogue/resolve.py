@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.habits import for_function, for_member, for_name
 from rosetta_jit.catalogue.limits import MAX_NAMES, MAX_QUOTED
 from rosetta_jit.catalogue.mapping import error, note, shorten, warning
 from rosetta_jit.catalogue.spelling import closest
@@ -42,7 +43,7 @@ def unknown_type(span: Span | None, name: str, known: Collection[str]) -> Diagno
         span,
         "not declared",
         notes=there_are("declared", known),
-        help_=did_you_mean(name, known),
+        help_=did_you_mean(name, known) or "import the file that declares it",
     )
 
 
@@ -68,9 +69,16 @@ def other_side(name: str, origin: str) -> str:
     return f"`{shorten(name)}` is a field of the target; what a rule reads, indices included, is on the {origin} side"
 
 
+def read_side(name: str, target: str) -> str:
+    """A hint: the field exists on the side that the rule reads."""
+    return f"`{shorten(name)}` is a field of what is read; a rule here sets a field of the {target}: turn it round"
+
+
 def not_a_struct(span: Span | None, name: str, found: str) -> Diagnostic:
     """A field of something that has none."""
     hint = "index it first: `[i]`" if found.startswith("an array") else f"leave out `.{shorten(name)}`"
+    if found.startswith("an array") or found in ("text", "bytes"):
+        hint = for_member(name, span) or hint
     return error("no-fields", f"`.{shorten(name)}` of {found}, which has no fields", span, f"this is {found}", help_=hint)
 
 
@@ -134,7 +142,7 @@ def unknown_name(span: Span | None, name: str, known: Collection[str]) -> Diagno
         span,
         "not known here",
         notes=there_are("known", known),
-        help_=did_you_mean(name, known) or _how_named(name, known),
+        help_=for_name(name, known) or did_you_mean(name, known) or _how_named(name, known),
     )
 
 
@@ -170,7 +178,7 @@ def unknown_function(span: Span | None, name: str, known: Collection[str]) -> Di
         f"there is no function `{shorten(name)}`",
         span,
         notes=there_are("functions", known),
-        help_=did_you_mean(name, known),
+        help_=for_function(name) or did_you_mean(name, known),
     )
 
 
@@ -234,8 +242,22 @@ def written_at(span: Span | None) -> str:
 
 def type_clash(span: Span | None, source: str, target: str, how: str = "") -> Diagnostic:
     """A value that no conversion makes fit."""
-    help_ = how.replace("(...)", f"({written_at(span)})", 1) or "assign another field, or compute what is meant from it"
+    help_ = how.replace("(...)", f"({written_at(span)})", 1) or _of_elements(written_at(span), source, target)
     return error("type-clash", f"{source} cannot become {target}", span, f"this is {source}", help_=help_)
+
+
+NUMBERS = ("int", "uint", "float")
+"""What the types of numbers begin with."""
+
+
+def _of_elements(value: str, source: str, target: str) -> str:
+    """How an array and a single value can be made of each other."""
+    if value.startswith(".") and source.startswith("an array of") and not target.startswith("an array"):
+        is_number = source.removeprefix("an array of ").startswith(NUMBERS) and target.startswith(NUMBERS)
+        return f"name one of its elements, `{value}[0]`{f', or make one number of them, `mean({value}[])`' if is_number else ''}"
+    if target == f"an array of {source}":
+        return f"`[{value}]` is an array of this one element"
+    return "assign another field, or compute what is meant from it"
 
 
 def constant_range(span: Span | None, value: str, target: str) -> Diagnostic:
@@ -259,6 +281,8 @@ def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
         hint = OF_FLOATS.get(operator, hint)
     if found == "text":
         hint = f"`number({written_at(span)})` is the number that a text spells"
+    if found.startswith("an array of") and found.removeprefix("an array of ").startswith(NUMBERS):
+        hint = f"`{written_at(span)}[]` is each of its elements; a rule that computes with them sets `.place[]`"
     return error("operand", f"`{operator}` cannot take {found}", span, f"this is {found}", help_=hint)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.mapping import error, shorten
-from rosetta_jit.catalogue.resolve import did_you_mean, nearest, there_are
+from rosetta_jit.catalogue.resolve import did_you_mean, nearest, there_are, written_at
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -35,11 +35,7 @@ def listed(kinds: Sequence[str], optional: int) -> str:
 def text_needed(span: Span | None, function: str, found: str) -> Diagnostic:
     """A number where a text is meant."""
     is_number = found.startswith(("int", "uint", "float", "bool"))
-    hint = (
-        "`text(...)` writes a number, `integer(...)` and `number(...)` read one"
-        if is_number
-        else "name a text, bytes, or an array of 8-bit integers"
-    )
+    hint = f"`text({written_at(span)})` is the number as a text" if is_number else "name a text, bytes, or an array of 8-bit integers"
     return error("text-needed", f"`{function}` takes a text, not {shorten(found)}", span, f"this is {shorten(found)}", help_=hint)
 
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import images as words
-from rosetta_jit.functions.images import bytes_of, typed_integers
+from rosetta_jit.functions.images import bytes_of, makes_bytes, typed_integers
 from rosetta_jit.kernel.ir import Wire
 from rosetta_jit.kernel.terms import add
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
-from rosetta_jit.language.functions.texts import is_bytes
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.lowering.colours import ENCODINGS, PACKED, Picture, to_rgb
 from rosetta_jit.lowering.texts.views import View, sound
@@ -29,7 +28,7 @@ def _type_rgb(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> ty
         scope.problems.append(words.arguments(call.span, call.function, len(arguments)))
         return None
     pixels, encoding, *numbers = arguments
-    if not (isinstance(pixels, typed.Access) and is_bytes(pixels.type)):
+    if not makes_bytes(pixels):
         scope.problems.append(words.no_bytes(pixels.span, call.function, describe(pixels.type)))
         return None
     named = encoding.value if isinstance(encoding, typed.Const) and isinstance(encoding.value, str) else None

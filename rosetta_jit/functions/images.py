@@ -8,7 +8,7 @@ image_width image_height image_channels image_depth (bytes)     of a compressed 
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.catalogue import images as words
 from rosetta_jit.kernel.ir import Advance, Binary, Compare, Extent, HostCall, Local, Place, Reserve, Used, Wire
@@ -17,7 +17,9 @@ from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import as_int64, describe
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
 from rosetta_jit.language.functions.texts import is_bytes
+from rosetta_jit.language.image_orders import COLOURS, ORDERED
 from rosetta_jit.language.typed import INT64
+from rosetta_jit.lowering.calls import lowered
 from rosetta_jit.lowering.texts.views import View, sound
 from rosetta_jit.model.types import Bytes, String
 
@@ -48,6 +50,9 @@ PROBLEMS = {
 }
 """What the host's functions give where there is nothing to give."""
 
+MAKING = frozenset(("compress", "decompress", ORDERED, *COLOURS))
+"""The functions that make such bytes."""
+
 LANE = "texts"
 """The hidden lane of what is computed: one byte a row."""
 
@@ -62,13 +67,18 @@ def _type_of_image(call: model.Call, arguments: list[typed.Expr], scope: Scope) 
         scope.problems.append(words.arguments(call.span, call.function, len(arguments)))
         return None
     first = arguments[0]
-    lies_there = isinstance(first, typed.Access) or (isinstance(first, typed.Call) and first.function in {"compress", "decompress"})
-    if not (lies_there and is_bytes(first.type)):
+    if not makes_bytes(first):
         scope.problems.append(words.no_bytes(first.span, call.function, describe(first.type)))
         return None
     if call.function == "compress":
         return _type_compressed(call, arguments, scope)
     return typed.Call(call.function, (first,), Bytes() if call.function == "decompress" else INT64, call.span)
+
+
+def makes_bytes(value: typed.Expr) -> bool:
+    """Whether a value is bytes that lie in a field, or that one of these functions makes."""
+    is_there = isinstance(value, typed.Access) or (isinstance(value, typed.Call) and value.function in MAKING)
+    return is_there and is_bytes(value.type)
 
 
 def _type_compressed(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> typed.Expr | None:
@@ -129,6 +139,9 @@ def bytes_of(value: typed.Expr, values: Evaluation) -> Extent:
             numbers = (index(FORMATS.index(format_)), *(values.writer.let("number", values.of(each)) for each in given))
             size = _asked(COMPRESSED, numbers, (source,), values)
             return _filled(COMPRESS, numbers, source, size, values)
+        case typed.Call():
+            made = cast("View", lowered(value, values))
+            return Extent(made.address, values.writer.let("size", made.size))
         case _:
             raise AssertionError(value)
 

@@ -8,13 +8,12 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import generate as words
-from rosetta_jit.catalogue.wires import not_here
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.generate.bounds import bounds_of_type, least, reserved
 from rosetta_jit.generate.inner_types import with_inner_types
 from rosetta_jit.generate.languages import installed
 from rosetta_jit.generate.origins import origins_of
-from rosetta_jit.generate.unit import Unit, UserFunction
+from rosetta_jit.generate.unit import Unit, UserFunction, wire_of
 from rosetta_jit.kernel.ir import Digits, Nearest, Scale, Unary
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.passes.alone import alone
@@ -24,6 +23,7 @@ from rosetta_jit.lowering.rules.values import scalar_type
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.types import Ref
 from rosetta_jit.pipeline.build import Build, within_stack
+from rosetta_jit.pipeline.wires import arrival_registers
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -66,12 +66,16 @@ class LowByteFirst(AheadOfTime):
 
 @dataclass(frozen=True, slots=True)
 class Wishes:
-    """What a user wants besides: ``freestanding`` source, a ``holder``, the header to ``include`` for it, arrays of ``numpy``."""
+    """What a user wants besides: ``freestanding`` source, a ``holder``, the header to ``include`` for it, arrays of ``numpy``.
+
+    ``wires`` is whether decoders of several wires can be had.
+    """
 
     freestanding: bool = False
     holder: str = ""
     include: str = ""
     numpy: bool = False
+    wires: bool = False
 
 
 NO_WISHES = Wishes()
@@ -89,17 +93,17 @@ def unit_of(
     """
     if not NAME.fullmatch(name) or name in HEADERS:
         raise SchemaError((words.unusable_name(name),))
+    roles = tuple(each for role in roles for each in _of_wires(request, role, machine, wishes))
     builds: dict[Role, AheadOfTime] = {role: machine(_for(request, role)) for role in roles}
     kernels: dict[Role, Kernel] = {}
     for role, build in builds.items():
-        if role != "encode" and build.wires:
-            raise MappingError((not_here(build.checked.mapping.wire_span, "generated source"),))
         kernels[role] = build.kernels[0]
         if role == "encode":
             kernels["size"] = build.kernels[1]
     _check(kernels, freestanding=wishes.freestanding)
     first = next(iter(builds.values()))
     bounds, functions = _bounds(first, kernels), _functions(first, kernels)
+    state = tuple((name, word) for name, _, word in first.header["state"]["variables"])
     return Unit(
         name,
         tuple(_made_from(builds)),
@@ -113,8 +117,9 @@ def unit_of(
         wishes.holder,
         wishes.include,
         _origins(builds),
-        tuple((name, word) for name, _, word in first.header["state"]["variables"]),
+        state,
         wishes.numpy,
+        arrival_registers([name for name, _ in state], first.wires),
     )
 
 
@@ -123,8 +128,19 @@ def _origins(builds: Mapping[Role, AheadOfTime]) -> dict[Role, tuple[Origin, ...
     return {**found, "size": found["encode"]} if "encode" in found else found
 
 
+def _of_wires(request: Request, role: Role, machine: type[AheadOfTime], wishes: Wishes) -> tuple[Role, ...]:
+    """The role; instead of decoding, decoding the messages of each wire that is wanted, where the mapping has several."""
+    build = machine(_for(request, role))
+    if role == "encode" or not build.wires:
+        return (role,)
+    if role == "borrow" or not wishes.wires:
+        raise MappingError((words.not_of_wires(build.checked.mapping.wire_span),))
+    return tuple(f"decode_{wire}" for wire in ([request.wire] if request.wire else build.wires))
+
+
 def _for(request: Request, role: Role) -> Request:
-    return replace(request, direction="encode" if role == "encode" else "decode", borrow=role == "borrow")
+    direction = "encode" if role == "encode" else "decode"
+    return replace(request, direction=direction, borrow=role == "borrow", wire=wire_of(role) or request.wire)
 
 
 def _bounds(build: Build, kernels: dict[Role, Kernel]) -> tuple[int | None, ...]:
@@ -225,4 +241,5 @@ def generated(request: Request, language: str, roles: tuple[Role, ...], name: st
         raise SchemaError((words.no_numpy(language, tuple(name for name, each in known.items() if each.numpy)),))
     with within_stack():
         machine = LowByteFirst if known[language].low_byte_first else AheadOfTime
+        wishes = replace(wishes, wires=known[language].wires)
         return known[language].files(unit_of(request, known[language].roles(roles), name, wishes, machine))

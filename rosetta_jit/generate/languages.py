@@ -43,6 +43,8 @@ class Language:
         What it prints need not run on machines whose numbers have their high byte first.
     numpy
         Its arrays of numbers can be numpy's.
+    wires
+        Its decoders of several wires fill one holder.
     """
 
     name: str
@@ -51,6 +53,7 @@ class Language:
     borrows: bool = False
     low_byte_first: bool = False
     numpy: bool = False
+    wires: bool = False
 
     def roles(self, wanted: tuple[Role, ...]) -> tuple[Role, ...]:
         """The kernels that the printer needs for what is wanted."""
@@ -66,7 +69,9 @@ LANGUAGES = (
     Language(
         "python", "one module of dataclasses", "rosetta_jit.generate.python.language:files", borrows=True, low_byte_first=True, numpy=True
     ),
-    Language("c", "C11: NAME.h and NAME.c, without allocation, globals or dependencies", "rosetta_jit.generate.c.language:files"),
+    Language(
+        "c", "C11: NAME.h and NAME.c, without allocation, globals or dependencies", "rosetta_jit.generate.c.language:files", wires=True
+    ),
     Language(
         "cpp",
         "C++17: NAME.hpp and NAME.cpp, which fill classes",

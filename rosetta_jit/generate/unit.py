@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, cast
 
 from rosetta_jit.model.types import Schema
 from rosetta_jit.startup.dataclass import dataclass
@@ -15,8 +15,21 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Kernel, Scalar
     from rosetta_jit.model.layout import Layout
 
-Role = Literal["decode", "borrow", "encode", "size"]
-"""What a kernel is for; `borrow` decodes and leaves bytes in the message."""
+Purpose = Literal["decode", "borrow", "encode", "size"]
+"""What a kernel does; `borrow` decodes and leaves bytes in the message."""
+
+Role = str
+"""What a kernel is for: its kind, or `decode_WIRE` where it decodes the messages of one of several wires."""
+
+
+def kind_of(role: Role) -> Purpose:
+    """What the kernel of a role does."""
+    return cast("Purpose", role.partition("_")[0])
+
+
+def wire_of(role: Role) -> str:
+    """The wire whose messages the kernel of a role decodes; empty where the mapping has one, without a name."""
+    return role.partition("_")[2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +65,8 @@ class Unit:
         The state variables of the mapping, in the order of registers, and the words that they are at first.
     numpy
         Arrays of numbers are numpy's, where the language has them.
+    arrivals
+        For each of several wires the registers that have the number of the last message of all, and of its own last one.
     origins
         Which fields of the holder the rules of the mapping name, for each kernel.
     """
@@ -70,3 +85,4 @@ class Unit:
     origins: Mapping[Role, tuple[Origin, ...]] = field(default_factory=dict["Role", "tuple[Origin, ...]"])
     state: tuple[tuple[str, int], ...] = ()
     numpy: bool = False
+    arrivals: Mapping[str, tuple[int, int]] = field(default_factory=dict[str, "tuple[int, int]"])

@@ -71,7 +71,7 @@ class _Assignment(Reader):
 
     def mark(self, presence: Presence, row: ir.Value) -> None:
         """Make a field present."""
-        if isinstance(presence, Bit) and not presence.births:
+        if isinstance(presence, Bit) and not presence.initial:
             place = self.cell_address(presence.cell, row)
             self.builder.store(self.builder.or_(self.builder.load(place, typ=I64), ir.Constant(I64, presence.mask)), place)
             return

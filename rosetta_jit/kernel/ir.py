@@ -518,3 +518,8 @@ class Kernel:
     def lanes(self) -> int:
         """How many lanes are the holder's."""
         return len(self.strides) - self.hidden
+
+    @property
+    def usual(self) -> tuple[Block, ...]:
+        """The bodies that are not rare."""
+        return self.bodies[: len(self.bodies) - self.rare]

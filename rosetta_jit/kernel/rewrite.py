@@ -181,8 +181,10 @@ def _refilled(stmt: Stmt, blocks: list[Block]) -> Stmt:
 
 
 def with_bodies(kernel: Kernel, bodies: tuple[Block, ...]) -> Kernel:
-    """A kernel with other bodies; the same kernel if they are the same."""
-    return kernel if bodies == kernel.bodies else replace(kernel, bodies=bodies)
+    """A kernel with other bodies; the same kernel if they are the same, and the same body where one is."""
+    if bodies == kernel.bodies:
+        return kernel
+    return replace(kernel, bodies=tuple(old if new == old else new for old, new in zip(kernel.bodies, bodies, strict=True)))
 
 
 def with_registers_behind(kernel: Kernel, before: int, every: int) -> Kernel:
@@ -211,15 +213,7 @@ def substituted(expr: Expr, values: Mapping[str, Expr], renamed: Mapping[str, st
 
 def locals_in(expr: Expr) -> set[str]:
     """Names of the locals that an expression reads."""
-    names: set[str] = set()
-    stack = [expr]
-    while stack:
-        part = stack.pop()
-        if isinstance(part, Local):
-            names.add(part.name)
-        else:
-            stack.extend(operands(part))
-    return names
+    return {part.name for part in subexpressions(expr) if isinstance(part, Local)}
 
 
 def names_read(block: Block) -> set[str]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from itertools import chain, pairwise
-from typing import TYPE_CHECKING, assert_never
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, assert_never
 
 from rosetta_jit.kernel.ir import (
     Advance,
@@ -52,7 +53,7 @@ from rosetta_jit.kernel.state import INDEX_WORDS
 from rosetta_jit.kernel.terms import BEGIN, END, ROW
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from rosetta_jit.kernel.ir import Address, Block, Expr, Extent, Kernel, Routine, Stmt
 
@@ -146,6 +147,11 @@ def is_short_and_straight(kernel: Kernel) -> bool:
     return not any(isinstance(each, For | While) for each in every)
 
 
+def is_short(kernel: Kernel) -> bool:
+    """Whether the first of a kernel's bodies has so few statements that it can be compiled once more."""
+    return sum(1 for _ in statements(kernel.bodies[0])) <= SHORT_IN_VECTORS
+
+
 def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
     """The expressions that stand in a statement itself."""
     match stmt:
@@ -183,32 +189,25 @@ def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
 
 
 def operands(expr: Expr) -> tuple[Expr, ...]:
-    """The expressions that stand in an expression itself. The frequent kinds come first: no other function is called so often."""
-    match expr:
-        case Local() | Const():
-            return ()
-        case Binary() | Compare():
-            return (expr.left, expr.right)
-        case Used() | Capacity() | Told() | Register():
-            return ()
-        case Load(_, at, _):
-            return (at,)
-        case Get(_, place):
-            return (place.row,)
-        case Unary(_, operand) | Convert(_, operand) | Bits(_, operand):
-            return (operand,)
-        case Fits(_, left, right):
-            return (left, right)
-        case Select(condition, then, otherwise):
-            return (condition, then, otherwise)
-        case IsText(address, size):
-            return (_start(address), size)
-        case Nearest(address, size, exponent):
-            return (_start(address), size, exponent)
-        case Digits(value, _) | Scale(value):
-            return (value,)
-        case _:
-            assert_never(expr)
+    """The expressions that stand in an expression itself. A table is asked, since no other function is called so often."""
+    return _OPERANDS[type(expr)](expr)
+
+
+def _none(expr: Expr) -> tuple[Expr, ...]:  # noqa: ARG001 - as for those that have some
+    return ()
+
+
+_OPERANDS: dict[type[Expr], Callable[[Any], tuple[Expr, ...]]] = {
+    **dict.fromkeys((Const, Local, Used, Capacity, Told, Register), _none),
+    **dict.fromkeys((Binary, Compare, Fits), attrgetter("left", "right")),
+    **dict.fromkeys((Unary, Convert, Bits), lambda expr: (expr.operand,)),
+    **dict.fromkeys((Digits, Scale), lambda expr: (expr.value,)),
+    Load: lambda expr: (expr.at,),
+    Get: lambda expr: (expr.place.row,),
+    Select: attrgetter("condition", "then", "otherwise"),
+    IsText: lambda expr: (_start(expr.address), expr.size),
+    Nearest: lambda expr: (_start(expr.address), expr.size, expr.exponent),
+}
 
 
 def calls_to_host(kernels: Iterable[Kernel]) -> list[HostCall]:
@@ -239,13 +238,12 @@ def extents_of(call: HostCall) -> tuple[Extent, ...]:
     return call.inputs if call.target is None else (*call.inputs, call.target)
 
 
-def subexpressions(expr: Expr) -> Iterator[Expr]:
+def subexpressions(expr: Expr) -> list[Expr]:
     """An expression and all inside it."""
-    stack = [expr]
-    while stack:
-        part = stack.pop()
-        yield part
-        stack.extend(operands(part))
+    parts = [expr]
+    for part in parts:  # which grows
+        parts += _OPERANDS[type(part)](part)
+    return parts
 
 
 def bound_names(stmt: Stmt) -> tuple[str, ...]:

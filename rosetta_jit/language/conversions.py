@@ -32,6 +32,8 @@ def describe(type_: Type) -> str:
             return f"{'' if signed else 'u'}int{bits}"
         case Float(bits):
             return f"float{bits}"
+        case String(encoding="utf-16"):
+            return "text of 16-bit units"
         case String():
             return "text"
         case Bytes():
@@ -51,7 +53,9 @@ def describe(type_: Type) -> str:
 def same(left: Type, right: Type) -> bool:
     """Whether two types have the same values, however their IDLs spell them."""
     match left, right:
-        case (Bool(), Bool()) | (String(), String()) | (Bytes(), Bytes()):
+        case String(encoding=encoding), String(encoding=other):
+            return (encoding == "utf-16") == (other == "utf-16")
+        case (Bool(), Bool()) | (Bytes(), Bytes()):
             return True
         case Int(bits, signed), Int(other_bits, other_signed):
             return bits == other_bits and signed == other_signed

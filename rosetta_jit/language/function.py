@@ -61,9 +61,11 @@ OURS = (
     "spelling",
     "moments",
     "octets",
+    "signals",
     "checksums",
     "images",
     "colours",
+    "reorders",
     *GROUPS,
 )
 """Modules of `rosetta_jit.functions` with a tuple `FUNCTIONS`, in the order of the reference."""

@@ -22,6 +22,9 @@ MAX_STATE = 64
 MAX_WIRES = 16
 """wires of a mapping"""
 
+MAX_SIGNAL_BYTES = 64
+"""bytes of a frame of signals: as many as CAN FD has"""
+
 MAX_LIMIT = 1 << 40
 """bytes that a `limit` allows"""
 
@@ -60,6 +63,9 @@ MAX_FILE_BYTES = 4 << 20
 
 MAX_TEXT_BYTES = 64 << 20
 """bytes of all files that a program is made from"""
+
+MAX_LISTED_FILES = 1000
+"""files of a folder among which the one is looked for that an import means"""
 
 MAX_USES = 1000
 """uses of mappings in all: each is a copy of their rules"""

@@ -140,11 +140,13 @@ def _member(step: Member, type_: Type, message: Message, scope: Scope, side: Sid
     if step.name in members:
         fields = members[step.name]
         return [FieldStep(field) for field in fields], fields[-1].type
+    other = scope.messages["wire" if side == "holder" else "holder"]
     elsewhere = ""
-    if side != scope.target and step.name in members_of(scope.messages[scope.target].root, scope.messages[scope.target].schema):
-        elsewhere = words.other_side(f".{step.name}", side)
+    if type_ == scope.messages[side].root and step.name in members_of(other.root, other.schema):
+        elsewhere = words.other_side(f".{step.name}", side) if side != scope.target else words.read_side(f".{step.name}", side)
     scope.problems.append(words.unknown_field(step, side, type_.name, members.keys(), elsewhere))
-    return Broken((words.nearest(step.name, members.keys()) or step.name,))
+    near = words.nearest(step.name, members.keys())
+    return Broken(() if near is None else (near,))  # any field may be meant where none has a name like it
 
 
 def members_of(type_: Struct | Union, schema: Schema) -> dict[str, tuple[Field, ...]]:

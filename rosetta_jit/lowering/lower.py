@@ -14,23 +14,23 @@ from rosetta_jit.kernel.ir import Block, Capacity, Compare, Direction, Fill, Ker
 from rosetta_jit.kernel.ir import Place as KernelPlace
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index
 from rosetta_jit.language.check.discriminators import discriminators_of
-from rosetta_jit.language.resolve.defaults import has_array
 from rosetta_jit.language.scope import Message
 from rosetta_jit.lowering.codec.ending import end
 from rosetta_jit.lowering.codec.fields import root_fields
 from rosetta_jit.lowering.codec.walk import walk
-from rosetta_jit.lowering.codec.wire_fields import Found, NotInPlaceError, WireFields
+from rosetta_jit.lowering.codec.wire_fields import Found, WireFields
 from rosetta_jit.lowering.rules.holder_side import HolderSide
-from rosetta_jit.lowering.rules.initial_values import bear, opened_lanes, places_left
-from rosetta_jit.lowering.rules.packed_values import Supplies, look_up_arrays
-from rosetta_jit.lowering.rules.shares import born_of, clear, kept_lanes
+from rosetta_jit.lowering.rules.in_place import obstacle
+from rosetta_jit.lowering.rules.initial_values import initialise, opened_lanes
+from rosetta_jit.lowering.rules.packed_values import AssignedByRules, look_up_arrays
+from rosetta_jit.lowering.rules.shares import clear, initial_of, kept_lanes
 from rosetta_jit.lowering.rules.state import begin
 from rosetta_jit.lowering.rules.statements import Runner
 from rosetta_jit.lowering.rules.values import Values
 from rosetta_jit.lowering.rules.wire_side import WireSide
 from rosetta_jit.lowering.staging import staged_fields
 from rosetta_jit.lowering.writer import References, Where, Writer, block
-from rosetta_jit.model.initial_values import Births
+from rosetta_jit.model.initial_values import InitialValues
 from rosetta_jit.model.types import Struct
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Tagged
@@ -79,10 +79,9 @@ def lower(
     if mapped is None:
         return lowering.kernel(name, lambda fields, attempt: _own(encoding, attempt, fields))
     mapped = _in_order(mapped, mapped.holder if direction == "decode" else mapped.wire)
-    try:
-        return lowering.kernel(name, lambda fields, attempt: _in_place(encoding, attempt, fields, mapped))
-    except NotInPlaceError:
-        return lowering.kernel(name, lambda fields, attempt: _staged(encoding, attempt, fields, mapped))
+    in_the_way = obstacle(encoding, lowering.attempts, mapped.rules, direction, mapped.schema)
+    relate = _in_place if in_the_way is None else _staged
+    return lowering.kernel(name, lambda fields, attempt: relate(encoding, attempt, fields, mapped))
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,18 +98,18 @@ class Mapped:
     share: Share | None = None
 
     def side(self, fields: HolderFields, type_: Type, *, filled: Side | None) -> HolderSide:
-        """A message in lanes; where rules fill it, with what it is born with."""
+        """A message in lanes; where rules fill it, with its initial values."""
         if filled is None:
             return HolderSide(fields)
-        births, cell = Births(self.schema, fields.layout), fields.cell
+        initial, cell = InitialValues(self.schema, fields.layout), fields.cell
         opened = opened_lanes(self.rules, fields.layout, cell.slot, filled)
-        born = births.of(type_, cell.slot, cell.lane)
+        of_message = initial.of(type_, cell.slot, cell.lane)
         if self.share is None or filled == "wire":
-            bear(fields, born, cell.row, opened)
-            return HolderSide(fields, births, opened, self.unions)
+            initialise(fields, of_message, cell.row, opened)
+            return HolderSide(fields, initial, opened, self.unions)
         clear(fields, self.share)
-        bear(fields, born_of(self.share, born, fields.layout), cell.row, opened)
-        return HolderSide(fields, births, opened, self.unions, joined=self.share.joined)
+        initialise(fields, initial_of(self.share, of_message, fields.layout), cell.row, opened)
+        return HolderSide(fields, initial, opened, self.unions, joined=self.share.joined)
 
 
 def _in_order(mapped: Mapped, target: Type) -> Mapped:
@@ -137,11 +136,16 @@ class _Lowering:
     registers: int = 0
     kept: tuple[int, ...] = ()
 
+    @property
+    def attempts(self) -> tuple[Codec, ...]:
+        """The codecs of which each becomes a body."""
+        attempts = self.encoding.attempts if self.direction == "decode" else (self.encoding.written,)
+        return tuple(attempt for attempt in attempts if attempt is not None)
+
     def kernel(self, name: str, relate: Relate) -> Kernel:
         writer = Writer(self.direction, [*(lane.stride for lane in self.layout.lanes), SCRATCH_STRIDE], references=self.references)
         own = len(writer.strides)
-        attempts = self.encoding.attempts if self.direction == "decode" else (self.encoding.written,)
-        bodies = tuple(self.body(writer, attempt, relate) for attempt in attempts if attempt is not None)
+        bodies = tuple(self.body(writer, attempt, relate) for attempt in self.attempts)
         strides, routines = tuple(writer.strides), tuple(writer.routines.values())
         sites, hidden = tuple(writer.sites), len(strides) - own
         rare = self.encoding.rare if self.direction == "decode" else 0
@@ -191,10 +195,8 @@ def _nested(encoding: Encoding, attempt: Codec) -> Mapping[str, Codec]:
     return encoding.nested[number]
 
 
-def _in_place(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: Mapped) -> None:
+def _in_place(_: Encoding, attempt: Codec, fields: HolderFields, mapped: Mapped) -> None:
     """Decode: find the wire's fields, then run the rules. Otherwise: lay out the message, then fill in the elements."""
-    if encoding.nested or isinstance(attempt, Tagged):
-        raise NotInPlaceError
     writer, rules = fields.writer, mapped.rules
     begin(writer, rules)
     found, decodes = Found(), writer.direction == "decode"
@@ -207,11 +209,9 @@ def _in_place(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: 
         Runner(writer, wire, holder).run(rules, Values(writer, wire, {}))
         writer.position = end
         return
-    if any(has_array(place.type, mapped.schema, told=False) for place in places_left(rules)):
-        raise NotInPlaceError
     values = Values(writer, holder, {})
     look_up_arrays(rules, holder, values)
-    wire = WireSide(writer, WireFields(writer, found, Supplies(rules, holder, values)))
+    wire = WireSide(writer, WireFields(writer, found, AssignedByRules(rules, holder, values)))
     walk(attempt, wire.root, writer)
     if writer.direction == "encode":
         Runner(writer, holder, wire).run(rules, values)

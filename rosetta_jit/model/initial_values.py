@@ -1,9 +1,9 @@
-"""What a new row is born with where zeros alone are no value.
+"""The initial values of a new row where zeros alone are none.
 
-    Birth = FixedArray | FirstCase
+    InitialValue = FixedArray | FirstCase
 
 An array whose type fixes its length has that many elements from the start, all zero; and a union whose discriminator is zero has the case
-that zero selects. What may be absent is born when it comes.
+that zero selects. What may be absent gets its initial value when it comes.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.model.layout import Row, Span, Variant
-from rosetta_jit.model.limits import MAX_BORN_BYTES
+from rosetta_jit.model.limits import MAX_INITIAL_BYTES
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Optional, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -30,8 +30,8 @@ class FixedArray:
         The lane of the rows, and the word in each where the span begins.
     lane, length : int
         The lane of the elements, and how many each row has.
-    within : tuple of Birth
-        What each element is born with.
+    within : tuple of InitialValue
+        The initial values of each element.
     size_bytes : int
         What it takes for one row.
     """
@@ -40,7 +40,7 @@ class FixedArray:
     word: int
     lane: int
     length: int
-    within: tuple[Birth, ...]
+    within: tuple[InitialValue, ...]
     size_bytes: int
 
 
@@ -53,31 +53,31 @@ class FirstCase:
     number: int
 
 
-Birth = FixedArray | FirstCase
+InitialValue = FixedArray | FirstCase
 
 
-class Births:
-    """The births of every part of a layout.
+class InitialValues:
+    """The initial values of every part of a layout.
 
-    An array that cannot be born, because it would be too large or a struct would contain itself without end, begins empty.
+    An array whose initial elements would be too many, or contain themselves without end, begins empty.
     """
 
     def __init__(self, schema: Schema, layout: Layout) -> None:
         self._schema = schema
         self._layout = layout
-        self._rows: dict[int, tuple[Birth, ...]] = {}  # by the slot's identity: the layout keeps slots alive
-        self._lanes: dict[int, tuple[Birth, ...] | None] = {}
+        self._rows: dict[int, tuple[InitialValue, ...]] = {}  # by the slot's identity: the layout keeps slots alive
+        self._lanes: dict[int, tuple[InitialValue, ...] | None] = {}
 
-    def of(self, type_: Type, slot: Slot, lane: int) -> tuple[Birth, ...]:
-        """What a value of the type is born with that comes to lie at a slot of a lane's rows."""
+    def of(self, type_: Type, slot: Slot, lane: int) -> tuple[InitialValue, ...]:
+        """The initial values of a type whose value comes to lie at a slot of a lane's rows."""
         return self._of(type_, slot, lane) or ()
 
-    def of_elements(self, element: Type, lane: int) -> tuple[Birth, ...]:
-        """What each row of a lane is born with."""
+    def of_elements(self, element: Type, lane: int) -> tuple[InitialValue, ...]:
+        """The initial values of each row of a lane."""
         return self._elements(element, lane) or ()
 
-    def _of(self, type_: Type, slot: Slot, lane: int) -> tuple[Birth, ...] | None:
-        """As `of`; None for an array that cannot be born."""
+    def _of(self, type_: Type, slot: Slot, lane: int) -> tuple[InitialValue, ...] | None:
+        """As `of`; None for an array that has to begin empty."""
         value = type_.value if isinstance(type_, Optional) else type_
         match self._schema.resolve(value), slot:
             case Struct() as struct, Row():
@@ -91,32 +91,32 @@ class Births:
             case _:
                 return ()
 
-    def _fields(self, struct: Struct, slot: Row, lane: int) -> list[Birth]:
-        births: list[Birth] = []
+    def _fields(self, struct: Struct, slot: Row, lane: int) -> list[InitialValue]:
+        initial: list[InitialValue] = []
         for each, member in zip(struct.fields, slot.members, strict=True):
             if isinstance(each.type, Union) and isinstance(member.slot, Variant):
-                births += self._first_case(struct, each.type, member.slot, lane)
+                initial += self._first_case(struct, each.type, member.slot, lane)
             elif not isinstance(each.type, Optional):
-                births += self.of(each.type, member.slot, lane)
-        return births
+                initial += self.of(each.type, member.slot, lane)
+        return initial
 
-    def _first_case(self, struct: Struct, union: Union, slot: Variant, lane: int) -> list[Birth]:
+    def _first_case(self, struct: Struct, union: Union, slot: Variant, lane: int) -> list[InitialValue]:
         number = selected(union, 0) if any(each.name == union.discriminator for each in struct.fields) else 0
         if not number:
             return []
         inside = self.of(union.cases[number - 1].type, slot.members[number - 1].slot, lane)
         return [FirstCase(lane, slot.offset // 8, number), *inside]
 
-    def _array(self, element: Type | None, length: int, slot: Span, lane: int) -> tuple[Birth, ...] | None:
+    def _array(self, element: Type | None, length: int, slot: Span, lane: int) -> tuple[InitialValue, ...] | None:
         within = () if element is None else self._elements(element, slot.lane)
         if within is None:
             return None
         size = length * (self._layout.lanes[slot.lane].stride + _size(within))
-        if not 0 < size <= MAX_BORN_BYTES:
+        if not 0 < size <= MAX_INITIAL_BYTES:
             return None if size else ()
         return (FixedArray(lane, slot.offset // 8, slot.lane, length, within, size),)
 
-    def _elements(self, element: Type, lane: int) -> tuple[Birth, ...] | None:
+    def _elements(self, element: Type, lane: int) -> tuple[InitialValue, ...] | None:
         """As `of_elements`; None also while they are being looked for, which is where a struct contains itself."""
         if lane not in self._lanes:
             self._lanes[lane] = None
@@ -148,17 +148,17 @@ def selecting(union: Union, discriminator: Type, number: int) -> int:
     return next((each for each in candidates if each not in taken), 0)
 
 
-def _size(births: tuple[Birth, ...]) -> int:
-    return sum(each.size_bytes for each in births if isinstance(each, FixedArray))
+def _size(initial: tuple[InitialValue, ...]) -> int:
+    return sum(each.size_bytes for each in initial if isinstance(each, FixedArray))
 
 
-def _affordable(births: list[Birth]) -> tuple[Birth, ...]:
+def _affordable(initial: list[InitialValue]) -> tuple[InitialValue, ...]:
     """Those that fit together, in order."""
-    kept: list[Birth] = []
+    kept: list[InitialValue] = []
     total = 0
-    for each in births:
+    for each in initial:
         size = each.size_bytes if isinstance(each, FixedArray) else 0
-        if total + size <= MAX_BORN_BYTES:
+        if total + size <= MAX_INITIAL_BYTES:
             kept.append(each)
             total += size
     return tuple(kept)

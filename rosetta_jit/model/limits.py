@@ -17,7 +17,7 @@ MAX_SLOTS = 20_000
 MAX_ROW_BYTES = 1 << 20
 """bytes of one row: the fields of a message or element but for what they refer to"""
 
-MAX_BORN_BYTES = 1 << 26
+MAX_INITIAL_BYTES = 1 << 26
 """bytes of the arrays of fixed length of a new message: longer arrays begin empty"""
 
 MAX_UNIT_PARTS = 500

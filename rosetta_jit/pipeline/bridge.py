@@ -21,8 +21,8 @@ from rosetta_jit.model.same_layout import have_same_fields
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref, same_name
 from rosetta_jit.pipeline.build import Build, plain_site
-from rosetta_jit.pipeline.held import joined
 from rosetta_jit.pipeline.kept import kept_of
+from rosetta_jit.pipeline.successors import joined
 from rosetta_jit.pipeline.user_functions import check_compiled
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.garbage import imported

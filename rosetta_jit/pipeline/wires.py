@@ -47,6 +47,11 @@ def wire_named(mapping: Mapping, request: Request) -> str:
     return request.wire or names[0]
 
 
+def arrival_registers(state: Sequence[str], wires: Sequence[str]) -> dict[str, tuple[int, int]]:
+    """For each wire the registers of the numbers of the last message of all, and of its own last one; ``state`` are all variables."""
+    return {wire: (state.index(ALL), state.index(variable_of(wire))) for wire in wires if ALL in state}
+
+
 def types_of_wire(checked: Checked, request: Request, schema: Schema, rules: tuple[Rule, ...]) -> Types:
     """The types of the program of one wire; ``rules`` are those of all wires for its direction."""
     wire, holder = wire_named(checked.mapping, request), checked.holder

@@ -58,14 +58,14 @@ class Batch:
         """So many empty messages of a type."""
         batch = cls.room(holder_class, count)
         with batch.lanes:
-            batch.lanes.bear(batch.lanes.plan.births, 0, count)
+            batch.lanes.initialise(batch.lanes.plan.initial, 0, count)
         return batch
 
     @classmethod
     def room(cls, holder_class: type[Holder], count: int) -> Batch:
         """Room for so many messages of a type that are going to be decoded."""
         family = holder_class.family_
-        return cls(family, Lanes(plan(family.layout, count, family.tree.births), family.array_type))
+        return cls(family, Lanes(plan(family.layout, count, family.tree.initial), family.array_type))
 
     @classmethod
     def from_arrow(cls, holder_class: type[Holder], source: Any) -> Batch:
@@ -317,6 +317,6 @@ def _revived(
 ) -> Batch:
     """Unpickle, or copy."""
     family = family_of(text, manners)
-    batch = Batch(family, revived(family.layout, family.tree.births, family.array_type, found))
+    batch = Batch(family, revived(family.layout, family.tree.initial, family.array_type, found))
     batch.errors, batch.kept_ = errors, kept
     return batch

@@ -43,9 +43,10 @@ if TYPE_CHECKING:
     Words = np.ndarray[tuple[int], np.dtype[np.int64]]
 
 VECTORCALL, CONTEXT, CALLABLE_BYTES = 64, 72, 80
-MADE, THREAD, REGISTERS, FAILED = 5, 6, 7, 8
+MADE, THREAD, REGISTERS, FAILED, OTHERS = 5, 6, 7, 8, 9
 """Words of a program's context: how many messages it has made, if its kernel asks; the thread that its own holder belongs to, or 0; the
-address of its registers, or 0; 1 where an entry comes to the slow path because the kernel for one of several wires has failed."""
+address of its registers, or 0; 1 where an entry comes to the slow path because the kernel for one of several wires has failed; of an
+encoder, the address of two words, a class of other objects and what is called with one of them, or 0."""
 
 STATE, INDEX, MESSAGE_BYTES = 16, 56, 72
 ALWAYS, NEVER = -(1 << 63), 1 - (1 << 63)
@@ -82,7 +83,8 @@ class Context:
     def words(self) -> Words:
         """The array that the entry reads, and where it counts. It borrows every reference: `self` must live as long."""
         return np.array(
-            [self.state.ctypes.data, id(self.holder), id(self.slow), id(self.cell), id(self.holder_type), 0, 0, self.registers, 0], np.int64
+            [self.state.ctypes.data, id(self.holder), id(self.slow), id(self.cell), id(self.holder_type), 0, 0, self.registers, 0, 0],
+            np.int64,
         )
 
 

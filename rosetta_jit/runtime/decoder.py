@@ -11,12 +11,15 @@ import numpy as np
 from rosetta_jit.errors import DecodeError
 from rosetta_jit.kernel.state import CAPACITY, CLEAN, USED, VALID, lane_word
 from rosetta_jit.runtime import run
+from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.attributes.methods import turning
 from rosetta_jit.runtime.callable import FAILED, THREAD
 from rosetta_jit.runtime.joining import NOT_WHOLE, broken_wires, joining
 from rosetta_jit.runtime.limits import MAX_CLASSES
-from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
+from rosetta_jit.runtime.memory import address_of
+from rosetta_jit.runtime.program import Loaded, Program, is_foreign, one_by_one
 from rosetta_jit.runtime.room import roomier
-from rosetta_jit.runtime.whole_objects import decoding
+from rosetta_jit.runtime.whole_objects import decoding, decoding_whole
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
@@ -74,35 +77,53 @@ class DecoderBase(Program):
             """
             return self.builtin
 
-    def to(self, message: Buffer, object_type: type[_Object], *, types: Mapping[str, type] | None = None) -> _Object:
-        """Decode into a new object of a class: a dataclass, or a framework's own.
+    if TYPE_CHECKING:  # for people and type checkers it is a method
 
-        Parameters
-        ----------
-        types
-            The classes of messages within it by the names of their types, where ``object_type`` does not tell them. A table for many types
-            will do, such as the ``types`` of a typestore of rosbags.
+        def to(self, message: Buffer, object_type: type[_Object], *, types: Mapping[str, type] | None = None) -> _Object: ...
 
-        Raises
-        ------
-        DecodeError
-            The message is not what the schema promises.
-        ValuesError
-            The class lacks an attribute, or no class is known for a message within it.
-        """
-        self._refuse_part("to a new object")
+    else:
+
+        @cached_property
+        def to(self):
+            """``to(message, object_type, types=None)`` decodes into a new object of a class: a dataclass, or a framework's own.
+
+            Parameters
+            ----------
+            types
+                The classes of messages within it by the names of their types, where ``object_type`` does not tell them. A table for many
+                types will do, such as the ``types`` of a typestore of rosbags.
+
+            Raises
+            ------
+            DecodeError
+                The message is not what the schema promises.
+            ValuesError
+                The class lacks an attribute, or no class is known for a message within it.
+            """
+            return self._to if library() is None else turning(self._to, type(self), lambda: vars(self).get("_turned"))
+
+    def _to(self, message: Buffer, object_type: type[_Object], *, types: Mapping[str, type] | None = None) -> _Object:
+        """Decode into a new object of a class."""
         quick = self._quick.get(object_type) if types is None else None
         if quick is not None:
+            self._turned = object_type, quick
             return quick(message)
+        self._refuse_part("to a new object")
         family = self._loaded.holder_type.family_
         if types is None and not self._loaded.borrow and len(self._quick) < MAX_CLASSES:
-            self._quick[object_type] = decoding(self.builtin, self.new, family.givers.maker(object_type))
+            whole = family.wholes[object_type]
+            if whole is None:
+                self._quick[object_type] = decoding(self.builtin, self.new, family.givers.maker(object_type))
+            else:
+                self._quick[object_type] = decoding_whole(self.builtin, self.new, whole, is_plain=self._is_plain(whole.reads))
         givers = family.givers if types is None else self._givers_of(types)
         holder = self._borrow()
         try:
             return givers.make(object_type, self(message, holder))
         finally:
             self._give_back(holder)
+
+    _to.__name__ = "to"
 
     def _givers_of(self, types: Mapping[str, type]) -> Givers:
         """What makes objects with classes out of a table; the last table's is kept."""
@@ -182,7 +203,7 @@ class DecoderBase(Program):
             if isinstance(error, DecodeError) and errors is not None:
                 errors[done] = error
                 lanes.row_words(0, done, 1)[:] = 0
-                lanes.bear(lanes.plan.births, done, 1)
+                lanes.initialise(lanes.plan.initial, done, 1)
                 done += 1
             elif error is not None:
                 raise error
@@ -214,8 +235,8 @@ class DecoderBase(Program):
         """Decode from one message on; the first that could not be."""
         count = len(offsets) - 1
         if self._loaded.library is not None:
-            many = MANY(self._loaded.library["many"])
-            return many(data.ctypes.data, data.size, offsets.ctypes.data, first, count, lanes.address)
+            where = address_of(offsets) if offsets.flags.writeable else offsets.ctypes.data
+            return self._compiled_many(data.ctypes.data, data.size, where, first, count, lanes.address)
         return one_by_one(self._loaded.kernel, data, offsets, first, lanes)
 
     def _many_error(self, result: int, data: NDArray[np.uint8], offsets: NDArray[np.int64], done: int, lanes: Lanes) -> Exception:

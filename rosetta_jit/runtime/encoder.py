@@ -11,11 +11,13 @@ from rosetta_jit.errors import EncodeError, ValuesError
 from rosetta_jit.kernel.state import CLEAN, VALID
 from rosetta_jit.model.types import same_name
 from rosetta_jit.runtime import run
+from rosetta_jit.runtime.callable import OTHERS
 from rosetta_jit.runtime.holder.classes import settle_lanes
 from rosetta_jit.runtime.holder.message import Message, place
 from rosetta_jit.runtime.limits import MAX_CLASSES
-from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
+from rosetta_jit.runtime.program import Loaded, Program, is_foreign, one_by_one
 from rosetta_jit.runtime.whole_objects import encoding, encoding_by_steps
+from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -185,8 +187,7 @@ class EncoderBase(Program):
 
     def _written(self, lanes: Lanes, buffer: NDArray[np.uint8], offsets: NDArray[np.int64], first: int, count: int) -> int:
         if self._loaded.library is not None:
-            many = MANY(self._loaded.library["many"])
-            return many(buffer.ctypes.data, buffer.size, offsets.ctypes.data, first, count, lanes.address)
+            return self._compiled_many(buffer.ctypes.data, buffer.size, offsets.ctypes.data, first, count, lanes.address)
         return one_by_one(self._loaded.kernel, buffer, offsets[: count + 1], first, lanes, self._loaded.size)
 
     def _make_usable(self, holder: Holder) -> None:
@@ -234,19 +235,32 @@ class EncoderBase(Program):
         whole = self._loaded.holder_type.family_.wholes[type(value)]
         steps = self._loaded.holder_type.family_.takers.steps(value) if whole is None else None
         if whole is not None:
-            quick = encoding(self.builtin, self.new, whole)
+            quick = encoding(self.builtin, self.new, whole, is_plain=self._is_plain(whole.writes))
         elif steps is not None:
             quick = encoding_by_steps(self.builtin, self.new, steps, self._of_unusual)
         else:
             return self._of_foreign(value, self, *more)
         if len(self._quick) < MAX_CLASSES:
             self._quick[type(value)] = quick
+            self._let_call(type(value), quick)
         return quick(value, *more)
+
+    def _let_call(self, object_type: type, quick: Callable[..., Any]) -> None:
+        """From now on, let the entry itself call what encodes objects of a class."""
+        if len(self._handed) < MAX_CLASSES:
+            words = np.array([id(object_type), id(quick)], np.int64)
+            self._handed.append((words, object_type, quick))  # for good: another thread may be just about to use them
+            self._context[1][OTHERS] = words.ctypes.data
+
+    @cached_property
+    def _handed(self) -> list[tuple[object, ...]]:
+        return []
 
     def _of_unusual(self, value: object, *more: object) -> Any:
         """Encode an object that is not as the others of its class. Where the class has changed, the next one is looked at anew."""
         if self._loaded.holder_type.family_.takers.is_stale(type(value)):
             self._quick.pop(type(value), None)
+            self._context[1][OTHERS] = 0
         return self._of_foreign(value, self, *more)
 
     def _of_row(self, message: Message, *more: object) -> Any:

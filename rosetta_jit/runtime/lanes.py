@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rosetta_jit.model.initial_values import Birth
+    from rosetta_jit.model.initial_values import InitialValue
     from rosetta_jit.model.layout import Layout
 
 _What = TypeVar("_What")
@@ -236,20 +236,20 @@ class Lanes:
         self.words[lane_word(lane, USED)] = start + rows
         return start
 
-    def bear(self, births: tuple[Birth, ...], start: int, rows: int) -> None:
-        """Give rows, which are zero, what they are born with."""
-        for birth in births:
-            match birth:
+    def initialise(self, initial: tuple[InitialValue, ...], start: int, rows: int) -> None:
+        """Give rows, which are zero, their initial values."""
+        for each in initial:
+            match each:
                 case FixedArray(row, word, lane, length, within):
                     first = self.take(lane, rows * length)
                     words = self.row_words(row, start, rows)
                     words[:, word] = np.arange(first, first + rows * length, length)
                     words[:, word + 1] = length
-                    self.bear(within, first, rows * length)
+                    self.initialise(within, first, rows * length)
                 case FirstCase(row, word, number):
                     self.row_words(row, start, rows)[:, word] = number
                 case _:
-                    assert_never(birth)
+                    assert_never(each)
 
     def row_words(self, lane: int, start: int, rows: int) -> NDArray[np.int64]:
         """The words of so many rows of a lane, a row each: shape (rows, words)."""
@@ -282,7 +282,7 @@ class Lanes:
         for lane in range(len(self.buffers)):
             self.give_back(lane, 0)
         self.take(0, rows)
-        self.bear(self.plan.births, 0, rows)
+        self.initialise(self.plan.initial, 0, rows)
 
     def copied(self) -> Lanes:
         """Lanes of their own with the same rows. Nothing may be borrowed."""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from rosetta_jit.model.initial_values import Birth
+    from rosetta_jit.model.initial_values import InitialValue
     from rosetta_jit.model.layout import Layout, Slot
 
     Index: TypeAlias = slice | ArrayLike
@@ -59,7 +59,7 @@ def joined(parts: Sequence[tuple[Lanes, Index]]) -> Lanes:
     """
     like, _ = parts[0]
     chosen = [(lanes, lanes.rows, chosen_rows(index, lanes.rows)) for lanes, index in parts]
-    made = Lanes(plan(like.plan.layout, sum(rows.count for _, _, rows in chosen), like.plan.births), like.array_type)
+    made = Lanes(plan(like.plan.layout, sum(rows.count for _, _, rows in chosen), like.plan.initial), like.array_type)
     start = 0
     with made:
         for lanes, of, rows in chosen:
@@ -70,7 +70,7 @@ def joined(parts: Sequence[tuple[Lanes, Index]]) -> Lanes:
 
 def settled(lanes: Lanes) -> Lanes:
     """The same messages in new lanes, with nothing borrowed and no rows that nothing refers to; inside ``with lanes:``."""
-    made = Lanes(plan(lanes.plan.layout, lanes.rows, lanes.plan.births), lanes.array_type)
+    made = Lanes(plan(lanes.plan.layout, lanes.rows, lanes.plan.initial), lanes.array_type)
     with made:
         _copy(made, lanes, Rows.first(lanes.rows), 0)
     return made
@@ -108,7 +108,7 @@ def contents(lanes: Lanes) -> list[NDArray[np.uint8]]:
     return [lanes.buffers[lane][: lanes.used(lane) * each.stride] for lane, each in enumerate(lanes.plan.layout.lanes)]
 
 
-def revived(layout: Layout, births: tuple[Birth, ...], array_type: type[NDArray[Any]], found: Sequence[NDArray[np.uint8]]) -> Lanes:
+def revived(layout: Layout, initial: tuple[InitialValue, ...], array_type: type[NDArray[Any]], found: Sequence[NDArray[np.uint8]]) -> Lanes:
     """Lanes with such bytes.
 
     Raises
@@ -119,7 +119,7 @@ def revived(layout: Layout, births: tuple[Birth, ...], array_type: type[NDArray[
     if len(found) != len(layout.lanes) or any(each.size % lane.stride for each, lane in zip(found, layout.lanes, strict=True)):
         raise ValueError("these are the lanes of another version of rosetta_jit")
     counts = [each.size // lane.stride for each, lane in zip(found, layout.lanes, strict=True)]
-    made = Lanes(plan(layout, counts[0], births, (*counts, 1)), array_type)
+    made = Lanes(plan(layout, counts[0], initial, (*counts, 1)), array_type)
     for lane, each in enumerate(found):
         made.buffers[lane][: each.size] = each
         made.words[lane_word(lane, USED)] = counts[lane]

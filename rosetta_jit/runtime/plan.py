@@ -18,7 +18,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rosetta_jit.model.initial_values import Birth
+    from rosetta_jit.model.initial_values import InitialValue
     from rosetta_jit.model.layout import Layout
 
 INITIAL_BYTES = 64
@@ -33,7 +33,7 @@ class Plan:
     """How the arena of a layout is divided: a function of the layout and the first capacities, made once a class.
 
     ``begin`` is how it begins, up to the last byte that is not zero: the state, of ``state_bytes``, without its addresses, and what the
-    messages are born with. ``places`` has pairs of int64: a word of the state, and the offset
+    messages begin with. ``places`` has pairs of int64: a word of the state, and the offset
     of the lane whose address stands there. ``fresh`` is what each lane has of a new message: its words in the state, counted in bytes, how
     many rows, how many bytes, and these.
     """
@@ -48,17 +48,17 @@ class Plan:
     state_bytes: int
     begin: bytes
     places: bytes
-    births: tuple[Birth, ...] = ()
+    initial: tuple[InitialValue, ...] = ()
     fresh: bytes = b""
 
 
-def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = (), room: Sequence[int] = ()) -> Plan:
-    """A plan with room for so many messages, which are in use from the start, and zero; and for what one of them is born with.
+def plan(layout: Layout, rows: int = 1, initial: tuple[InitialValue, ...] = (), room: Sequence[int] = ()) -> Plan:
+    """A plan with room for so many messages, which are in use from the start, and zero; and for the initial values of one of them.
 
     Where ``room`` says how many rows a lane is to have, it has at least as many.
     """
     needed: dict[int, int] = {}
-    _count(births, 1, needed)
+    _count(initial, 1, needed)
     strides = (*(lane.stride for lane in layout.lanes), SCRATCH_STRIDE)
     state = np.zeros(state_words(len(strides)), np.int64)
     state[VALID] = CLEAN
@@ -74,7 +74,7 @@ def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = (), room: Se
         behind = aligned(behind + sizes[-1])
     places = b"".join(struct.pack("=2q", lane_word(lane, ADDRESS), offset) for lane, offset in enumerate(offsets))
     dtypes = (*(dtype_of(lane.element.scalar) if isinstance(lane.element, Number) else BYTES for lane in layout.lanes), BYTES)
-    made = Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, state.nbytes, state.tobytes(), places, births)
+    made = Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, state.nbytes, state.tobytes(), places, initial)
     return begun(made, made.begin) if rows == 1 else made
 
 
@@ -88,9 +88,9 @@ def begun(plan: Plan, begin: bytes) -> Plan:
     return replace(plan, begin=begin, fresh=fresh)
 
 
-def _count(births: tuple[Birth, ...], rows: int, born: dict[int, int]) -> None:
-    """Add up how many rows of each lane so many rows are born with."""
-    for each in births:
+def _count(initial: tuple[InitialValue, ...], rows: int, taken: dict[int, int]) -> None:
+    """Add up how many rows of each lane the initial values of so many rows take."""
+    for each in initial:
         if isinstance(each, FixedArray):
-            born[each.lane] = born.get(each.lane, 0) + rows * each.length
-            _count(each.within, rows * each.length, born)
+            taken[each.lane] = taken.get(each.lane, 0) + rows * each.length
+            _count(each.within, rows * each.length, taken)

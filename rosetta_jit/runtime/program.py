@@ -262,6 +262,16 @@ class Program(Told):
         """What does, for objects of some classes, all that the program does with them (`rosetta_jit.runtime.whole_objects`)."""
         return {}
 
+    @cached_property
+    def _compiled_many(self) -> Callable[..., int]:
+        """The compiled `many`, which takes addresses."""
+        assert self._loaded.library is not None, "there is code"
+        return MANY(self._loaded.library["many"])
+
+    def _is_plain(self, encodings: frozenset[str | None]) -> bool:  # noqa: ARG002  whatever they are
+        """Whether its bytes are those of its holders in one of some encodings, with nothing mapped. Who makes programs knows that."""
+        return False
+
     def _checked(self, holder: object) -> Holder:
         expected = self._loaded.holder_type
         if not isinstance(holder, expected) or type(holder) is not expected:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from _thread import allocate_lock
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -86,9 +86,8 @@ class Registers:
         self.address: int = self.values.ctypes.data
         self.values[:] = self._initial
 
-    @contextmanager
-    def taken(self) -> Generator[None]:
-        """Around what uses them.
+    def __enter__(self) -> Self:
+        """Take them, around what uses them.
 
         Raises
         ------
@@ -98,18 +97,15 @@ class Registers:
         if not self._lock.acquire(blocking=False):
             raise InUse(OTHERS)
         self._words[0] = 1
-        try:
-            yield
-        finally:
-            self._words[0] = 0
-            self._lock.release()
+        return self
 
-    @contextmanager
-    def lent(self, lanes: Lanes) -> Generator[None]:
-        """Around kernels that run on some lanes, and find them there. Raises `InUse` as `taken`."""
-        with self.taken():
-            lanes.registers, lanes.words[REGISTERS] = self.values, self.address
-            yield
+    def __exit__(self, *_: object) -> None:
+        self._words[0] = 0
+        self._lock.release()
+
+    def lent(self, lanes: Lanes) -> Lent:
+        """Around kernels that run on some lanes, and find them there. Raises `InUse` as ``with`` itself."""
+        return Lent(self, lanes)
 
     @contextmanager
     def as_before(self) -> Generator[None]:
@@ -122,16 +118,33 @@ class Registers:
             raise
 
     def reset(self) -> None:
-        """Let them be what they were at first. Raises `InUse` as `taken`."""
-        with self.taken():
+        """Let them be what they were at first. Raises `InUse` as ``with`` itself."""
+        with self:
             self.values[:] = self._initial
 
     def shown(self) -> Mapping[str, bool | int | float]:
-        """What each variable is now, by its name. Raises `InUse` as `taken`."""
-        with self.taken():
+        """What each variable is now, by its name. Raises `InUse` as ``with`` itself."""
+        with self:
             words = self.values.copy()
         named = zip(self._variables, words, strict=True)
         return {name: np.frombuffer(word.tobytes(), TYPES[type_], 1)[0].item() for (name, type_), word in named}
+
+
+class Lent:
+    """Around kernels that run on some lanes and find the registers of a program there; it takes no time that a call would notice."""
+
+    __slots__ = ("_lanes", "_registers")
+
+    def __init__(self, registers: Registers, lanes: Lanes) -> None:
+        self._registers, self._lanes = registers, lanes
+
+    def __enter__(self) -> None:
+        registers, lanes = self._registers, self._lanes
+        registers.__enter__()
+        lanes.registers, lanes.words[REGISTERS] = registers.values, registers.address
+
+    def __exit__(self, *_: object) -> None:
+        self._registers.__exit__()
 
 
 def address_of(registers: Registers | None) -> int:

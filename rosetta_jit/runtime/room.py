@@ -1,4 +1,4 @@
-"""How much room a message starts with: what every message is born with, and what others of its layout have come to need."""
+"""How much room a message starts with: the initial values of every message, and what others of its layout have come to need."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.plan import Plan
 
 
-def born(first: Plan) -> Plan:
-    """The plan of one message, which is born from the start."""
-    if not first.births:
+def initialised(first: Plan) -> Plan:
+    """The plan of one message, which has its initial values from the start."""
+    if not first.initial:
         return first
     prototype = Lanes(first)
-    prototype.bear(first.births, 0, 1)
+    prototype.initialise(first.initial, 0, 1)
     made = begun_as(prototype)
-    assert made is not None, "there is room for what a message is born with"
+    assert made is not None, "there is room for the initial values of a message"
     return made
 
 
@@ -44,5 +44,5 @@ def roomier(plan_: Plan, lanes: Lanes, most: int = MOST_AT_ONCE) -> Plan:
     sizes = tuple(map(operator.mul, room, plan_.strides))
     if sum(sizes) > most or all(map(operator.le, sizes, plan_.sizes)):
         return plan_
-    wanted = plan(plan_.layout, births=plan_.births, room=room)
-    return born(wanted) if wanted.size_bytes <= most else plan_
+    wanted = plan(plan_.layout, initial=plan_.initial, room=room)
+    return initialised(wanted) if wanted.size_bytes <= most else plan_

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.runtime.attributes.code import functions
+from rosetta_jit.runtime.attributes.code import functions, library
+from rosetta_jit.runtime.attributes.handing import handing
 from rosetta_jit.runtime.holder.objects.steps import LEFT
 from rosetta_jit.runtime.limits import MAX_SPARES
 
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.objects.steps import Steps
 
 
-def encoding(encode: Callable[..., Any], new: Callable[[], Any], whole: Whole) -> Callable[..., Any]:
-    """An encoder's call for objects of one class."""
+def encoding(encode: Callable[..., Any], new: Callable[[], Any], whole: Whole, *, is_plain: bool) -> Callable[..., Any]:
+    """An encoder's call for objects of one class. ``is_plain`` says that it writes their own bytes as they are, once these are checked."""
     take, spares = whole.take, list[Any]()
 
     def call(value: object, *more: object) -> Any:
@@ -36,7 +37,10 @@ def encoding(encode: Callable[..., Any], new: Callable[[], Any], whole: Whole) -
             if len(spares) < MAX_SPARES:
                 spares.append(holder)
 
-    return call
+    if library() is None:
+        return call
+    last = None if is_plain else encode
+    return handing("hand_in", decode=whole.programs.decode, encode=last, new=new, over=whole.bytes_of, slow=call)
 
 
 def encoding_by_steps(
@@ -86,3 +90,12 @@ def decoding(decode: Callable[..., Any], new: Callable[[], Any], make: Callable[
                 spares.append(holder)
 
     return to
+
+
+def decoding_whole(decode: Callable[..., Any], new: Callable[[], Any], whole: Whole, *, is_plain: bool) -> Callable[[Any], Any]:
+    """The same of a class whose objects are handed over at once. ``is_plain`` says that messages are bytes of which objects can be made."""
+    slow = decoding(decode, new, whole.make)
+    if library() is None:
+        return slow
+    last = None if is_plain else whole.programs.encode
+    return handing("hand_out", decode=decode, encode=last, new=new, over=whole.of_bytes, slow=slow)

@@ -12,6 +12,7 @@ from rosetta_jit.errors import TransportError
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
 from rosetta_jit.transports.end import End
+from rosetta_jit.transports.limits import MAX_QUEUE_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     Deliver = Callable[["Message"], object]
     Lost = Callable[[str, int], object]
     Answer = Callable[["Message"], "bytes | bytearray | memoryview | None"]
+
+ANSWER_FAILED = "the answer failed"
+"""Why a question is lost where the function that answers raised."""
 
 QUEUE = 1000
 """Messages that wait for who iterates over a source, where nobody says how many."""
@@ -89,6 +93,7 @@ class Source(End):
     def __init__(self, address: str, deliver: Deliver | None, lost: Lost | None, *, queue: int = QUEUE) -> None:
         super().__init__(address, lost)
         self._waiting: deque[Message] = deque()
+        self._waiting_bytes = 0
         self._most = max(queue, 1)
         self._changed = threading.Condition()
         self._ended = False
@@ -133,7 +138,7 @@ class Source(End):
         """The next message; None after so many seconds without one, or at the end."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._ended, timeout)
-            return self._waiting.popleft() if self._waiting else None
+            return self._next() if self._waiting else None
 
     def close(self) -> None:
         """Stop receiving. Messages that wait can still be taken."""
@@ -143,14 +148,22 @@ class Source(End):
 
     def _put(self, message: Message) -> None:
         message.keep()
+        dropped = 0
         with self._changed:
-            is_full = len(self._waiting) >= self._most
-            if is_full:
-                self._waiting.popleft()
+            while len(self._waiting) >= self._most or (self._waiting and self._waiting_bytes + len(message.data) > MAX_QUEUE_BYTES):
+                self._next()
+                dropped += 1
             self._waiting.append(message)
+            self._waiting_bytes += len(message.data)
             self._changed.notify()
-        if is_full:
-            self.lose("queue full")
+        if dropped:
+            self.lose("queue full", dropped)
+
+    def _next(self) -> Message:
+        """Take the oldest message out of the queue."""
+        message = self._waiting.popleft()
+        self._waiting_bytes -= len(message.data)
+        return message
 
     def __iter__(self) -> Iterator[Message]:
         while (message := self.take()) is not None:
@@ -223,6 +236,7 @@ class Server(End):
         self._answer = answer
         self._most = max(queue, 1)
         self._asked: deque[tuple[Message, Callable[[bytes | None, str | None], object]]] = deque()
+        self._asked_bytes = 0
         self._changed = threading.Condition()
         self._closed = False
         self._close: Callable[[], None] = _nothing
@@ -232,8 +246,10 @@ class Server(End):
         """Take a question; ``reply`` gets the answer, or None and an error's text. For transports."""
         message.keep()
         with self._changed:
-            taken = len(self._asked) < self._most and not self._closed
+            has_room = not self._asked or self._asked_bytes + len(message.data) <= MAX_QUEUE_BYTES
+            taken = len(self._asked) < self._most and has_room and not self._closed
             if taken:
+                self._asked_bytes += len(message.data)
                 self._asked.append((message, reply))
                 self._changed.notify()
         if not taken:
@@ -264,11 +280,12 @@ class Server(End):
                 if not self._asked:
                     return
                 message, reply = self._asked.popleft()
+                self._asked_bytes -= len(message.data)
             self.passed(len(message.data))
             try:
                 answer = self._answer(message)
             except Exception as error:  # noqa: BLE001 - the user's code: the peer gets to know
-                self.lose("the answer failed")
+                self.lose(ANSWER_FAILED)
                 reply(None, f"{type(error).__name__}: {error}")
             else:
                 reply(None if answer is None else bytes(answer), None)

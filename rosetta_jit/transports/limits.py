@@ -13,6 +13,12 @@ MAX_HELD_BYTES = 1 << 30
 MAX_WAITING_BYTES = 16 << 20
 """bytes that wait for one slow peer; a message of any size may always begin to wait"""
 
+MAX_SENDING_BYTES = 1 << 30
+"""bytes that wait for all slow peers of a process together: what is more is not sent to a slow peer, and counted"""
+
+MAX_QUEUE_BYTES = 256 << 20
+"""bytes of the messages that wait in one queue, of a source, a server or a route; one message may always wait"""
+
 MAX_CONNECTIONS = 512
 """connections of one listener: further ones are closed at once"""
 

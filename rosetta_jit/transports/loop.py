@@ -13,6 +13,8 @@ from itertools import count
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.transports.limits import MAX_SENDING_BYTES
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -46,6 +48,9 @@ class Loop:
         self._awake = False
         self.held_bytes = 0
         """Of memory, for messages that come; changed in the loop's thread."""
+        self.sending_bytes = 0
+        """Of memory, for messages that wait for slow peers; changed by `reserve` and `release`."""
+        self._sending = threading.Lock()
         self._epoll.register(self._wake_read, READ)
         self._watched[self._wake_read] = self._drain
         self.thread = threading.Thread(target=self._run, name="rosetta_jit transports", daemon=True)
@@ -55,6 +60,18 @@ class Loop:
     def is_current(self) -> bool:
         """Whether the caller is this loop's own thread."""
         return threading.current_thread() is self.thread
+
+    def reserve(self, size: int) -> bool:
+        """Take memory for a message that waits for a slow peer; False where all of them have too much. From any thread."""
+        with self._sending:
+            has_room = self.sending_bytes + size <= MAX_SENDING_BYTES
+            self.sending_bytes += size * has_room
+        return has_room
+
+    def release(self, size: int) -> None:
+        """Give back what `reserve` took. From any thread."""
+        with self._sending:
+            self.sending_bytes -= size
 
     def soon(self, function: Callable[..., object], *arguments: Any) -> None:
         """Call a function in the loop's thread; from any thread."""

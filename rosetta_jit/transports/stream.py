@@ -110,6 +110,10 @@ class Stream:
                     return False
                 if sent == size:
                     return True
+            if not loop().reserve(size - sent):
+                if sent:
+                    loop().soon(self.end, "what waits for all peers together takes too much memory")
+                return False
             rest = memoryview(b"".join(parts))[sent:]
             self._waiting.append((rest, sender))
             self._waiting_bytes += len(rest)
@@ -148,6 +152,8 @@ class Stream:
             self.closed = True
             self.unsent = Counter(sender for _, sender in self._waiting)
             self._waiting.clear()
+            loop().release(self._waiting_bytes)
+            self._waiting_bytes = 0
             self._room.notify_all()
         self.in_time()
         loop().unwatch(self.socket.fileno())
@@ -231,6 +237,7 @@ class Stream:
                     data, sender = self._waiting[0]
                     sent = self.socket.send(data)
                     self._waiting_bytes -= sent
+                    loop().release(sent)
                     if sent < len(data):
                         self._waiting[0] = data[sent:], sender
                         break

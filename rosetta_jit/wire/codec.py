@@ -28,14 +28,14 @@ Order = Literal["<", ">"]
 class Number:
     """A fixed-width scalar, stored as it is; ``absent`` where it is in a member of a mutable struct that did not come.
 
-    ``held`` is the integer that the holder has for it, where that is another one: a value that does not fit is refused.
+    ``holder_scalar`` is the integer that the holder has for it, where that is another one: a value that does not fit is refused.
     """
 
     path: Path
     scalar: str
     order: Order = "<"
     absent: int | float = 0
-    held: str | None = None
+    holder_scalar: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -125,7 +125,7 @@ def test_mistakes_as_json(tmp_path, capsys):
     assert main(["bridge", str(tmp_path / "none.toml")]) == 1
 
 
-@pytest.mark.parametrize("name", ["bridges.md", "yarp-to-ros2.md"])
+@pytest.mark.parametrize("name", ["bridges.md", "ros1-to-ros2.md", "rsb.md", "yarp-to-ros2.md"])
 def test_the_files_of_the_documents_are_right(tmp_path, name):
     """With the mappings that the document writes beside them."""
     document = DOCUMENTS.joinpath(name).read_text("utf-8")

@@ -289,10 +289,22 @@ def test_what_is_dropped_when_the_queue_is_full(run, monkeypatch, full, kept):
     assert target.got[-1] == bytes([99])  # at once: nothing waits
 
 
-def message(number):
+def test_a_queue_holds_few_large_messages(run, monkeypatch):
+    monkeypatch.setattr("rosetta_jit.bridge.live.MAX_QUEUE_BYTES", 5)
+    bridge, _ = run(route(free_port(), f"{free_port()}?wait=no", "queue = 4"))
+    live = next(iter(bridge.live.values()))
+    live.deliver(message(0))
+    until(lambda: live._held)
+    for each in (b"12", b"34", b"5", b"67", b"123456789"):
+        live.deliver(message(0, each))
+    assert [item[0] for item in live._waiting] == [b"123456789"]
+    assert sum(live.counts.dropped.values()) == 4
+
+
+def message(number, data=b""):
     from rosetta_jit.transports.base import Message
 
-    return Message(bytes([number]), "a", time=1)
+    return Message(data or bytes([number]), "a", time=1)
 
 
 def test_a_message_that_is_refused_for_ever_holds_up_no_others(run, monkeypatch):
@@ -405,6 +417,29 @@ def test_services(run, bottles):
             robot.send(b"command")
             until(lambda: asks.snapshot()[0]["sent"] == 1)
         assert asked[-1] == b"command"
+
+
+def test_questions_that_are_too_many_are_counted(run):
+    outer, inner, goes_on = free_port(), free_port(), threading.Event()
+    with rj.serve(f"tcp:{inner}", lambda message: bytes(message.data) if goes_on.wait(5) else b""):
+        bridge, said = run(f'[[rpc]]\nname = "a"\nserve = "tcp:{outer}?queue=1"\ncall = "tcp:{inner}"\n')
+        asks = [rj.call(f"tcp:{outer}") for _ in range(3)]
+        answered = []
+        threads = [threading.Thread(target=lambda each=each: answered.append(each(b"question").data)) for each in asks[:2]]
+        for number, each in enumerate(threads):
+            each.start()
+            until(lambda: bridge.snapshot()[0]["taken"] == 1)
+            until(lambda number=number: len(bridge.live["a"].server._asked) == number)
+        with pytest.raises(rj.TransportError, match="closed"):
+            asks[2](b"one more")
+        goes_on.set()
+        for each in threads:
+            each.join()
+        for each in asks:
+            each.close()
+    assert answered == [b"question"] * 2
+    assert bridge.snapshot()[0]["dropped"] == {"queue full": 1}
+    assert "a: 1 dropped: queue full" in said
 
 
 def test_another_file(run, tmp_path):
@@ -536,7 +571,7 @@ def test_the_table_and_the_metrics(run):
 
 def test_who_asks_for_metrics_and_says_nothing_holds_up_nobody(monkeypatch):
     monkeypatch.setattr(asking, "MAX_ASKING", 2)
-    monkeypatch.setattr(asking._Handler, "timeout", 0.3)
+    monkeypatch.setattr(asking, "ASKING_S", 0.3)
     metrics = MetricsServer("0", list)
     try:
         with socket.create_connection(("127.0.0.1", metrics.port)), socket.create_connection(("127.0.0.1", metrics.port)):

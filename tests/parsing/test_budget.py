@@ -15,7 +15,7 @@ from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.language.imports import search
 from rosetta_jit.lowering.limits import MAX_STATEMENTS
 from rosetta_jit.model.expansion import excess
-from rosetta_jit.model.limits import MAX_BORN_BYTES, MAX_BYTES, MAX_LINKS, MAX_NESTED, MAX_SLOTS
+from rosetta_jit.model.limits import MAX_BYTES, MAX_INITIAL_BYTES, MAX_LINKS, MAX_NESTED, MAX_SLOTS
 from rosetta_jit.model.types import Array, Field, Int, Ref, Schema, Struct
 from rosetta_jit.recording import MAX_MESSAGE_BYTES
 from rosetta_jit.runtime.run import ELEMENTS_A_BYTE, GRACE_BYTES
@@ -173,7 +173,7 @@ def test_the_page_states_the_budget():
         f"one file or text | {search.MAX_FILE_BYTES >> 20} MiB",
         f"one program is made from | {search.MAX_TEXT_BYTES >> 20} MiB",
         f"message in a recording | {MAX_MESSAGE_BYTES >> 20} MiB",
-        f"arrays of fixed length | {MAX_BORN_BYTES >> 20} MiB",
+        f"arrays of fixed length | {MAX_INITIAL_BYTES >> 20} MiB",
         f"at most {ELEMENTS_A_BYTE} *n* elements of each field, and {GRACE_BYTES >> 20} MiB",
     ):
         assert stated in page

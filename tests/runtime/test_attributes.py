@@ -337,3 +337,41 @@ def test_everything_holds_without_compiled_accessors():
     )
     ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stdout[-3000:]
+
+
+@needs_code
+def test_a_float_that_somebody_has_stays_as_it_is():
+    """Floats that nobody has any more are given out again."""
+    decoder = rj.Decoder.of("geometry_msgs/Quaternion", encoding="ros1")
+    quaternion = decoder.new()
+    for kept in (0, 1, 7, 8, 9, 40):
+        held = []
+        for number in range(100):
+            quaternion.x, quaternion.y = float(number), number + 0.5
+            held.append((quaternion.x, quaternion.y, -quaternion.x))
+            assert quaternion.x + quaternion.y == 2 * number + 0.5
+            assert [quaternion.x, quaternion.y, quaternion.x] == [number, number + 0.5, number]
+            del held[: max(0, len(held) - kept)]
+            assert held == [(float(each), each + 0.5, -float(each)) for each in range(number + 1 - len(held), number + 1)]
+
+
+@needs_code
+def test_an_element_is_asked_for_again():
+    """The view that nobody has any more is already where it should be; what its parts showed when somebody took them stays."""
+    decoder = rj.Decoder.of("geometry_msgs/PoseArray", encoding="ros1")
+    array = decoder.holder_type.from_dict({"poses": [{"position": {"x": float(number)}} for number in range(4)]})
+    assert [array.poses[1].position.x, array.poses[1].position.x, array.poses[-3].orientation.w] == [1.0, 1.0, 0.0]
+    part = array.poses[1].position
+    assert array.poses[1].position.x == 1.0
+    assert array.poses[2].position.x == 2.0
+    assert array.poses[1].position.x == 1.0
+    assert part.x == 1.0
+    one, other = array.poses[3], array.poses[3]
+    one.position.x = 7.0
+    assert other.position.x == array.poses[3].position.x == 7.0
+    del array.poses[0]
+    assert [array.poses[1].position.x, array.poses[2].position.x] == [2.0, 7.0]
+    array.poses[1].position.x = 5.0
+    assert [each.position.x for each in array.poses] == [1.0, 5.0, 7.0]
+    with pytest.raises(IndexError):
+        array.poses[3]

@@ -7,10 +7,17 @@ import subprocess
 import time
 from contextlib import contextmanager
 
+GIVEN = set()
+"""Ports that a test has: the system may name one again as soon as nobody listens there."""
+
 
 def free_port():
-    with socket.create_server(("127.0.0.1", 0)) as found:
-        return found.getsockname()[1]
+    while True:
+        with socket.create_server(("127.0.0.1", 0)) as found:
+            port = found.getsockname()[1]
+        if port not in GIVEN:
+            GIVEN.add(port)
+            return port
 
 
 def until(condition, seconds=10.0):

@@ -14,7 +14,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.errors import AddressError, TransportError
 from rosetta_jit.transports import loop as loops
-from rosetta_jit.transports.base import Source
+from rosetta_jit.transports.base import Message, Server, Source
 from rosetta_jit.transports.installed import installed
 from rosetta_jit.transports.stream import Stream
 from tests.transports.free import free_port, until
@@ -177,6 +177,19 @@ def test_a_full_queue_drops_the_oldest_and_counts():
         assert told == [("queue full", 1)] * 3
 
 
+def test_queues_hold_few_large_messages(monkeypatch):
+    monkeypatch.setattr("rosetta_jit.transports.base.MAX_QUEUE_BYTES", 5)
+    source, server = Source("nothing", None, None), Server("nothing", lambda _: None)
+    refused = []
+    for each in (b"12", b"34", b"5", b"67", b"123456789"):
+        source.arrived(Message(each, "a"))
+        server.asked(Message(each, "a"), lambda _, error: refused.append(error))
+    assert (source.take(0).data, source.take(0), dict(source.lost)) == (b"123456789", None, {"queue full": 4})
+    source.arrived(Message(b"12345", "a"))
+    assert source.take(0).data == b"12345"
+    assert refused == ["too many questions wait"] * 2
+
+
 def test_a_peer_that_dies_in_the_middle_costs_its_own_message():
     port = free_port()
     with rj.subscribe(f"tcp:{port}") as source:
@@ -217,6 +230,22 @@ def test_all_peers_together_take_bounded_memory(monkeypatch):
         with rj.publish(f"tcp:{port}") as sink:
             sink.send(bytes(1 << 20))
             assert len(source.take(5).data) == 1 << 20
+
+
+def test_what_waits_for_all_peers_together_takes_bounded_memory(monkeypatch):
+    monkeypatch.setattr(loops, "MAX_SENDING_BYTES", 12 << 20)
+    port, before = free_port(), loops.loop().sending_bytes
+    with rj.publish(f"tcp:{port}?listen=yes&wait=no&linger=0") as sink:
+        with contextlib.ExitStack() as stack:
+            for _ in range(6):
+                stack.enter_context(socket.create_connection(("127.0.0.1", port)))
+            until(lambda: sink.connections == 6)
+            for _ in range(16):
+                sink.send(bytes(1 << 20))
+            assert 11 << 20 < loops.loop().sending_bytes - before <= 12 << 20
+            assert sink.lost["the peer is too slow"] > 10
+        until(lambda: not sink.connections)
+        assert loops.loop().sending_bytes == before
 
 
 def test_reasons_are_few_short_and_printable():

@@ -1,10 +1,28 @@
-; encode(holder, buffer, offset) -> the offset behind what was written; whatever else is left to the slow path.
+; encode(holder, buffer, offset) -> the offset behind what was written; encode(object) of the class that word 9 of the context leads to, with what is
+; called for it; whatever else is left to the slow path.
 define ptr @any_call(ptr %self, ptr %args, i64 %nargsf, ptr %names) noinline {
   %view = alloca [80 x i8], align 8
   %context = call ptr @context(ptr %self)
   %count = call i64 @positional(i64 %nargsf, ptr %names)
-  %three = icmp eq i64 %count, 3
-  br i1 %three, label %holder, label %slow, !prof !0
+  switch i64 %count, label %slow [ i64 3, label %holder
+                                   i64 1, label %object ]
+object:
+  %others.at = getelementptr ptr, ptr %context, i64 9
+  %others = load ptr, ptr %others.at
+  %has.others = icmp ne ptr %others, null
+  br i1 %has.others, label %compare, label %slow
+compare:
+  %object.value = load ptr, ptr %args
+  %class.at = getelementptr i8, ptr %object.value, i64 8
+  %class = load ptr, ptr %class.at
+  %known = load ptr, ptr %others
+  %is.known = icmp eq ptr %class, %known
+  br i1 %is.known, label %hand.over, label %slow
+hand.over:
+  %callable.at = getelementptr ptr, ptr %others, i64 1
+  %callable = load ptr, ptr %callable.at
+  %handed = tail call ptr @PyObject_Vectorcall(ptr %callable, ptr %args, i64 1, ptr null)
+  ret ptr %handed
 holder:
   %holder.object = load ptr, ptr %args
   %state = call ptr @state_of(ptr %context, ptr %holder.object)

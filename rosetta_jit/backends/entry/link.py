@@ -16,8 +16,10 @@ from __future__ import annotations
 
 import os
 import sys
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from string import Template
 from typing import TYPE_CHECKING, NotRequired, TypedDict, Unpack
 
 from llvmlite import binding, ir
@@ -34,10 +36,12 @@ from rosetta_jit.kernel.shape import (
     has_loops_for_vectors,
     is_large,
     is_moderate,
+    is_short,
     is_short_and_straight,
     is_told,
     our_functions,
 )
+from rosetta_jit.kernel.state import USED, lane_word, state_words
 from rosetta_jit.runtime.cache.texts import kept
 from rosetta_jit.runtime.code.assembler import linked, make_private, object_of, run_few_passes, run_passes, shortened, target_machine
 from rosetta_jit.runtime.code.prelink import is_prelinking, prelinked
@@ -64,6 +68,9 @@ REST: dict[EntryName, tuple[str, ...]] = {
     "bridge": (),
 }
 """Whatever else is called."""
+
+ALONE = ("any_decode.ll",)
+"""What is left to call of a decoder whose loop over many messages stands beside its kernel."""
 
 FUNCTIONS = ("kernel", "size", "write")
 """The names of a program's kernels: what decodes or encodes; to encode, what measures; of a bridge, what encodes what was decoded."""
@@ -179,17 +186,50 @@ def _own_parts(kernels: Sequence[Kernel], entry: EntryName, options: Options, as
         yield references_text(options.get("references", ()))
     if _is_inside(kernels, entry):
         yield _usual(_entry_text(USUAL[entry], kernels), SYMBOLS[entry])
+    if _has_own_many(kernels, entry):
+        yield from _own_many(kernels[0], whole=aside is None)
 
 
 def _surrounding_texts(kernels: Sequence[Kernel], entry: EntryName) -> tuple[str, ...]:
     """The modules that a program's surroundings are linked from."""
-    around = (REST[entry],) if _is_inside(kernels, entry) else (USUAL[entry], REST[entry])
+    rest = ALONE if _has_own_many(kernels, entry) else REST[entry]
+    around = (rest,) if _is_inside(kernels, entry) else (USUAL[entry], rest)
     return tuple(_entry_text(templates, kernels) for templates in around if templates)
 
 
 def _is_inside(kernels: Sequence[Kernel], entry: EntryName) -> bool:
     """Whether the usual call is compiled with the kernels, of which those that are short become a part of it."""
     return entry == "bridge" or is_short_and_straight(kernels[0])
+
+
+def _has_own_many(kernels: Sequence[Kernel], entry: EntryName) -> bool:
+    """Whether the loop over many messages is compiled with the kernel, whose usual body becomes a part of it.
+
+    That is so where messages depend on those before them: what one keeps, the next one must not wait for.
+    """
+    kernel = kernels[0]
+    return entry == "decode" and kernel.registers > 0 and is_short(kernel) and not calls_to_host(kernels)
+
+
+def _own_many(kernel: Kernel, *, whole: bool) -> Iterator[str]:
+    """The loop over many messages, and the kernel's usual body for it."""
+    module = ir.Module("first")
+    llvm.emit(module, replace(kernel, bodies=kernel.bodies[:1], rare=0), "first", whole=whole).attributes.add("alwaysinline")
+    yield str(module)
+    words, count = state_words(kernel.lanes), kernel.registers
+    used = [_copied_word(lane_word(lane, USED)) for lane in range(kernel.lanes)]
+    sizes = {"words": words, "count": count, "state_bytes": 8 * words, "register_bytes": 8 * count}
+    yield Template(_template("many_kept.ll")).substitute(sizes, used="\n".join(used))
+
+
+def _copied_word(word: int) -> str:
+    """Lines that copy a word from one state to another, in `many_kept.ll`."""
+    at = f"getelementptr i64, ptr {{}}, i64 {word}"
+    return f"""\
+  %from.{word} = {at.format("%from.state")}
+  %value.{word} = load i64, ptr %from.{word}
+  %to.{word} = {at.format("%state")}
+  store i64 %value.{word}, ptr %to.{word}"""
 
 
 @cache
@@ -220,7 +260,8 @@ def _support(*names: str) -> bytes:
 
 def _emitted(kernel: Kernel, name: str, aside: list[str] | None) -> str:
     module = ir.Module(name)
-    rare = ir.Module(f"{name}.rare") if aside is not None and kernel.rare else None
+    is_split = aside is not None and kernel.rare and not calls_to_host((kernel,))  # what they call is in the program's own module
+    rare = ir.Module(f"{name}.rare") if is_split else None
     llvm.emit(module, kernel, name, whole=aside is None, rare=rare)
     if aside is not None and rare is not None:
         aside.append(str(rare))

@@ -1,7 +1,8 @@
 ; What all entries share. The entries' own files follow this one in one module.
 ;
 ; The context is an array of pointers: 0 state, 1 holder, 2 slow path, 3 source cell, 4 the holder's type (`runtime.callable.Context`),
-; 5 the number of messages made, 6 the thread of the program's own holder, 7 the registers, 8 whether a kernel for one of several wires has failed. What the host tells of a message is in `told.ll`, or
+; 5 the number of messages made, 6 the thread of the program's own holder, 7 the registers, 8 whether a kernel for one of several wires has failed,
+; 9 of an encoder, objects of which other class go where (`any_encode.ll`). What the host tells of a message is in `told.ll`, or
 ; `untold.ll` where no kernel asks; what kernels keep for the next message in `registers.ll`, or `no_registers.ll`.
 ; Who changes lanes in a way that another thread can interrupt makes word 1 of their state negative (`kernel.state.EPOCH`): then entries leave
 ; them to the slow path, which refuses. An entry itself has the interpreter lock; where its kernel may let it go is said in `hosted.ll`.

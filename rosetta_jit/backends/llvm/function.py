@@ -19,6 +19,7 @@ from rosetta_jit.backends.llvm import definitions
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
 from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, constant, state_word
+from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.kernel.ir import Block, Call, Expect, For, HostCall, Kernel, Require, While
 from rosetta_jit.kernel.state import (
     ERROR_INDICES,
@@ -136,12 +137,12 @@ def _routine(module: ir.Module, kernel: Kernel, routine: Routine, name: str, rou
     signature = ir.FunctionType(outcome, [POINTER, I64, I64, POINTER, *(LLVM_TYPES[each.type] for each in routine.parameters)])
     function = _function(module, signature, name, ("buffer", "begin", "end", "state", *(each.name for each in routine.parameters)))
     function.linkage = "internal"
-    entry = ir.IRBuilder(function.append_basic_block("entry"))
+    entry = Lines(function.append_basic_block("entry"))
     first = function.append_basic_block("body")
     parameters = Parameters(*function.args[:4], row=constant(0))
     done, failed = _exit(entry, "done", len(routine.results)), _exit(entry, "failed", 2)
     lanes, emptied = (kernel.strides, kernel.lanes), emptied_lanes(kernel)
-    frame = Frame(module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, emptied, routines)
+    frame = Frame(module, entry, entry.beside(first), parameters, *lanes, {}, done, failed, emptied, routines)
     frame.locals.update(zip(("begin", "end"), function.args[1:3], strict=True))
     frame.locals.update(zip((each.name for each in routine.parameters), function.args[4:], strict=True))
     llvm_stmt.block(frame, routine.body)
@@ -174,10 +175,10 @@ def _attempt(
 
     Each body has a function of its own, so that those behind the first take no part in what it keeps in registers.
     """
-    entry, first = ir.IRBuilder(function.append_basic_block("entry")), function.append_basic_block("body")
+    entry, first = Lines(function.append_basic_block("entry")), function.append_basic_block("body")
     done, failed = _exit(entry, "done", 1), _exit(entry, "failed", 2 + _width(kernel))
     parameters, lanes, emptied = Parameters(*function.args), (kernel.strides, kernel.lanes), emptied_lanes(kernel)
-    frame = Frame(function.module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, emptied, routines)
+    frame = Frame(function.module, entry, entry.beside(first), parameters, *lanes, {}, done, failed, emptied, routines)
     frame.is_rare = len(bodies) <= kernel.rare
     frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
     llvm_checks.body(frame, bodies[0])

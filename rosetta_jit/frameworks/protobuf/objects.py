@@ -19,6 +19,13 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import Family
 
 
+READS: frozenset[str | None] = frozenset({None, "protobuf", "protobuf-partial"})
+"""The encodings that are protobuf's own bytes, the framework's usual one among them."""
+
+PARTIAL: frozenset[str | None] = frozenset({"protobuf-partial"})
+"""Those of them in which a message may lack what is required."""
+
+
 def whole(family: Family, object_type: Any) -> Whole | None:
     """How messages of a class are handed over, if it is one of protobuf's.
 
@@ -30,10 +37,10 @@ def whole(family: Family, object_type: Any) -> Whole | None:
     if not _is_protobuf(object_type):
         return None
     _check(family, object_type)
-    programs, parse = programs_of(family.holder), object_type.FromString
+    programs, parse, write = programs_of(family.holder), object_type.FromString, object_type.SerializePartialToString
 
     def take(holder: Any, message: Any) -> None:
-        programs.decode(message.SerializePartialToString(), holder)
+        programs.decode(write(message), holder)
 
     def fill(message: Any, holder: Any) -> None:
         message.ParseFromString(programs.encode(holder))
@@ -41,7 +48,13 @@ def whole(family: Family, object_type: Any) -> Whole | None:
     def make(holder: Any) -> Any:
         return parse(programs.encode(holder))
 
-    return Whole(take, fill, make)
+    writes = PARTIAL if _has_required(family.schema) else READS
+    return Whole(take, fill, make, programs=programs, bytes_of=write, of_bytes=parse, reads=READS, writes=writes)
+
+
+def _has_required(schema: Schema) -> bool:
+    """Whether there is a field without which a message cannot be written."""
+    return any(field.required for struct in schema.types.values() if isinstance(struct, Struct) for field in struct.fields)
 
 
 def _is_protobuf(object_type: Any) -> bool:

@@ -103,11 +103,11 @@ def members(family: Family) -> dict[str, Any]:
     return {
         **{each.name: each.value for each in struct.constants if not hasattr(Ros2Message, each.name)},
         "fields_": {each.name: spelled(each.type) for each in fields},
-        "defaults_": {each.name: _default(each) for each in fields if not _is_as_born(each)},
+        "defaults_": {each.name: _default(each) for each in fields if not _is_initial(each)},
     }
 
 
-def _is_as_born(field: Field) -> bool:
+def _is_initial(field: Field) -> bool:
     """Whether a new message has the default of a field without being given it: there is none, or it is zero or empty."""
     default = _default(field)
     return default is None or (not default and not isinstance(field.type, Optional))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.ros import gathered
 from rosetta_jit.frameworks.ros2.idl import DUMMY, ROS2
-from rosetta_jit.wire.held import UnlikeError
+from rosetta_jit.wire.other_type import UnlikeError
 
 if TYPE_CHECKING:
     from collections.abc import Collection

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.bounds import reserved
 from rosetta_jit.generate.c.words import RESERVED
+from rosetta_jit.generate.unit import wire_of
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
@@ -20,6 +21,12 @@ WORDS = (
     *("span", "holder", "memory", "state", "error", "status", "decode", "borrow", "encode", "size", "use", "clear", "reset"),
     *("error_path", "status_text"),
 )
+
+
+def words_of(unit: Unit) -> frozenset[str]:
+    """What the names of the header's types and calls are, each behind that of the unit."""
+    wires = [wire for role in unit.kernels if (wire := wire_of(role))]
+    return frozenset(f"{unit.name}_{word}" for word in (*WORDS, *(f"{verb}_{wire}" for verb in ("decode", "age") for wire in wires)))
 
 
 def memory(unit: Unit, lanes: Lanes, hidden: int) -> str:
@@ -81,7 +88,7 @@ def _overridable(constant: str, value: int) -> list[str]:
 
 def accessors(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...]) -> str:
     """What builds messages, and asks for what may be absent."""
-    taken = Namespace(RESERVED | {f"{unit.name}_{word}" for word in WORDS} | {each.identifier for each in structs})
+    taken = Namespace(RESERVED | words_of(unit) | {each.identifier for each in structs})
     parts = [_add(unit.name, lanes, lane, taken) for lane in range(1, lanes.own)]
     parts += [text for struct in structs for text in _presence(struct, taken)]
     return "".join(f"{part}\n\n" for part in parts)

@@ -99,10 +99,11 @@ def _attempt(writer: Writer, role: Role, kernel: Kernel, number: int, function: 
 
 
 def _used_at_start(kernel: Kernel, lanes: Lanes, lane: int) -> str:
-    """Lane 0 has the row of the message; a decoder starts with all others empty."""
+    """Lane 0 has the row of the message; a decoder starts with all others empty, but for those that it keeps."""
     if lane == 0:
         return "1"
-    return "0" if kernel.direction == "decode" or lane >= lanes.own else f"holder->{lanes.rows(lane)}.used"
+    is_empty = lane >= lanes.own or (kernel.direction == "decode" and lane not in kernel.kept)
+    return "0" if is_empty else f"holder->{lanes.rows(lane)}.used"
 
 
 def _routine(writer: Writer, role: str, direction: Direction, routine: Routine, function: Function) -> Callable:

@@ -13,15 +13,23 @@ from rosetta_jit.generate.c.rows import SpanType, Struct
 from rosetta_jit.generate.c.state import state_struct
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import C_TYPES
+from rosetta_jit.generate.unit import kind_of, wire_of
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.c.rows import Member
-    from rosetta_jit.generate.unit import Role, Unit
+    from rosetta_jit.generate.unit import Purpose, Unit
 
 STATUSES = ("ok", "full", *get_args(Kind))
 
-CALLS: dict[Role, str] = {
+OF_WIRE = """/*
+ * Reads a message of `{wire}` and fills its part of the holder; what messages of other wires have filled stays. Clear and reset both, as
+ * {name}_use does, before the first message. FULL: a lane lacks room; give it more and call again. After another failure this part is not
+ * to be read before the next message of `{wire}`.
+ */
+{name}_status {name}_decode_{wire}({name}_holder *holder, const void *bytes, size_t size, {name}_error *error);"""
+
+CALLS: dict[Purpose, str] = {
     "decode": """/* Reads a message. FULL: a lane lacks room; give it more and call again. After a failure the holder is empty. */
 {name}_status {name}_decode({name}_holder *holder, const void *bytes, size_t size, {name}_error *error);""",
     "borrow": """/* The same, but bytes fields stay in the message: their spans have its offset as `start`, and -1 - the size as `count`. */
@@ -58,7 +66,9 @@ def made(unit: Unit) -> str:
 
 
 def _calls(unit: Unit) -> list[str]:
-    called = [CALLS[role].format(name=unit.name) for role in CALLS if role in unit.kernels]
+    kinds = tuple(CALLS)
+    roles = sorted(unit.kernels, key=lambda role: kinds.index(kind_of(role)))
+    called = [(OF_WIRE if wire_of(role) else CALLS[kind_of(role)]).format(name=unit.name, wire=wire_of(role)) for role in roles]
     for function in unit.functions:
         given = "".join(f"{C_TYPES[each]} number_{number}, " for number, each in enumerate(function.parameters, 1))
         text = f"bool {unit.name}_{function.name}({given}{C_TYPES[function.result]} *result);"

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace
-from rosetta_jit.generate.c.accessors import WORDS
+from rosetta_jit.generate.c.accessors import words_of
 from rosetta_jit.generate.c.functions import print_kernel
 from rosetta_jit.generate.c.header import header
 from rosetta_jit.generate.c.lanes import Lane, Lanes, hidden_lanes, named_lanes
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def _own_lanes(unit: Unit) -> tuple[Structs, list[Lane]]:
-    structs = Structs(unit.name, Namespace(RESERVED | {f"{unit.name}_{word}" for word in WORDS}), {})
+    structs = Structs(unit.name, Namespace(RESERVED | words_of(unit)), {})
     named = named_lanes([lane.name.replace(UNKNOWN, "unknown") for lane in unit.layout.lanes])
     elements = elements_of(unit.layout, structs, tuple(name for name, _ in named))
     return structs, [Lane(*names, lane.stride, element) for names, lane, element in zip(named, unit.layout.lanes, elements, strict=True)]

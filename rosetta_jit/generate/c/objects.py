@@ -14,6 +14,7 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.functions import Attempt, Printed
 from rosetta_jit.generate.c.language import as_c
 from rosetta_jit.generate.c.state import MEMBERS
+from rosetta_jit.generate.unit import kind_of
 from rosetta_jit.kernel.state import (
     ADDRESS,
     CAPACITY,
@@ -89,7 +90,7 @@ def print_call(kernel: Kernel, lanes: Lanes, role: Role) -> Printed:
         writer.line(f"int64_t hidden[{LANE_WORDS * max(1, len(hidden) - 1)}] = {{0}};")
         _give_lanes(writer, kernel, lanes, decodes=decodes)
         if kernel.registers:
-            _pointer(writer, f"state[{REGISTERS}]", "registers", f"holder->state->{MEMBERS[role]}", "int64_t")
+            _pointer(writer, f"state[{REGISTERS}]", "registers", f"holder->state->{MEMBERS[kind_of(role)]}", "int64_t")
         writer.line(f"const int64_t result = {name}({'NULL, 0, INT64_C(1) << 60' if role == 'size' else 'bytes, 0, end'}, state, 0);")
         _tell_failure(writer, kernel, lanes)
         for lane in own if decodes else ():

@@ -11,6 +11,7 @@ from rosetta_jit.generate.c.accessors import clear
 from rosetta_jit.generate.c.header import STATUSES, made
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
+from rosetta_jit.generate.unit import kind_of, wire_of
 from rosetta_jit.kernel.ir import Site
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.c.functions import Attempt, Printed
     from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.c.rows import Struct
-    from rosetta_jit.generate.unit import Role, Unit
+    from rosetta_jit.generate.unit import Purpose, Role, Unit
     from rosetta_jit.kernel.ir import Kernel
 
 FREESTANDING = """#include <float.h>
@@ -48,8 +49,7 @@ DECODE = """{name}_status {name}_{role}({name}_holder *holder, const void *bytes
 {others}    if (result >= 0) {{
         return {status}_OK;
     }}
-    {name}_clear(holder);
-    return report(error, {role}_sites, &failure, end - failure.offset, holder);
+{emptied}    return report(error, {role}_sites, &failure, end - failure.offset, holder);
 }}"""
 ANOTHER = """    if (result < 0 && failure.site != 0) {{
         struct failure other = {{0, 0, {{0, 0, 0, 0}}}};
@@ -92,13 +92,18 @@ STATUS_CHECK = """    if (result < 0) {{
 }}"""
 
 
-ORDER: tuple[Role, ...] = ("decode", "borrow", "size", "encode")
+ORDER: tuple[Purpose, ...] = ("decode", "borrow", "size", "encode")
+
+
+def by_order(role: Role) -> int:
+    """Where the functions of a role stand among the others."""
+    return ORDER.index(kind_of(role))
 
 
 def source(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...], printed: Mapping[Role, Printed]) -> str:
     """The text of the source file."""
     called = {name for each in printed.values() for name in each.support} | {"fail", "failure"}
-    ordered = sorted(printed, key=ORDER.index)
+    ordered = sorted(printed, key=by_order)
     functions = [
         text
         for role in ordered
@@ -145,12 +150,13 @@ def _call(unit: Unit, role: Role, printed: Mapping[Role, Printed]) -> str:
     attempts = printed[role].attempts
     words = {"name": unit.name, "role": role, "status": unit.name.upper(), "first": run(attempts[0], "failure")}
     taken = {parameter for each in attempts for parameter in each.parameters}
-    needed = {"decode": ("bytes",), "borrow": ("bytes",), "encode": ("bytes", "end"), "size": ()}[role]
+    needed = {"decode": ("bytes",), "borrow": ("bytes",), "encode": ("bytes", "end"), "size": ()}[kind_of(role)]
     unused = "".join(f"    (void){each};\n" for each in needed if each not in taken)
-    match role:
+    match kind_of(role):
         case "decode" | "borrow":
             others = "".join(ANOTHER.format(call=run(each, "other")) for each in attempts[1:])
-            return DECODE.format(**words, others=others, unused=unused)
+            emptied = "" if wire_of(role) else f"    {unit.name}_clear(holder);\n"
+            return DECODE.format(**words, others=others, unused=unused, emptied=emptied)
         case "encode" | "size":
             if role == "encode" and printed[role].hidden:
                 words |= {"measure": run(printed["size"].attempts[0], "failure"), "no_room": str(len(printed[role].sites))}

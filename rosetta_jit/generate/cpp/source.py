@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.c.header import made, struct_text
 from rosetta_jit.generate.c.rows import Struct as RowStruct
-from rosetta_jit.generate.c.source import NO_ROOM, ORDER, run, site_text, without_unused
+from rosetta_jit.generate.c.source import NO_ROOM, by_order, run, site_text, without_unused
 from rosetta_jit.generate.c.state import MEMBERS
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
@@ -139,7 +139,7 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
     }
     called = {name for each in printed.values() for name in each.support} | {"failure"}
     kernels: list[str] = []
-    for role in sorted(printed, key=ORDER.index):
+    for role in sorted(printed, key=by_order):
         kernels += [_table(role, unit, parts), printed[role].text.rstrip()]
     said = any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites)
     return _filled(

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import If
 from rosetta_jit.kernel.proof.verify import settled
-from rosetta_jit.kernel.rewrite import with_blocks
+from rosetta_jit.kernel.rewrite import with_blocks, with_bodies
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,7 +23,7 @@ def drop(kernel: Kernel) -> Kernel:
     def kept(block: Block) -> Block:
         return tuple(part for stmt in block for part in _kept(stmt, kept, known))
 
-    return replace(kernel, bodies=tuple(map(kept, kernel.bodies)))
+    return with_bodies(kernel, tuple(map(kept, kernel.bodies)))
 
 
 def _kept(stmt: Stmt, kept: Callable[[Block], Block], known: frozenset[int]) -> Block:

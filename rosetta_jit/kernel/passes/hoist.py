@@ -13,7 +13,7 @@ from rosetta_jit.kernel.ir import Block, Compare, Const, Expect, Failure, Fits, 
 from rosetta_jit.kernel.passes.affine import rounds_of
 from rosetta_jit.kernel.passes.fold import TRUE, folded
 from rosetta_jit.kernel.passes.widen import widened
-from rosetta_jit.kernel.rewrite import may_return, reads_memory, with_blocks
+from rosetta_jit.kernel.rewrite import may_return, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import add, index, mul
 
 if TYPE_CHECKING:
@@ -25,7 +25,8 @@ def hoist(kernel: Kernel) -> Kernel:
     """The kernel with checks before loops in place of checks in them."""
     sites = list(kernel.sites)
     bodies = tuple(_block(body, sites) for body in kernel.bodies)
-    return kernel if bodies == kernel.bodies else replace(kernel, bodies=bodies, sites=tuple(sites))
+    changed = with_bodies(kernel, bodies)
+    return kernel if changed is kernel else replace(changed, sites=tuple(sites))
 
 
 def _block(block: Block, sites: list[Site]) -> Block:

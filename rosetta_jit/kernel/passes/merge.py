@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Block, Const, Expect, Failure, Part, Require, Site
 from rosetta_jit.kernel.proof.loops import changed_names
-from rosetta_jit.kernel.rewrite import locals_in, may_return, reads_memory, with_blocks
+from rosetta_jit.kernel.rewrite import locals_in, may_return, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.shape import blocks_of
 from rosetta_jit.kernel.terms import index, split
 from rosetta_jit.startup.dataclass import dataclass
@@ -67,7 +67,8 @@ def merge(kernel: Kernel) -> Kernel:
     """The kernel with fewer Requires."""
     sites = list(kernel.sites)
     bodies = tuple(_block(body, sites, is_attempt=len(kernel.bodies) > 1) for body in kernel.bodies)
-    return kernel if bodies == kernel.bodies else replace(kernel, bodies=bodies, sites=tuple(sites))
+    changed = with_bodies(kernel, bodies)
+    return kernel if changed is kernel else replace(changed, sites=tuple(sites))
 
 
 def _block(block: Block, sites: list[Site], *, is_attempt: bool = False) -> Block:

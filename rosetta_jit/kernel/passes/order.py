@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from operator import is_
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.passes.bulk import bulk, bulk_of_bytes, group
@@ -13,7 +15,7 @@ from rosetta_jit.kernel.passes.reuse import reuse
 from rosetta_jit.kernel.passes.simplify import simplify
 from rosetta_jit.kernel.passes.sink import sink
 from rosetta_jit.kernel.passes.unroll import unroll
-from rosetta_jit.kernel.proof.verify import VerificationError, verify
+from rosetta_jit.kernel.proof.verify import VerificationError, check_shape, verify
 from rosetta_jit.kernel.shape import is_large
 
 if TYPE_CHECKING:
@@ -64,14 +66,27 @@ def run(kernel: Kernel, passes: tuple[Pass, ...] = PASSES) -> Kernel:
 
 
 def _all(kernel: Kernel, passes: tuple[Pass, ...]) -> Kernel:
+    check_shape(kernel)
     results: dict[Pass, Kernel] = {}
     large = is_large(kernel)
     for transform in passes:
-        # What a pass has made, and no pass has changed since, it would not change again. In large kernels later rounds find little.
-        if results.get(transform) is not kernel and not (large and transform in results):
+        made = results.get(transform)
+        if made is None:
             kernel = results[transform] = transform(kernel)
+        # What a pass has made, and no pass has changed since, it would not change again. In large kernels later rounds find little.
+        elif not large and not all(map(is_, made.usual, kernel.usual)):
+            kernel = results[transform] = _of_usual(transform, kernel)
     verify(kernel)
     return kernel
+
+
+def _of_usual(transform: Pass, kernel: Kernel) -> Kernel:
+    """The result of a pass over the usual bodies: rare ones go through each pass once."""
+    usual = replace(kernel, bodies=kernel.usual, rare=0) if kernel.rare else kernel
+    changed = transform(usual)
+    if changed is usual or not kernel.rare:
+        return kernel if changed is usual else changed
+    return replace(changed, bodies=(*changed.bodies, *kernel.bodies[len(kernel.usual) :]), rare=kernel.rare)
 
 
 def _proven(transform: Pass, kernel: Kernel) -> Kernel:

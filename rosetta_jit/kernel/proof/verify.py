@@ -81,6 +81,7 @@ def verify(kernel: Kernel, record: Record | None = None) -> None:
     VerificationError
         Something in it cannot be shown to be safe; the message names the statement.
     """
+    check_shape(kernel)
     routines = _proven_routines(kernel, record)
     for number, body in enumerate(kernel.bodies):
         if record is not None:
@@ -91,6 +92,8 @@ def verify(kernel: Kernel, record: Record | None = None) -> None:
 def settled(kernel: Kernel) -> frozenset[int]:
     """The ids of Require and Expect statements that cannot fail wherever they stand, and of Ifs that always choose their first block.
 
+    In rare bodies nobody looks for them. The kernel's shape is sound.
+
     Raises
     ------
     VerificationError
@@ -99,18 +102,22 @@ def settled(kernel: Kernel) -> frozenset[int]:
     found: set[int] = set()
     needed: set[int] = set()
     routines = _proven_routines(kernel)
-    for body in kernel.bodies:
+    for body in kernel.usual:
         walk = _body(kernel, body, routines, notes=True)
         found |= walk.seen.keys()
         needed |= walk.needed
     return frozenset(found - needed)
 
 
-def _proven_routines(kernel: Kernel, record: Record | None = None) -> Mapping[str, Routine]:
-    """The routines of a kernel of sound shape, proven."""
+def check_shape(kernel: Kernel) -> None:
+    """Refuse a kernel whose text is not sound: VerificationError."""
     problem = shape_error(kernel)
     if problem is not None:
         raise VerificationError(f"kernel {kernel.name}: {problem}")
+
+
+def _proven_routines(kernel: Kernel, record: Record | None = None) -> Mapping[str, Routine]:
+    """The routines of a kernel of sound shape, proven."""
     for number, routine in enumerate(kernel.routines):
         try:
             if record is None:

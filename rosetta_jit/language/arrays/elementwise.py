@@ -16,6 +16,7 @@ from rosetta_jit.language.arrays.counts import ONE, LayoutError, times
 from rosetta_jit.language.arrays.element_loops import Moves, element_of
 from rosetta_jit.language.arrays.filters import filter_of, is_filtered, joined
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, NUMBER_BYTES, PADDED, number_type, view_of
+from rosetta_jit.language.arrays.orders import is_of_image
 from rosetta_jit.language.arrays.parts import has_each, is_many, open_parts, sources_in, substituted
 from rosetta_jit.language.conversions import is_single, same, widens
 from rosetta_jit.language.function import functions
@@ -99,6 +100,8 @@ class _Expansion:
             or self.are_integers_in_other_units(rule.place, rule.value)
         ):
             rule = _each(rule, rule.value)
+        if rule.where is None and not has_each(rule.place) and is_of_image(rule.value):
+            return (rule,)
         if rule.where is None and not any(is_many(part) for side in (rule.place, rule.value) for part in open_parts(side)):
             return (rule,)
         is_each = any(has_each(part) for side in (rule.place, rule.value) for part in open_parts(side))

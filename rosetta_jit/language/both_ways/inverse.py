@@ -83,14 +83,14 @@ def solved(expr: Expr, value: Expr, type_of: TypeOf) -> Solution:
     found = solve(expr, value, type_of)
     if any(function_of(part) is not None for part in parts(expr)):
         return nearest(found, type_of)
-    if isinstance(found.place, Len) or not _may_round(expr):
+    if isinstance(found.place, Len) or not may_round(expr):
         return found
     type_ = type_of(found.place)
     if not isinstance(type_, Int):
         return Solution(found.place, rounded_bytes(found.value))
     if not isinstance(type_of(found.value), Float):
         return found
-    return Solution(found.place, Nearest(found.value, _named(expr, found.place), value, type_, expr.span))
+    return Solution(found.place, Nearest(found.value, named(expr, found.place), value, type_, expr.span))
 
 
 def nearest(solution: Solution, type_of: TypeOf) -> Solution:
@@ -102,7 +102,7 @@ def nearest(solution: Solution, type_of: TypeOf) -> Solution:
     return Solution(solution.place, Call(f"{'' if type_.signed else 'u'}int{type_.bits}", (value, Name("round", span)), span))
 
 
-def _may_round(expr: Expr) -> bool:
+def may_round(expr: Expr) -> bool:
     """Whether an expression of an integer may be computed in floats, so that what turns it round is off by their rounding."""
     if any(function_of(part) is not None for part in parts(expr)):
         return False  # nothing that several values are computed from is the nearest integer for each of them
@@ -129,9 +129,9 @@ def _has_whole(part: Binary) -> bool:
     return any(isinstance(each, Literal) and isinstance(each.value, int | str) for each in (folded(part.left), folded(part.right)))
 
 
-def _named(expr: Expr, field: Field) -> Expr:
+def named(expr: Expr, field: Expr) -> Expr:
     """An expression with the name of the integer that is sought in place of the field."""
-    return Name(NEAREST, expr.span) if expr == field else rebuilt(expr, lambda part: _named(part, field))
+    return Name(NEAREST, expr.span) if expr == field else rebuilt(expr, lambda part: named(part, field))
 
 
 def fields_in(expr: Expr) -> list[Field]:

@@ -10,11 +10,12 @@ from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in,
 from rosetta_jit.language.both_ways.inverse_parts import below, part, plain, put_together, rest_of, taken_part
 from rosetta_jit.language.both_ways.knowledge import Beside, Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.presence import flag_of, is_kept
+from rosetta_jit.language.both_ways.signals import frames_of
 from rosetta_jit.language.both_ways.text_parts import numbers_of_texts
 from rosetta_jit.language.function import Affine, written
 from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
 from rosetta_jit.model.mapping import Arranged, For, Relation
-from rosetta_jit.model.walk import Field, fields_of, parts, rebuilt
+from rosetta_jit.model.walk import Field, fields_of, parts, path_of, rebuilt
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,7 +34,7 @@ def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops, is_assigned: 
         if (flag := flag_of(rule)) is not None and not is_assigned(flag[1]) and is_kept(flag, rules):
             known.learn_flag(*flag, loops)
     relations = [each for each in _relations(rules, loops) if not _is_left(each[0], is_assigned)]
-    done = _pairs(known, relations) | _texts(known, relations, is_assigned)
+    done = _pairs(known, relations) | _texts(known, relations, is_assigned) | _frames(known, relations, is_assigned)
     done |= {id(rule) for rule, around in sorted(relations, key=_loss) if id(rule) not in done and _solve(known, rule, around)}
     later = [each for each in relations if id(each[0]) not in done]
     for _ in range(2):
@@ -161,6 +162,24 @@ def _texts(known: Knowledge, relations: list[tuple[Relation, Loops]], is_assigne
         known.beside[id(first)] = Beside(first, "wire", (), ((text.too_many, words.OTHER_PARTS),))
         known.beside.update({id(rule): Beside(rule, "holder", ()) for rule, _ in others})
         done |= {id(rule) for rule, _ in text.relations}
+    return done
+
+
+def _frames(known: Knowledge, relations: list[tuple[Relation, Loops]], is_assigned: Callable[[Field], bool]) -> set[int]:
+    """Relations to the signals of a frame set it together; gives the relations for which that is so."""
+    done: set[int] = set()
+    for frame in frames_of(relations):
+        (first, loops), *others = frame.relations
+        if any(map(is_assigned, fields_in(frame.bytes))):
+            continue
+        try:
+            solution = frame.solved(known.type_of)
+        except NoInverseError:
+            continue
+        _say(known, first, solution.place, solution.value, loops)
+        known.learn(Len(path_of(solution.place)), Literal(frame.size(known.type_of), first.span), loops)
+        known.beside.update({id(rule): Beside(rule, "holder", ()) for rule, _ in others})
+        done |= {id(rule) for rule, _ in frame.relations}
     return done
 
 

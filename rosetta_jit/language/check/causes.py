@@ -17,8 +17,14 @@ if TYPE_CHECKING:
 OF_NAMES = frozenset(("unknown-function", "unknown-name", "unknown-field"))
 """Mistakes that leave open what a rule means."""
 
+CLASHES = frozenset(("type-clash",))
+"""Mistakes after which another field is probably meant."""
+
 OF_TYPES = frozenset(("type-clash", "lossy-conversion"))
 """Mistakes that each direction of a relation reports in its own words."""
+
+DERIVED = frozenset(("not-comparable",))
+"""Mistakes of the checks that relations of one field make of each other."""
 
 OF_INVERSES = frozenset(("no-inverse",))
 """Mistakes of packing alone."""
@@ -43,8 +49,8 @@ def _spans(rules: tuple[Rule, ...]) -> Iterator[Span | None]:
 
 
 def unclear(problems: Iterable[Diagnostic], relations: list[Span]) -> bool:
-    """Whether a relation names what there is not: then it is open which field it packs."""
-    return any(_relation(each, relations) is not None for each in problems if each.code in OF_NAMES)
+    """Whether a relation names what there is not, or what does not fit: then it is open which field it packs."""
+    return any(_relation(each, relations) is not None for each in problems if each.code in OF_NAMES | CLASHES)
 
 
 def causes(problems: list[Diagnostic], relations: list[Span]) -> list[Diagnostic]:
@@ -53,17 +59,28 @@ def causes(problems: list[Diagnostic], relations: list[Span]) -> list[Diagnostic
     A function that there is not has no inverse either, and what has the wrong type for one direction of a relation has it for the other.
     """
     named = {_relation(each, relations) for each in problems if each.code in OF_NAMES}
+    clashes = unclear(problems, relations)
+    undeclared = {_quoted(each) for each in problems if each.code == "unknown-state"}
     found: list[Diagnostic] = []
     wrong: set[int] = set()
     for each in problems:
+        if each.code == "unknown-name" and _quoted(each) in undeclared:
+            continue
         relation = _relation(each, relations)
         if relation is not None and each.severity == "error":
             if (each.code in OF_INVERSES and relation in named) or (each.code in OF_TYPES and relation in wrong):
+                continue
+            if clashes and each.code in DERIVED and each.span == relations[relation]:
                 continue
             if each.code not in OF_INVERSES:
                 wrong.add(relation)
         found.append(each)
     return found
+
+
+def _quoted(problem: Diagnostic) -> str:
+    """The name that a report is about."""
+    return problem.message.partition("`")[2].partition("`")[0]
 
 
 def _relation(problem: Diagnostic, relations: list[Span]) -> int | None:

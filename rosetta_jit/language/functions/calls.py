@@ -17,6 +17,7 @@ from rosetta_jit.catalogue import groups, layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language import conversions
 from rosetta_jit.language.arrays.layouts import ARGUMENTS
+from rosetta_jit.language.arrays.orders import is_of_image, is_order, takes_orders, type_order
 from rosetta_jit.language.conversions import as_int64, as_single, convert, describe, in_single, is_single, wrap
 from rosetta_jit.language.function import Numbers, Texts, names, written
 from rosetta_jit.language.functions.texts import constant_named, is_textual, type_texts
@@ -49,6 +50,8 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
         scope.named.update({expr.function} & scope.enums.keys())
         return _conversion(expr, target, scope, type_expr)
     if expr.function in ARGUMENTS:
+        if is_of_image(expr):
+            return type_order(expr, scope, type_expr)
         scope.problems.append(layouts.out_of_place(expr.span))
         return None
     function = written(expr.function)
@@ -61,7 +64,8 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
         return None
     if function.reduction is not None and callable(function.signature):
         return function.signature(expr, [], scope)  # it has no `[]`, and what else is wrong with its argument follows from that
-    arguments = [type_expr(argument, scope) for argument in expr.arguments]
+    ordered = takes_orders(expr.function)
+    arguments = [type_order(each, scope, type_expr) if ordered and is_order(each) else type_expr(each, scope) for each in expr.arguments]
     typed = [argument for argument in arguments if argument is not None]
     return type_function(function, expr, typed, scope) if len(typed) == len(arguments) else None
 

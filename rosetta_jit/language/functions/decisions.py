@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language.conversions import FLOAT64, as_int64, convert, describe, same
-from rosetta_jit.language.functions.texts import comparison, type_pieces
+from rosetta_jit.language.functions.texts import comparison, is_textual, type_pieces
 from rosetta_jit.language.limits import MAX_CASES, MAX_COMPARED
 from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Choice, Const, IsText, Unary
 from rosetta_jit.language.units.conversion import check_agree
@@ -88,7 +88,7 @@ MIRRORED: dict[str, model.Operator] = {"==": "==", "!=": "!=", "<": ">", "<=": "
 
 def _compared(left: Expr, right: Expr, operator: model.Operator, expr: model.Binary) -> Expr | None:
     match left, right:
-        case Access(place, String() | Bytes()), Const(str(text)) if operator in EQUALITY:
+        case Access(place, String() | Bytes()), Const(str(text)) if operator in EQUALITY and is_textual(place.type):
             return IsText(place, text, BOOL, expr.span)
         case _ if isinstance(left.type, Bool | Enum):
             usable = operator in EQUALITY and same(left.type, right.type)

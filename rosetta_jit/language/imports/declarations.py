@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.errors import MappingError, ReportError
 from rosetta_jit.language.imports.mappings import MAPPING_SUFFIX
 from rosetta_jit.language.imports.search import refusal
@@ -59,7 +60,8 @@ class Imports:
     def read(self, statement: Import) -> Imported | Diagnostic:
         source = self.search.loader(self.reading, self.importer)(self.file(statement.path))
         if source is None:
-            return words.import_not_found(statement.span, statement.path, map(str, self.search.folders))
+            near = closest(statement.path, self.search.alike(statement.path))
+            return words.import_not_found(statement.span, statement.path, map(str, self.search.folders), near)
         if source.name.endswith(unit_file.SUFFIX):
             problems: list[Diagnostic] = []
             units = unit_file.parse(source, problems)

@@ -10,12 +10,14 @@ from __future__ import annotations
 
 import os
 from dataclasses import field, replace
+from itertools import islice
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.errors import MappingError, SchemaError
-from rosetta_jit.language.limits import MAX_FILE_BYTES, MAX_TEXT_BYTES
+from rosetta_jit.language.limits import MAX_FILE_BYTES, MAX_LISTED_FILES, MAX_TEXT_BYTES
 from rosetta_jit.source import Source
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
@@ -100,6 +102,18 @@ class SearchPath:
             return _given(name, texts[name])
         return next((_read(path) for path in (folder / name for folder in folders) if _is_file(path)), None)
 
+    def alike(self, name: str) -> list[str]:
+        """Files that may be meant by the name of one that there is not: those that are called like it, else those of its folder."""
+        if refusal(name) or _is_absolute(name):
+            return []
+        around, called = PurePosixPath(name).parent, PurePosixPath(name).name.casefold()
+        found, shipped = [each for each, _ in self.files], shipped_folders()
+        for folder in self.folders:
+            paths = folder.rglob("*.*") if folder in shipped else (folder / around).glob("*.*")
+            found += [path.relative_to(folder).as_posix() for path in islice(paths, MAX_LISTED_FILES)]
+        same = [each for each in found if PurePosixPath(each).name.casefold() == called]
+        return same or [each for each in found if PurePosixPath(each).parent == around]
+
     def preferred(self, lookup: Lookup) -> tuple[str, ...]:
         """The paths at which a file would have been found before the one that was."""
         if lookup.importer is None:
@@ -137,7 +151,8 @@ class SearchPath:
         except SchemaError as error:
             raise MappingError(error.diagnostics) from error
         if found is None:
-            raise MappingError((words.mapping_not_found(name, map(str, self.folders)),))
+            near = closest(name, self.alike(name))
+            raise MappingError((words.mapping_not_found(name, map(str, self.folders), near),))
         return found
 
     def loader(self, reading: Reading, importer: Source | None = None) -> Load:

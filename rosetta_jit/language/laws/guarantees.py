@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Literal
 from rosetta_jit.language.algebra.equality import given_back, has_state, is_part, reads_other, same_number
 from rosetta_jit.language.algebra.normal_form import normal
 from rosetta_jit.language.laws.chain import UNSHOWN, Lost, Rounding, come_back
+from rosetta_jit.language.laws.execution_paths import ExecutionPath, UnfollowedError, execution_paths
 from rosetta_jit.language.laws.roundtrip import Result, Trip
-from rosetta_jit.language.laws.ways import UnfollowedError, Way, ways
 from rosetta_jit.language.laws.writes import FILTERED
 from rosetta_jit.language.limits import MAX_WORK
 from rosetta_jit.language.places import field_names, shown_names, shown_place
@@ -90,15 +90,15 @@ def shown(rounding: Rounding) -> str:
 
 def _law(first: tuple[Rule, ...], second: tuple[Rule, ...], message: Message) -> Law:
     try:
-        found = ways(first)
+        found = execution_paths(first)
     except UnfollowedError:
         return Law((), (Loss("", "there are too many ways through the rules to follow them"),))
     if len(found) * _size(second) > MAX_WORK:
         return Law((), (Loss("", "there are too many rules to follow them"),))
     rounded: dict[str, Rounding] = {}
     losses: dict[tuple[str, str], Loss] = {}
-    for way in found:
-        for place, outcome, span in _outcomes(way, second, message):
+    for path in found:
+        for place, outcome, span in _outcomes(path, second, message):
             match outcome:
                 case Rounding():
                     rounded[place] = _worse(rounded.get(place, outcome), outcome)
@@ -127,9 +127,9 @@ def _worse(left: Rounding, right: Rounding) -> Rounding:
     return Rounding(max(left.ulp, right.ulp), bits, max(left.floor, right.floor), min(left.limit, right.limit))
 
 
-def _outcomes(way: Way, second: tuple[Rule, ...], message: Message) -> Iterator[tuple[str, Outcome, Span | None]]:
-    """What becomes of each field on one way; whether the message can go back at all."""
-    trip = Trip(way)
+def _outcomes(path: ExecutionPath, second: tuple[Rule, ...], message: Message) -> Iterator[tuple[str, Outcome, Span | None]]:
+    """What becomes of each field on one path; whether the message can go back at all."""
+    trip = Trip(path)
     results = list(trip.run(second))
     if trip.refused:
         yield "", Lost("some messages are rejected on the way back"), None

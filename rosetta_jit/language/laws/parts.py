@@ -4,6 +4,7 @@ floor_divide(x · c + y, c) = x      modulo(x · c + y, c) = y      where 0 ≤ 
 floor_divide(x, c) · c + modulo(x, c) = x
 nanoseconds(x, y) as x · 10⁹ + y, of which 0 ≤ y < 10⁹ is checked
 seconds(iso8601(x, y)) = x          fraction(iso8601(x, y)) = y
+signal(signal_bytes(n, d, x), d) = x, and signal_bytes of all signals of x is x
 iso8601(seconds(x), fraction(x)) = iso8601(nanoseconds(x)), and timestamp likewise
 """
 
@@ -13,8 +14,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.typed import BOOL, INT64, Binary, Call, Const, Convert
-from rosetta_jit.model.types import Int
+from rosetta_jit.language.algebra.normal_form import rebuilt
+from rosetta_jit.language.laws.chain import come_back, field_in
+from rosetta_jit.language.signals import signal_of
+from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Call, Const, Convert
+from rosetta_jit.model.types import Array, Bytes, Int
 
 if TYPE_CHECKING:
     from rosetta_jit.language.typed import Expr
@@ -37,6 +41,10 @@ def simplified(expr: Expr, truth: Truth) -> Expr | None:
             return whole if function == "seconds" else behind
         case Call("repeated", (Call("run_values", (array,)), Call("run_lengths", (other,)))) if array == other:
             return array
+        case Call("signal", (Call("signal_bytes", (_, *signals)), described)):
+            return _signal(expr, signals, described)
+        case Call("signal_bytes", (Const(size), *signals)):
+            return _frame(int(size), signals)
         case Call("nanoseconds", (whole, behind)):
             return _whole(bare(whole), bare(behind), SECOND)
         case Call("iso8601" | "timestamp", (whole, behind)):
@@ -81,6 +89,50 @@ def _is_digit(value: Expr, factor: Const, truth: Truth) -> bool:
         if truth(below) is False and truth(above) is False:
             return True
     return False
+
+
+def _signal(call: Call, signals: list[Expr], described: Expr) -> Expr | None:
+    """The number that was put into a frame at this place."""
+    numbers = dict(zip(signals[::2], signals[1::2], strict=True))
+    number = numbers.get(described)
+    if number is None:
+        return None
+    found = bare(number)
+    return found if found.type == call.type else Convert(found, call.type, "exact", call.span)
+
+
+def _frame(size: int, signals: list[Expr]) -> Expr | None:
+    """The frame whose signals are put where they were read, if they are all of its bits."""
+    bits: set[int] = set()
+    frames: list[Expr] = []
+    for described, number in zip(signals[::2], signals[1::2], strict=True):
+        match read_signal(number):
+            case Call("signal", (frame, Const(str(also)))) if isinstance(described, Const) and described.value == also:
+                known = signal_of(also)
+                bits |= frozenset() if known is None else known.bits
+                frames.append(frame)
+            case _:
+                return None
+    frame = frames[0]
+    is_whole = len(bits) == 8 * size and all(each == frame for each in frames)
+    return frame if is_whole and isinstance(frame.type, Array | Bytes) and frame.type.length == size else None
+
+
+def read_signal(number: Expr) -> Expr | None:
+    """The signal that a number comes from, if what was done to it since is undone."""
+    found: list[Expr] = []
+
+    def marked(part: Expr) -> Expr:
+        match part:
+            case Call("signal", (Access(place), _)):
+                found.append(part)
+                return Access(replace(place, type=part.type), part.type)
+            case _:
+                return rebuilt(part, marked)
+
+    value = bare(marked(number))
+    leaf = field_in(value) if found and all(each == found[0] for each in found) else None
+    return found[0] if leaf is not None and come_back(value, leaf) is None else None
 
 
 def _moment(call: Call, whole: Expr, behind: Expr) -> Expr | None:

@@ -1,7 +1,7 @@
 """One direction after the other: what each rule of the second gives, as expressions of what the first one read.
 
-The first direction is followed along each of its ways. Its rules say what the places between have; what it rejects, and the conditions of
-the way, are known. The second direction then decides its own conditions, as far as they follow.
+The first direction is followed along each of its execution paths. Its rules say what the places between have; what it rejects, and the
+conditions of the path, are known. The second direction then decides its own conditions, as far as they follow.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.language.algebra.equality import Ranges
-    from rosetta_jit.language.laws.ways import Way
+    from rosetta_jit.language.laws.execution_paths import ExecutionPath
     from rosetta_jit.language.scope import Message
     from rosetta_jit.language.typed import Expr, Place, Rule
     from rosetta_jit.model.expr import Side
@@ -74,17 +74,17 @@ class Result:
 
 
 class Trip:
-    """The second direction, run on what one way through the first one leaves."""
+    """The second direction, run on what one execution path of the first one leaves."""
 
     """``by_round`` is whether rounds of loops take different ways, ``left`` how many more rules are compared with other loops.
 
     ``refusals`` are the rejections of the text for which nothing shows that what came through the first direction passes them.
     """
 
-    def __init__(self, way: Way) -> None:
+    def __init__(self, path: ExecutionPath) -> None:
         self.writes: dict[tuple[str, ...], list[Write]] = {}
-        self.rules = way.rules
-        for write in writes_of(way.rules, ()):
+        self.rules = path.rules
+        for write in writes_of(path.rules, ()):
             self.writes.setdefault(field_names(write.place), []).append(write)
         places = [found[0].place for found in self.writes.values()]
         self.origin: Side = "holder" if places and places[0].side == "wire" else "wire"
@@ -92,11 +92,11 @@ class Trip:
         self.ranges: Ranges = ()
         self.truths: dict[Expr, tuple[bool, Ranges]] = {}
         self.equal: dict[Expr, list[tuple[Expr, Ranges]]] = {}
-        for condition, holds, ranges in way.known:
+        for condition, holds, ranges in path.known:
             self.know(condition, ranges, holds=holds)
         self.refused = False
         self.refusals: list[Reject[Expr]] = []
-        self.by_round = any(has_local(condition) for condition, _, _ in way.known)
+        self.by_round = any(has_local(condition) for condition, _, _ in path.known)
         self.left = MAX_ORDERED
 
     def know(self, condition: Expr, ranges: Ranges, *, holds: bool) -> None:

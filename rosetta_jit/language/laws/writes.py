@@ -1,4 +1,4 @@
-"""What the rules of one way through a direction set."""
+"""What the rules of one execution path of a direction set."""
 
 from __future__ import annotations
 

@@ -107,7 +107,7 @@ def _whole(source: Type, target: Type, scope: Scope) -> bool:
     source, target = origin.value_type(source), aim.value_type(target)
     match source, target:
         case ((String() | Bytes()), (String() | Bytes())):
-            return True
+            return is_textual(source) == is_textual(target)
         case Array(length=int(length)), Array(length=int(other)) if length != other:
             return False
         case Array(element=element), Array(element=wanted):

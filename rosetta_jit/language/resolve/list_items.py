@@ -9,6 +9,7 @@ from rosetta_jit.catalogue import bind as words
 from rosetta_jit.catalogue import resolve as names
 from rosetta_jit.language.conversions import as_int64, convert, describe
 from rosetta_jit.language.functions.decisions import unified
+from rosetta_jit.language.functions.texts import is_textual
 from rosetta_jit.language.limits import MAX_ITEMS
 from rosetta_jit.language.typed import BOOL, Access, Const, Given, IsText, Listed, Unary
 from rosetta_jit.model import expr as model
@@ -71,7 +72,7 @@ def _given(expr: model.Given, scope: Scope, type_expr: TypeExpr) -> Expr | None:
 def compared_text(left: Expr, right: Expr, expr: model.Binary) -> Expr | None:
     """A text compared with one of a list, and two that are known."""
     match left, right:
-        case Access(place, String() | Bytes()), Listed(items, index, String()):
+        case Access(place, String() | Bytes()), Listed(items, index, String()) if is_textual(place.type):
             texts = tuple(IsText(place, str(item.value), BOOL, expr.span) for item in items if isinstance(item, Const))
             found = Listed(texts, index, BOOL, expr.span)
             return found if expr.operator == "==" else Unary("not", found, BOOL, expr.span)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from rosetta_jit.kernel.ir import Expr, Get
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.lowering.arithmetic import align, binary
-from rosetta_jit.lowering.codec.wire_fields import NotInPlaceError
 from rosetta_jit.lowering.writer import integer
 from rosetta_jit.model import expr
 
@@ -24,8 +23,7 @@ def evaluate(value: expr.Expr, fields: Fields, writer: Writer, where: Where) -> 
         case expr.Path(_, steps):
             path = tuple(step.name for step in steps if isinstance(step, expr.Member))
             found = fields.get(path)
-            if found is None:
-                raise NotInPlaceError(path)
+            assert found is not None, path
             return integer(writer.let("told", found) if isinstance(found, Get) else found)  # the proof looks at each reading anew
         case expr.Len(path):
             return fields.stored(tuple(step.name for step in path.steps if isinstance(step, expr.Member))).size

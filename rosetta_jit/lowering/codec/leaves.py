@@ -74,14 +74,14 @@ def _number(writer: Writer, fields: Fields, number: Number) -> None:
     where, scalar = fields.shown(number.path), scalar_name(number.scalar)
     if writer.direction == "decode":
         at, value = writer.position, writer.load(scalar, where, number.order)
-        fields.put(number.path, value if number.held is None else _fitting(writer, where, value, number.held, at))
+        fields.put(number.path, value if number.holder_scalar is None else _fitting(writer, where, value, number.holder_scalar, at))
         return
     value = fields.get(number.path) if writer.direction == "encode" else None
     if value is None:
         writer.require(WIDTH[scalar], where, "no room for the message")
         writer.advance(WIDTH[scalar])
     else:
-        fitting = value if number.held is None else _fitting(writer, where, value, scalar, writer.position)
+        fitting = value if number.holder_scalar is None else _fitting(writer, where, value, scalar, writer.position)
         writer.store(as_scalar(scalar, fitting), where, number.order)
 
 

@@ -11,7 +11,6 @@ from rosetta_jit.kernel.ir import Assign, Binary, Compare, Const, Convert, Expec
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.codec import leaves
 from rosetta_jit.lowering.codec.fields import scalar_name
-from rosetta_jit.lowering.codec.wire_fields import NotInPlaceError
 from rosetta_jit.lowering.codec.xcdr1_members import parameter, parameters
 from rosetta_jit.lowering.codec.xcdr2_members import members, store_size
 from rosetta_jit.lowering.limits import MAX_SIZE
@@ -319,6 +318,5 @@ def _delimited(writer: Writer, fields: Fields, delimited: Delimited) -> None:
 def _got(fields: Fields, path: tuple[str, ...]) -> Expr:
     """A number that tells what follows; that of an element is not known where rules write it in its place."""
     value = fields.get(path)
-    if value is None:
-        raise NotInPlaceError(path)
+    assert value is not None, path
     return value

@@ -26,13 +26,7 @@ EACH = "[]"
 """In a path, stands for any element of the array before it."""
 
 
-class NotInPlaceError(Exception):
-    """Rules need a field that cannot be read or written where it lies on the wire: it is not at a known place, or what it says must be
-    put together first. The message is then decoded as a whole before the rules run, or encoded behind them (`lowering.staging`).
-    """
-
-
-class Supply(Protocol):
+class AssignedValues(Protocol):
     """Where an encoding walk gets what the rules assign."""
 
     def number(self, path: Path) -> Expr:
@@ -74,7 +68,7 @@ class WireFields:
 
     writer: Writer
     found: Found
-    supply: Supply | None = None
+    assigned: AssignedValues | None = None
     path: Path = ()
     where: Where = MESSAGE
     element: bool = False
@@ -97,7 +91,7 @@ class WireFields:
             return self.found.numbers[key]
         if self.element:
             return self.passing.get(path)
-        self.found.numbers[key] = self.bind(key, "value", self.supplied(key).number(key))
+        self.found.numbers[key] = self.bind(key, "value", self.assigned_at(key).number(key))
         return self.found.numbers[key]
 
     def put_bytes(self, path: Path, at: Expr, size: Expr) -> None:
@@ -107,7 +101,7 @@ class WireFields:
     def size_of(self, path: Path) -> Expr:
         key = self.path + path
         if key not in self.found.counts:
-            self.found.counts[key] = self.bind(key, "count", self.supplied(key).size(key))
+            self.found.counts[key] = self.bind(key, "count", self.assigned_at(key).size(key))
         return self.found.counts[key]
 
     def stored(self, path: Path, fixed: int | None = None) -> Stored:
@@ -117,7 +111,7 @@ class WireFields:
 
     def copy_bytes(self, path: Path, stored: Stored) -> None:
         key = self.path + path
-        source = self.supplied(key).bytes_at(key)
+        source = self.assigned_at(key).bytes_at(key)
         if source is None:
             self.bind_bytes(key, self.writer.position, stored.size)
         else:
@@ -137,28 +131,28 @@ class WireFields:
         if not self.element:
             for _, codec in choice.alternatives:
                 self.declare(codec, ())
-            for path in {} if self.supply is None else dict.fromkeys(path for _, codec in choice.alternatives for path in _told_by(codec)):
+            if self.assigned is None:
+                return
+            for path in dict.fromkeys(path for _, codec in choice.alternatives for path in numbers_of_counts(codec)):
                 if (self.path + path, "value") not in self.found.variables:
                     self.get(path)
 
-    def supplied(self, key: Path) -> Supply:
-        """Where an encoding walk gets its values; a decoding one has bound what it could."""
-        if self.supply is None:
-            raise NotInPlaceError(key)
-        return self.supply
+    def assigned_at(self, key: Path) -> AssignedValues:
+        """Where an encoding walk gets its values; a decoding one has bound what rules read."""
+        assert self.assigned is not None, key
+        return self.assigned
 
     def choose(self, path: Path, number: int) -> None:
-        del number
-        raise NotInPlaceError(path)
+        raise AssertionError(path, number)
 
     def scatter(self, path: Path) -> None:
-        raise NotInPlaceError(path)
+        raise AssertionError(path)
 
     def appear(self, path: Path) -> None:
-        raise NotInPlaceError(path)
+        raise AssertionError(path)
 
     def present(self, path: Path) -> Expr:
-        raise NotInPlaceError(path)
+        raise AssertionError(path)
 
     @property
     def scope(self) -> WireFields:
@@ -260,12 +254,12 @@ def _stem(key: Path, role: str) -> str:
     return name if role == "value" else f"{name}_{role}"
 
 
-def _told_by(codec: Codec) -> Iterator[Path]:
+def numbers_of_counts(codec: Codec) -> Iterator[Path]:
     """The numbers by which a codec tells counts."""
     match codec:
         case Seq(items):
             for item in items:
-                yield from _told_by(item)
+                yield from numbers_of_counts(item)
         case Repeat(_, count, _) | Blob(_, count, _, _):
             yield from _named_in(count.value)
         case _:

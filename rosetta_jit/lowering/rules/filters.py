@@ -44,7 +44,7 @@ class Runs(Protocol):
 def filtered(runner: Runs, rule: typed.For[typed.Rule, typed.Expr], kept: Kept[typed.Expr], values: Values) -> None:
     """The rounds of a loop that are kept; their arrays have their lengths."""
     writer, stop = runner.writer, values.of(rule.stop)
-    counts = [runner.count_of(array, values) for array in _arrays(rule, kept)]
+    counts = [runner.count_of(array, values) for array in filtered_arrays(rule, kept)]
     number, row = Local("i64", writer.fresh(rule.variable)), writer.var(kept.variable, index(0))
     look_ahead((rule,), values)
     writer.certain.add(inside(number, stop))
@@ -69,7 +69,7 @@ def filtered(runner: Runs, rule: typed.For[typed.Rule, typed.Expr], kept: Kept[t
         writer.expect(Compare("eq", row, count), "count", values.where, "the condition held for other elements before", line=values.line)
 
 
-def _arrays(rule: typed.For[typed.Rule, typed.Expr], kept: Kept[typed.Expr]) -> list[typed.Place]:
+def filtered_arrays(rule: typed.For[typed.Rule, typed.Expr], kept: Kept[typed.Expr]) -> list[typed.Place]:
     """The arrays that have an element for each round that is kept."""
     step = typed.IndexStep(typed.Local(kept.variable))
     found = [(place, place.steps.index(step)) for place in places_in(rule.body) if step in place.steps]

@@ -18,7 +18,7 @@ from rosetta_jit.language.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.arithmetic import inside
 from rosetta_jit.lowering.codec.fields import OTHER_CASE, has_gaps, member_of, negated, presence_bit, scalar_name
 from rosetta_jit.lowering.rules.discriminators import chosen_case
-from rosetta_jit.lowering.rules.initial_values import bear, bear_each
+from rosetta_jit.lowering.rules.initial_values import initialise, initialise_each
 from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.layout import Number, Row, Span, Variant
 from rosetta_jit.model.types import Array, Bytes, Field, String, Struct
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.codec.fields import HolderElements, HolderFields
     from rosetta_jit.lowering.evaluation import Evaluation
     from rosetta_jit.lowering.writer import Writer
-    from rosetta_jit.model.initial_values import Births
+    from rosetta_jit.model.initial_values import InitialValues
     from rosetta_jit.model.layout import Member
     from rosetta_jit.model.types import Constant
     from rosetta_jit.wire.codec import Path
@@ -44,12 +44,12 @@ Key = tuple[object, ...]
 class HolderSide:
     """A message in lanes: the holder, or a wire's message that is staged.
 
-    Arrays whose length was set, or that were looked at, are known by their place. Where rules fill it, elements are born with what
-    ``births`` says, but for what lies in ``opened`` lanes. ``joined`` are arrays of which other messages set elements, too.
+    Arrays whose length was set, or that were looked at, are known by their place. Where rules fill it, elements have the initial
+    values of ``initial``, but for what lies in ``opened`` lanes. ``joined`` are arrays of which other messages set elements, too.
     """
 
     root: HolderFields
-    births: Births | None = None
+    initial: InitialValues | None = None
     opened: frozenset[int] = frozenset()
     unions: Mapping[tuple[str, ...], Discriminator] = field(default_factory=dict[tuple[str, ...], "Discriminator"])
     joined: frozenset[tuple[str, ...]] = frozenset()
@@ -92,7 +92,7 @@ class HolderSide:
     def count(self, place: typed.Place, values: Evaluation) -> Expr:
         """How many elements or bytes; a required text must be there."""
         match place.type, place.steps:
-            case ((String() | Bytes()), (*_, FieldStep(Field(required=True) as last))) if self.births is None:
+            case ((String() | Bytes()), (*_, FieldStep(Field(required=True) as last))) if self.initial is None:
                 fields, path, _ = self.descend(place, values)
                 present = presence(fields, path)
                 if present is not None:
@@ -145,7 +145,7 @@ class HolderSide:
     def single(self, fields: HolderFields, path: Path, values: Evaluation) -> HolderFields:
         """A message that has a row of its own, since it can contain itself: it is there, or it comes now."""
         where = fields.shown(path)
-        if self.births is not None:
+        if self.initial is not None:
             with self.writer.nested() as new:
                 elements = fields.open(path, index(1))
                 fields.clear(elements.lane, elements.start, index(1))
@@ -167,7 +167,7 @@ class HolderSide:
         path, case = (*path[:-1], discriminator.name), chosen_case(discriminator.union, value, self.writer)
         self.writer.emit(SetField(_case_word(fields, path), case))
         for number in range(1, len(discriminator.union.cases) + 1):
-            self.bear_case(fields, path, discriminator, number, Compare("eq", case, index(number)))
+            self.initialise_case(fields, path, discriminator, number, Compare("eq", case, index(number)))
 
     def choose(self, place: typed.Place, values: Evaluation) -> None:
         """The unions that a place is in a case of have that case: their discriminators say so, or are made to."""
@@ -183,20 +183,20 @@ class HolderSide:
                 number = discriminator.number(case.field.name)
                 fields.put((*path[:-1], names[-1]), index(discriminator.label(case.field.name)))
                 word = _case_word(fields, path)
-                self.bear_case(fields, path, discriminator, number, Compare("ne", Get("i64", word), index(number)))
+                self.initialise_case(fields, path, discriminator, number, Compare("ne", Get("i64", word), index(number)))
                 self.writer.emit(SetField(word, index(number)))
 
-    def bear_case(self, fields: HolderFields, path: Path, discriminator: Discriminator, number: int, when: Expr) -> None:
-        """Give a case that comes what it is born with."""
+    def initialise_case(self, fields: HolderFields, path: Path, discriminator: Discriminator, number: int, when: Expr) -> None:
+        """Give a case that comes its initial values."""
         cell = fields.find(path)
         assert isinstance(cell.slot, Variant)
-        births = (
+        initial = (
             ()
-            if self.births is None
-            else self.births.of(discriminator.union.cases[number - 1].type, cell.slot.members[number - 1].slot, cell.lane)
+            if self.initial is None
+            else self.initial.of(discriminator.union.cases[number - 1].type, cell.slot.members[number - 1].slot, cell.lane)
         )
         with self.writer.nested() as body:
-            bear(fields, births, cell.row, self.opened)
+            initialise(fields, initial, cell.row, self.opened)
         if body:
             self.writer.emit(If(when, block(body)))
 
@@ -214,7 +214,7 @@ class HolderSide:
         self.writer.expect(agrees, "union", fields.shown(path[:-1]), OTHER_CASE, line=values.line)
 
     def appear(self, place: typed.Place, values: Evaluation) -> None:
-        """What can be absent is there, as it was born."""
+        """What can be absent is there, with its initial value."""
         fields, path, _ = self.descend(place, values)
         if isinstance(place.type, Struct) and isinstance(fields.find(path).slot, Span):
             self.single(fields, path, values)
@@ -235,8 +235,8 @@ class HolderSide:
         if not isinstance(lane.element, Number) and not has_gaps(lane.element):
             self.writer.expect(Compare("le", count, index((1 << 56) // lane.stride)), "count", where, "too many elements")
             self.root.clear(elements.lane, elements.start, count)
-        if isinstance(place.type, Array) and self.births is not None:
-            bear_each(fields, self.births.of_elements(place.type.element, elements.lane), elements.start, count, self.opened)
+        if isinstance(place.type, Array) and self.initial is not None:
+            initialise_each(fields, self.initial.of_elements(place.type.element, elements.lane), elements.start, count, self.opened)
 
     def keep_length(self, fields: HolderFields, path: Path, count: Expr) -> None:
         """Take room for numbers, unless the array has this length already: then they stay.
@@ -264,10 +264,11 @@ class HolderSide:
         fields, path, _ = self.descend(place, values)
         fields.put_bytes(path, at, size)
 
-    def set_byte(self, place: typed.Place, number: int, value: int, values: Evaluation) -> None:
-        """One byte of a text whose length was set."""
+    def set_unit(self, place: typed.Place, number: int, value: int, values: Evaluation) -> None:
+        """One byte, or unit of 16 bits, of a text whose length was set."""
         elements, _ = self.array(place, values)
-        self.writer.emit(SetField(Place(elements.lane, add(elements.start, number)), Const("u8", value)))
+        unit = Const("u8" if self.root.layout.lanes[elements.lane].stride == 1 else "u16", value)
+        self.writer.emit(SetField(Place(elements.lane, add(elements.start, number)), unit))
 
 
 def presence(fields: HolderFields, path: Path, *, outer: bool = False) -> Expr | None:

@@ -1,4 +1,4 @@
-"""What rows of lanes are born with, where rules set their parts one by one: fixed arrays whose elements get values, unions' first cases.
+"""Initial values of new rows, where rules set their parts one by one: fixed arrays whose elements get values, unions' first cases.
 
 An array that a rule gives a length, or sets as a whole, is opened there; all others must have their elements before the rules begin.
 """
@@ -19,15 +19,15 @@ from rosetta_jit.model.layout import Number, Row, Span, Variant
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr
     from rosetta_jit.lowering.codec.fields import HolderFields
-    from rosetta_jit.model.initial_values import Birth
+    from rosetta_jit.model.initial_values import InitialValue
     from rosetta_jit.model.layout import Layout, Slot
 
 
-def bear(fields: HolderFields, births: tuple[Birth, ...], row: Expr, opened: frozenset[int]) -> None:
-    """Give a row what it is born with, but for what lies in ``opened`` lanes."""
+def initialise(fields: HolderFields, initial: tuple[InitialValue, ...], row: Expr, opened: frozenset[int]) -> None:
+    """Give a row its initial values, but for what lies in ``opened`` lanes."""
     writer = fields.writer
-    for birth in births:
-        match birth:
+    for each in initial:
+        match each:
             case FixedArray(lane, word, target, length, within, _) if target not in opened:
                 first = fields.reserve(target, index(length))
                 writer.emit(
@@ -35,21 +35,21 @@ def bear(fields: HolderFields, births: tuple[Birth, ...], row: Expr, opened: fro
                     SetField(Place(lane, row, 8 * word + 8), index(length)),
                     Fill(Place(target, first), index(length * fields.layout.lanes[target].stride)),
                 )
-                bear_each(fields, within, first, index(length), opened)
+                initialise_each(fields, within, first, index(length), opened)
             case FixedArray():
                 pass
             case FirstCase(lane, word, number):
                 writer.emit(SetField(Place(lane, row, 8 * word), index(number)))
             case _:
-                assert_never(birth)
+                assert_never(each)
 
 
-def bear_each(fields: HolderFields, births: tuple[Birth, ...], first: Expr, count: Expr, opened: frozenset[int]) -> None:
+def initialise_each(fields: HolderFields, initial: tuple[InitialValue, ...], first: Expr, count: Expr, opened: frozenset[int]) -> None:
     """The same for so many rows."""
     writer = fields.writer
-    number = Local("i64", writer.fresh("born"))
+    number = Local("i64", writer.fresh("row"))
     with writer.nested() as body:
-        bear(fields, births, add(first, number), opened)
+        initialise(fields, initial, add(first, number), opened)
     if body:
         writer.emit(For(number.name, count, block(body)))
 
@@ -67,11 +67,6 @@ def opened_lanes(rules: tuple[typed.Rule, ...], layout: Layout, root: Slot, side
             case _:
                 pass
     return frozenset(found)
-
-
-def places_left(rules: tuple[typed.Rule, ...]) -> list[typed.Place]:
-    """The places that are meant to be left alone."""
-    return [rule.place for rule in rules_within(rules) if isinstance(rule, typed.Default)]
 
 
 def _slot_at(place: typed.Place, layout: Layout, root: Slot) -> Slot:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,6 @@ from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.functions.texts import is_textual
-from rosetta_jit.lowering.codec.wire_fields import NotInPlaceError
 from rosetta_jit.lowering.rules.values import constant, scalar_type
 from rosetta_jit.lowering.rules.wire_side import wire_key
 from rosetta_jit.lowering.writer import Where, block
@@ -21,11 +21,12 @@ if TYPE_CHECKING:
 
     from rosetta_jit.lowering.rules.holder_side import HolderSide
     from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.model.types import Type
     from rosetta_jit.wire.codec import Path
 
 
 @dataclass(frozen=True, slots=True)
-class Supplies:
+class AssignedByRules:
     """What an encoding walk asks for while it lays out a message: numbers, sizes, and bytes that are copied as they are."""
 
     rules: tuple[typed.Rule, ...]
@@ -40,10 +41,10 @@ class Supplies:
 
     def decided(self, path: Path, zero: Const, value: Callable[[typed.Rule, Values], Expr]) -> Expr:
         """What the rule for a field gives; one in a `when` sets a variable."""
-        writer, rule = self.values.writer, _rule_for(path, self.rules)
+        writer, rule = self.values.writer, rule_for(path, self.rules)
         match rule:
             case None:
-                raise NotInPlaceError(path)
+                raise AssertionError(path)
             case typed.When():
                 found = writer.var("_".join(path), zero)
                 self.decide(found, path, self.rules, value)
@@ -54,7 +55,7 @@ class Supplies:
 
     def decide(self, found: Local, path: Path, rules: tuple[typed.Rule, ...], value: Callable[[typed.Rule, Values], Expr]) -> None:
         """Set a variable where the rules set the field; where they do not, they are going to reject the message."""
-        writer, rule = self.values.writer, _rule_for(path, rules)
+        writer, rule = self.values.writer, rule_for(path, rules)
         match rule:
             case None:
                 pass
@@ -80,21 +81,19 @@ class Supplies:
                 size = here.writer.let("length", here.of(value))
                 here.writer.expect(Compare("ge", size, index(0)), "count", here.where, "a length must not be negative", line=here.line)
                 return size
-            case typed.Assign(_, typed.Const(str(text))):
-                return index(len(text.encode()))
+            case typed.Assign(place, typed.Const(str(text))):
+                return index(len(units_of(text, place.type)))
             case typed.Assign(_, typed.Access(origin)):
                 return self.source.count(origin, here)
-            case typed.Assign(_, typed.Listed(items) as listed):
-                return here.of(replace(listed, items=tuple(map(_size, items)), type=typed.INT64))
+            case typed.Assign(place, typed.Listed(items) as listed):
+                return here.of(replace(listed, items=tuple(_size(item, place.type) for item in items), type=typed.INT64))
             case typed.Default():
                 return index(0)
-            case typed.Assign(_, typed.Call()):
-                raise NotInPlaceError
             case _:
                 raise AssertionError(rule)
 
     def bytes_at(self, path: Path) -> Place | None:
-        rule = _rule_for(path, self.rules)
+        rule = rule_for(path, self.rules)
         match rule:
             case typed.Assign(_, typed.Access(origin)):
                 address = self.source.address(origin, self.here(rule))
@@ -106,7 +105,7 @@ class Supplies:
         return replace(self.values, where=place_of(rule, self.values)).at_rule(rule.span)
 
 
-def _rule_for(path: Path, rules: tuple[typed.Rule, ...]) -> typed.Rule | None:
+def rule_for(path: Path, rules: tuple[typed.Rule, ...]) -> typed.Rule | None:
     """The rule that sets a field of the wire, or its length, or a `when` that has it in one of its blocks."""
     for rule in rules:
         match rule:
@@ -114,27 +113,34 @@ def _rule_for(path: Path, rules: tuple[typed.Rule, ...]) -> typed.Rule | None:
                 return rule
             case typed.Default(place) if wire_key(place) == (path[: len(place.steps)], []):
                 return rule
-            case typed.When(_, then, otherwise) if _rule_for(path, (*then, *otherwise)) is not None:
+            case typed.When(_, then, otherwise) if rule_for(path, (*then, *otherwise)) is not None:
                 return rule
             case _:
                 pass
     return None
 
 
-def _size(text: typed.Expr) -> typed.Const:
-    """How many bytes a text of a list has."""
+def _size(text: typed.Expr, type_: Type) -> typed.Const:
+    """How many bytes or units a text of a list has."""
     assert isinstance(text, typed.Const)
-    return typed.Const(len(str(text.value).encode()), typed.INT64)
+    return typed.Const(len(units_of(str(text.value), type_)), typed.INT64)
+
+
+def units_of(text: str, type_: Type) -> list[int]:
+    """A text as a type has it: bytes, or units of 16 bits."""
+    if isinstance(type_, String) and type_.encoding == "utf-16":
+        return [unit for (unit,) in struct.iter_unpack("<H", text.encode("utf-16-le"))]
+    return list(text.encode())
 
 
 def _zero(path: Path, rules: tuple[typed.Rule, ...]) -> Const:
     """A number of the type of a field that rules set."""
-    rule = _rule_for(path, rules)
+    rule = rule_for(path, rules)
     match rule:
         case typed.Assign(place) | typed.Default(place) if isinstance(place.type, Int | Float | Bool | Enum):
             return constant(0, scalar_type(place.type))
         case typed.When(_, then, otherwise):
-            blocks = [block for block in (then, otherwise) if _rule_for(path, block) is not None]
+            blocks = [block for block in (then, otherwise) if rule_for(path, block) is not None]
             return next((zero for block in blocks if (zero := _zero(path, block)) != index(0)), index(0))
         case _:
             return index(0)

@@ -12,7 +12,10 @@ from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import FLOAT64
 from rosetta_jit.language.units.numbers import scaled
 from rosetta_jit.lowering.writer import block
-from rosetta_jit.model.types import Array, Bool, Enum, Float, Int
+from rosetta_jit.model.types import Array, Bool, Enum, Float, Int, String
+
+UINT16 = Int(16, signed=False)
+"""A unit of a text that is kept in such units."""
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -68,7 +71,7 @@ def names_of_elements() -> Iterator[str]:
 
 
 def _element(place: typed.Place, variable: typed.Local) -> typed.Place:
-    type_ = place.type.element if isinstance(place.type, Array) else place.type
+    type_ = place.type.element if isinstance(place.type, Array) else UINT16 if isinstance(place.type, String) else place.type
     return replace(place, steps=(*place.steps, typed.IndexStep(variable)), type=type_)
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Scalar
     from rosetta_jit.language.check.wires import Names, Share
     from rosetta_jit.lowering.codec.fields import HolderFields
-    from rosetta_jit.model.initial_values import Birth
+    from rosetta_jit.model.initial_values import InitialValue
     from rosetta_jit.model.layout import Layout, Slot
 
 
@@ -33,10 +33,10 @@ def clear(fields: HolderFields, share: Share) -> None:
         _clear(fields, _slot_at(names, fields.layout))
 
 
-def born_of(share: Share, births: tuple[Birth, ...], layout: Layout) -> tuple[Birth, ...]:
-    """What the share is born with, of what a message is."""
+def initial_of(share: Share, initial: tuple[InitialValue, ...], layout: Layout) -> tuple[InitialValue, ...]:
+    """The initial values of the share, of those of a message."""
     words = {word for names in share.cleared for word in _words(_slot_at(names, layout))}
-    return tuple(each for each in births if each.word in words)
+    return tuple(each for each in initial if each.word in words)
 
 
 def _slot_at(names: Names, layout: Layout) -> Slot:
@@ -47,7 +47,7 @@ def _slot_at(names: Names, layout: Layout) -> Slot:
 
 
 def _words(slot: Slot) -> list[int]:
-    """The words of a row that spans, and the cases of unions, lie in, as births name them."""
+    """The words of a row that spans, and the cases of unions, lie in, as initial values name them."""
     match slot:
         case Number():
             return []

@@ -17,13 +17,12 @@ from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.calls import lowered
-from rosetta_jit.lowering.codec.wire_fields import NotInPlaceError
 from rosetta_jit.lowering.filling import UINT8
 from rosetta_jit.lowering.rules.copies import copy, is_endless
 from rosetta_jit.lowering.rules.filters import filtered
 from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
 from rosetta_jit.lowering.rules.look_ahead import look_ahead
-from rosetta_jit.lowering.rules.packed_values import place_of
+from rosetta_jit.lowering.rules.packed_values import place_of, units_of
 from rosetta_jit.lowering.rules.putting import Putting
 from rosetta_jit.lowering.rules.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.rules.state import remember
@@ -144,8 +143,10 @@ class Runner:
 
     def assign(self, place: typed.Place, value: typed.Expr, values: Values, change: typed.Change | None = None) -> None:
         match place.type, value:
+            case String(encoding="utf-16"), typed.Access(origin):
+                self.assign_array(place, origin, values)
             case ((String() | Bytes()), typed.Const(str(text))):
-                self.assign_text(place, text.encode(), values)
+                self.assign_text(place, text, values)
             case ((String() | Bytes()), typed.Listed()):
                 self.assign_listed(place, value, values)
             case ((String() | Bytes()), typed.Access(origin)):
@@ -165,10 +166,12 @@ class Runner:
             case _:
                 self.target.set_number(place, values.of(value), values)
 
-    def assign_text(self, place: typed.Place, text: bytes, values: Values) -> None:
-        self.take(place, index(len(text)), values)
-        for number, byte in enumerate(text):
-            self.target.set_byte(place, number, byte, values)
+    def assign_text(self, place: typed.Place, text: str, values: Values) -> None:
+        """A text that is written down, in the units of the place."""
+        units = units_of(text, place.type)
+        self.take(place, index(len(units)), values)
+        for number, unit in enumerate(units):
+            self.target.set_unit(place, number, unit, values)
 
     def assign_listed(self, place: typed.Place, listed: typed.Listed, values: Values) -> None:
         """One of several texts; what is looked up for one of them is forgotten behind it."""
@@ -199,8 +202,7 @@ class Runner:
 
     def assign_computed(self, place: typed.Place, value: typed.Call, values: Values) -> None:
         """A text that is made of others, an image, or its pixels. On the wire there is no place for it before it is made."""
-        if isinstance(self.target, WireSide):
-            raise NotInPlaceError
+        assert isinstance(self.target, HolderSide)
         view = placed(self.writer, text_of(value, values))
         if isinstance(place.type, String) and place.type.encoding == "utf-8":
             view = checked(view, values)
@@ -210,8 +212,7 @@ class Runner:
 
     def assign_filling(self, place: typed.Place, call: typed.Call, values: Values) -> None:
         """An array that a function makes of others. On the wire there is no place for it before it is known how long it is."""
-        if isinstance(self.target, WireSide):
-            raise NotInPlaceError
+        assert isinstance(self.target, HolderSide)
         made = cast("Filling", lowered(call, values))
         self.take(place, self.count(made.count), values)
         variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
@@ -224,8 +225,7 @@ class Runner:
 
     def assign_parts(self, place: typed.Place, call: typed.Call, values: Values) -> None:
         """The parts of a text, each as an element. What is between separators is whole characters."""
-        if isinstance(self.target, WireSide):
-            raise NotInPlaceError
+        assert isinstance(self.target, HolderSide)
         assert isinstance(place.type, Array)
         text, pattern = cast("tuple[View, bytes]", lowered(call, values))
         view = checked(text, values) if isinstance(place.type.element, String) else text
@@ -241,8 +241,8 @@ class Runner:
 
     def copy(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """A message, union or map as a whole."""
-        if not (isinstance(self.source, HolderSide) and isinstance(self.target, HolderSide)):
-            raise NotInPlaceError
+        assert isinstance(self.source, HolderSide)
+        assert isinstance(self.target, HolderSide)
         chosen = self.target.case_of(place, values)
         source, path, _ = self.source.descend(origin, values)
         target, target_path, _ = self.target.descend(place, values)
@@ -257,8 +257,8 @@ class Runner:
         if chosen is not None:
             self.target.expect_case(*chosen, values)
 
-    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
-        """An array as a whole: its length, then each element."""
+    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None = None) -> None:
+        """An array as a whole, or a text in units of 16 bits: its length, then each element."""
         count = self.source.count(origin, values)
         self.take(place, count, values)
         variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))

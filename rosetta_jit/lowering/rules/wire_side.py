@@ -14,7 +14,7 @@ from rosetta_jit.language import typed
 from rosetta_jit.language.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.arithmetic import inside
 from rosetta_jit.lowering.codec.fields import converted
-from rosetta_jit.lowering.codec.wire_fields import EACH, NotInPlaceError
+from rosetta_jit.lowering.codec.wire_fields import EACH
 from rosetta_jit.lowering.texts.views import between
 from rosetta_jit.lowering.writer import Where
 from rosetta_jit.startup.dataclass import dataclass
@@ -40,8 +40,7 @@ class WireSide:
         key, indices = wire_key(place)
         if not indices:
             found = self.root.get(key)
-            if found is None:
-                raise NotInPlaceError(key)
+            assert found is not None, key
             return found
         region, at = self.element(key, indices, values)
         return Load(region.scalar, at, ">" if region.order == ">" else "<")
@@ -50,27 +49,22 @@ class WireSide:
         """How many elements or bytes there are; how many an element has is known only while the walk is there."""
         del values
         key, indices = wire_key(place)
-        if indices:
-            raise NotInPlaceError(key)
+        assert not indices, key
         return self.root.size_of(key)
 
     def address(self, place: typed.Place, values: Evaluation) -> Address:
         """Where the bytes of a string or bytes field begin."""
         del values
         key = (*wire_key(place)[0], EACH)
-        if key not in self.root.found.regions:
-            raise NotInPlaceError(key)
         return Wire(self.root.found.regions[key].first)
 
     def present(self, place: typed.Place, values: Evaluation) -> Expr:
         """Whether what can be absent is there; fields of which this can be said are not read in place."""
-        del values
-        raise NotInPlaceError(wire_key(place)[0])
+        raise AssertionError(place, values)
 
     def element(self, key: Path, indices: list[typed.Expr], values: Evaluation) -> tuple[Region, Expr]:
         """How the elements of an array lie, and where one of them is; it is checked to be there."""
-        if len(indices) != 1 or key not in self.root.found.regions:
-            raise NotInPlaceError(key)
+        assert len(indices) == 1, key
         region, array = self.root.found.regions[key], key[: key.index(EACH)]
         number = self.writer.once(values.of(indices[0]))
         where = Where().members(array).element(number)
@@ -105,7 +99,7 @@ class WireSide:
     def set_length(self, place: typed.Place, count: Expr, values: Evaluation) -> None:
         """The walk has asked for it."""
 
-    def set_byte(self, place: typed.Place, number: int, value: int, values: Evaluation) -> None:
+    def set_unit(self, place: typed.Place, number: int, value: int, values: Evaluation) -> None:
         """One byte of a text whose size the walk has asked for."""
         del values
         at = add(self.root.found.regions[(*wire_key(place)[0], EACH)].first, number)

@@ -16,7 +16,7 @@ from pyarrow import types
 
 from rosetta_jit.errors import ValuesError
 from rosetta_jit.model.layout import scalar_of
-from rosetta_jit.model.limits import MAX_BORN_BYTES
+from rosetta_jit.model.limits import MAX_INITIAL_BYTES
 from rosetta_jit.runtime.arrow.leaves import blob_of, listed_of, numbers_of, refused, solid, text_of
 from rosetta_jit.runtime.arrow.times import moment_columns
 from rosetta_jit.runtime.cells import dtype_of
@@ -102,7 +102,7 @@ def _write_record(record: Record, columns: Mapping[str, pa.Array], target: _Targ
 def _write_entry(entry: Entry, array: pa.Array | None, target: _Target) -> None:
     if array is None:
         if entry.presence is None:
-            _write_born(entry.node, target)
+            _write_initial(entry.node, target)
         return
     match entry.presence:
         case None:
@@ -176,16 +176,16 @@ def _recursive(record: Record, target: _Target) -> TypeError:
     return TypeError(f"`{path}`: messages of {record.struct} contain each other, for which Arrow has no type; leave the column out")
 
 
-def _write_born(node: Node, target: _Target) -> None:
+def _write_initial(node: Node, target: _Target) -> None:
     """What a field is in a new message: arrays of fixed length have their elements, unless those would be very many."""
     match node:
         case Blob(_, lane, int(length)) | Numbers(_, lane, _, int(length)):
             dtype = target.lanes.plan.dtypes[lane]
-            if length * dtype.itemsize <= MAX_BORN_BYTES:
+            if length * dtype.itemsize <= MAX_INITIAL_BYTES:
                 _put(node, np.zeros(len(target.rows) * length, dtype), np.full(len(target.rows), length), target)
         case Items(_, lane, element, int(length)):
-            if length * target.lanes.plan.strides[lane] <= MAX_BORN_BYTES:
-                _write_born(element, _extended(node, np.full(len(target.rows), length), target))
+            if length * target.lanes.plan.strides[lane] <= MAX_INITIAL_BYTES:
+                _write_initial(element, _extended(node, np.full(len(target.rows), length), target))
         case Record():
             _write_record(node, {}, target)
         case Scalar() | Text() | Blob() | Numbers() | Items() | Pairs() | Child():
@@ -238,7 +238,7 @@ def _settle_choice(record: Record, choice: Choice, target: _Target, *, has_tag: 
             rest = target.only(cases[target.rows] == 0)
             cases[rest.rows] = first
             entry = next(each for each in record.entries.values() if each.presence is choice.cases[first - 1])
-            _write_born(entry.node, rest.within(f".{entry.name}"))
+            _write_initial(entry.node, rest.within(f".{entry.name}"))
         return
     numbers, places = np.unique(tags[target.rows], return_inverse=True)
     selected = np.array([choice.selected(int(number)) for number in numbers], np.int64)[places]

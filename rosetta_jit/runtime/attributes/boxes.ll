@@ -15,8 +15,48 @@ define internal i1 @is_exactly(ptr %object, ptr %type) alwaysinline {
   ret i1 %is
 }
 
+; The floats that were given out last, and the place of the last one among them. One that nobody else has any more is given out again with another
+; value, as CPython does with the tuples of `zip`: a loop that reads numbers and drops them takes no memory, and gives none back.
+@floats = internal global [8 x ptr] zeroinitializer
+@floats.last = internal global i64 0
+
 define internal ptr @box_float(double %value) alwaysinline {
+  %last = load i64, ptr @floats.last
+  %next = add i64 %last, 1
+  %index = and i64 %next, 7
+  store i64 %index, ptr @floats.last
+  %place = getelementptr ptr, ptr @floats, i64 %index
+  %before = load ptr, ptr %place
+  %has = icmp ne ptr %before, null
+  br i1 %has, label %look, label %new, !prof !0
+look:
+  %spare = call i1 @is_spare(ptr %before)
+  br i1 %spare, label %again, label %new
+again:
+  call void @keep(ptr %before)
+  %value.at = getelementptr i8, ptr %before, i64 16
+  store double %value, ptr %value.at
+  ret ptr %before
+new:
+  %made = call ptr @new_float(double %value, ptr %place)
+  ret ptr %made
+}
+
+; A new float, which takes the place of one that somebody has kept; null of an error.
+define internal ptr @new_float(double %value, ptr %place) noinline {
   %object = call ptr @PyFloat_FromDouble(double %value)
+  %made = icmp ne ptr %object, null
+  br i1 %made, label %remember, label %done
+remember:
+  call void @keep(ptr %object)
+  %before = load ptr, ptr %place
+  store ptr %object, ptr %place
+  %has = icmp ne ptr %before, null
+  br i1 %has, label %forget, label %done
+forget:
+  call void @Py_DecRef(ptr %before)
+  br label %done
+done:
   ret ptr %object
 }
 

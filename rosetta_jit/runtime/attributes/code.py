@@ -22,13 +22,14 @@ if TYPE_CHECKING:
 
 FILES = (
     *("message.ll", "boxes.ll", "content.ll", "nested.ll", "sequence.ll", "writing.ll"),
-    *("making.ll", "ending.ll", "methods.ll", "sameness.ll", "taking.ll"),
+    *("making.ll", "ending.ll", "methods.ll", "handing.ll", "sameness.ll", "taking.ll"),
 )
 READERS = ("get_python", "get_utf8", "get_octets", "get_bytes", "get_numbers", "get_kept")
 WRITERS = ("set_python", "set_utf8", "set_bytes", "set_numbers", "set_texts", "set_attribute")
 FUNCTIONS = ("begin", "bind", "restart", "spawn", "equip", "same", "extend_texts", "take", "take_anew")
 SEQUENCES = ("length", "subscript", "iterate", "itself", "next", "end_iterator")
-METHODS = ("method_encode", "method_write", "method_decode", "method_parse", "method_make", "method_build")
+METHODS = ("method_encode", "method_write", "method_decode", "method_parse", "method_make", "method_build", "method_turn")
+HANDING = ("hand_in", "hand_out")
 HOLDERS = ("end_holder", "call_class", "call_maker", "get_attribute")
 SYMBOLS = (
     *(f"{verb}_{scalar}" for scalar in SCALARS for verb in ("get", "set")),
@@ -37,6 +38,7 @@ SYMBOLS = (
     *FUNCTIONS,
     *SEQUENCES,
     *METHODS,
+    *HANDING,
     *HOLDERS,
 )
 """What the library defines."""

@@ -157,3 +157,25 @@ python:
   %answer = call ptr @leave_to_python(ptr %method, ptr %arguments, i64 %nargsf, ptr %names)
   ret ptr %answer
 }
+
+; decode.to(message, class) -> a new object of the class; the program is a pair of the class that was asked for last, and what makes its objects.
+define ptr @method_turn(ptr %method, ptr %arguments, i64 %nargsf, ptr %names) {
+  %common = call i1 @is_common(ptr %method, i64 %nargsf, ptr %names, i64 2)
+  br i1 %common, label %look, label %python, !prof !0
+look:
+  %pair = call ptr @pointer(ptr %method, i64 40)
+  %known = call ptr @pointer(ptr %pair, i64 24)
+  %class = call ptr @pointer(ptr %arguments, i64 8)
+  %same = icmp eq ptr %class, %known
+  br i1 %same, label %run, label %python, !prof !0
+run:
+  ; another thread may ask for another class meanwhile
+  %maker = call ptr @pointer(ptr %pair, i64 32)
+  call void @keep(ptr %maker)
+  %made = call ptr @PyObject_Vectorcall(ptr %maker, ptr %arguments, i64 1, ptr null)
+  call void @Py_DecRef(ptr %maker)
+  ret ptr %made
+python:
+  %answer = call ptr @leave_to_python(ptr %method, ptr %arguments, i64 %nargsf, ptr %names)
+  ret ptr %answer
+}

@@ -30,9 +30,9 @@ from rosetta_jit.runtime.specs import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-Kind = Literal["encode", "write", "decode", "parse", "make", "build"]
+Kind = Literal["encode", "write", "decode", "parse", "make", "build", "turn"]
 """``x.encode()``, ``x.serialize(file)``, ``x.deserialize(message)``, ``x.ParseFromString(message)``, ``cls.FromString(message)``,
-``cls.from_dict(plain)``."""
+``cls.from_dict(plain)``; of a decoder, ``to(message, object_type)``."""
 
 OF_CLASSES = ("make", "build")
 ENTRY, METHOD_BYTES = 56, 64
@@ -109,4 +109,20 @@ def method(kind: Kind, function: Any, bind: Callable[[Any], None]) -> Any:
         return answer
 
     made.slow = slow
+    return made
+
+
+def turning(function: Any, program_type: type, turned: Callable[[], tuple[type, Any] | None]) -> Any:
+    """A decoder's `to`, which calls ``function`` for classes that it does not know.
+
+    ``turned`` gives, behind such a call, the class and what makes objects of it for one argument, if there is that; it must live on.
+    """
+
+    def bind(made: Any) -> None:
+        found = turned()
+        if found is not None:
+            made.program = found
+
+    made = method("turn", function, bind)
+    made.holder_type = program_type
     return made

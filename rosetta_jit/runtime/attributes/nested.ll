@@ -6,7 +6,7 @@ declare ptr @PyType_GenericAlloc(ptr, i64)
 
 define ptr @get_kept(ptr %self, ptr %field) {
   %place = call ptr @place(ptr %self, ptr %field)
-  %row = call ptr @row(ptr %self)
+  %row = call ptr @row_at_once(ptr %self)
   %has.row = icmp ne ptr %row, null
   br i1 %has.row, label %look, label %python, !prof !0
 look:

@@ -14,7 +14,7 @@ define internal { i64, i64 } @elements(ptr %self) alwaysinline {
   %is.made = and i1 %has.place, %has.message
   br i1 %is.made, label %find, label %none, !prof !0
 find:
-  %row = call ptr @row(ptr %message)
+  %row = call ptr @row_at_once(ptr %message)
   %has.row = icmp ne ptr %row, null
   br i1 %has.row, label %read, label %none, !prof !0
 read:
@@ -160,6 +160,16 @@ other:
 reuse:
   %view = phi ptr [ %last, %0 ], [ %one, %other ]
   call void @keep(ptr %view)
+  %its.index = call i64 @word(ptr %view, i64 56)
+  %its.row = call i64 @word(ptr %view, i64 24)
+  %its.epoch = call i64 @word(ptr %view, i64 32)
+  %same.index = icmp eq i64 %its.index, %index
+  %same.row = icmp eq i64 %its.row, %row
+  %same.epoch = icmp eq i64 %its.epoch, %epoch
+  %same.place = and i1 %same.index, %same.row
+  %same = and i1 %same.place, %same.epoch
+  br i1 %same, label %give, label %turn
+turn:
   %moved = call i1 @move(ptr %view, i64 %index, i64 %row, i64 %epoch)
   br i1 %moved, label %give, label %failed, !prof !0
 give:

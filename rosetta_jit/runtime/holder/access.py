@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, assert_never, cast
 import numpy as np
 
 from rosetta_jit.errors import EncodeError
-from rosetta_jit.model.limits import MAX_BORN_BYTES
+from rosetta_jit.model.limits import MAX_INITIAL_BYTES
 from rosetta_jit.runtime.holder import arena, coerce, grid, undo, values
 from rosetta_jit.runtime.holder.message import Family, Getter, Message, Setter, View, beside, element, place, writable
 from rosetta_jit.runtime.holder.record import Bit, Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
@@ -102,7 +102,7 @@ def _scalar(node: Scalar) -> Read:
 
 def _blob(node: Blob) -> Read:
     span, lane = node.span, node.lane
-    absent = bytes(node.length) if node.length and node.length <= MAX_BORN_BYTES else b""
+    absent = bytes(node.length) if node.length and node.length <= MAX_INITIAL_BYTES else b""
     return lambda _, lanes, row: bytes(arena.content(lanes, span, lane, row)) or absent
 
 

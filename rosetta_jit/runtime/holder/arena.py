@@ -35,7 +35,7 @@ def content(lanes: Lanes, span: Cell, lane: int, row: int) -> memoryview:
 
 
 def resize(lanes: Lanes, node: Spanned, row: int, count: int) -> int:
-    """Give a span so many elements, of which it keeps those that it had; the others are as they are born. Its start."""
+    """Give a span so many elements, of which it keeps those that it had; the others have their initial values. Its start."""
     span, lane = node.span, node.lane
     start, old = span_of(lanes, span, row)
     old = max(old, 0)
@@ -53,8 +53,8 @@ def resize(lanes: Lanes, node: Spanned, row: int, count: int) -> int:
     words = lanes.cells[span.key]  # looked up again: of a recursive lane, this may be the one that has grown
     at = row * span.step + span.index
     words[at], words[at + 1] = start, count
-    if node.births and count > old:
-        lanes.bear(node.births, start + old, count - old)
+    if node.initial and count > old:
+        lanes.initialise(node.initial, start + old, count - old)
     return start
 
 
@@ -143,11 +143,11 @@ def mark(lanes: Lanes, presence: Presence | None, row: int) -> None:
     match presence:
         case None:
             pass
-        case Bit(cell, mask, births):
+        case Bit(cell, mask, initial):
             words, at = lanes.cells[cell.key], row * cell.step + cell.index
             if not words[at] & mask:
                 words[at] |= mask
-                lanes.bear(births, row, 1)
+                lanes.initialise(initial, row, 1)
         case Case(cell, number, choice=choice):
             if lanes.cells[cell.key][row * cell.step + cell.index] != number:
                 _enter(lanes, presence, row)
@@ -177,7 +177,7 @@ def _tag(lanes: Lanes, choice: Choice, row: int) -> int:
 def _enter(lanes: Lanes, case: Case, row: int) -> None:
     _leave(lanes, case, row)
     lanes.cells[case.cell.key][row * case.cell.step + case.cell.index] = case.number
-    lanes.bear(case.births, row, 1)
+    lanes.initialise(case.initial, row, 1)
 
 
 def _leave(lanes: Lanes, case: Case, row: int) -> None:
@@ -186,13 +186,13 @@ def _leave(lanes: Lanes, case: Case, row: int) -> None:
     left = int(words[at])
     words[at] = 0
     _zero(lanes, case.cell.lane, row, case.start, case.end)
-    for birth in case.siblings[left - 1].births if left and case.siblings else ():
-        if isinstance(birth, FixedArray):
-            lanes.waste(birth.lane, birth.length)
+    for each in case.siblings[left - 1].initial if left and case.siblings else ():
+        if isinstance(each, FixedArray):
+            lanes.waste(each.lane, each.length)
 
 
 def clear(lanes: Lanes, entry: Entry, row: int) -> None:
-    """Make a field absent, or as it is born where it cannot be absent, which the case that a discriminator selects cannot either."""
+    """Make a field absent. One that cannot be, as the case that a discriminator selects, gets its initial value."""
     presence, node = entry.presence, entry.node
     if presence is not None and not present(lanes, presence, row):
         return
@@ -200,7 +200,7 @@ def clear(lanes: Lanes, entry: Entry, row: int) -> None:
     _zero(lanes, *_at(node, row))
     match presence:
         case None:
-            lanes.bear(entry.births, row, 1)
+            lanes.initialise(entry.initial, row, 1)
             if isinstance(node, Scalar) and node.choice is not None:
                 choose(lanes, node.choice, row)
         case Bit(cell, mask):

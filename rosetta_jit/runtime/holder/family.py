@@ -31,7 +31,7 @@ from rosetta_jit.runtime.limits import MAX_RECIPES
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.looks.described import Constructor, Described
 from rosetta_jit.runtime.plan import plan
-from rosetta_jit.runtime.room import begun_as, born, roomier
+from rosetta_jit.runtime.room import begun_as, initialised, roomier
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
@@ -125,7 +125,7 @@ class Family:
         self.type, self.schema = from_plain(json.loads(text))
         self.layout = layout(self.type, self.schema)
         self.tree = Tree(self.type, self.schema, self.layout)
-        self.plan = born(plan(self.layout, births=self.tree.births))
+        self.plan = initialised(plan(self.layout, initial=self.tree.initial))
         self.cell = [self.plan]
         self.array_type, self.sequence, self.mapping = manners.array_type, manners.sequence, manners.mapping
         self.assigns_whole = manners.assigns_whole
@@ -319,11 +319,11 @@ class Family:
         with lanes:
             for lane in self.tree.recursive:
                 if not lanes.used(lane):
-                    lanes.bear(self.tree.births_of(lane), lanes.take(lane, 1), 1)
+                    lanes.initialise(self.tree.initial_of(lane), lanes.take(lane, 1), 1)
         return lanes
 
     def empty_lanes(self) -> Lanes:
-        """Lanes in which everything is absent or as it is born, with a row of each recursive struct; they are never written."""
+        """Lanes in which everything is absent or has its initial value, with a row of each recursive struct; they are never written."""
         return self._empty
 
     def row(self, lanes: Lanes, row: int) -> View:

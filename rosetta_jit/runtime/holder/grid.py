@@ -1,6 +1,6 @@
 """Arrays of several dimensions, all of fixed length, of numbers: one numpy array over the lane of the innermost ones.
 
-Its rows lie together wherever it was born or decoded. Where they do not, it is shown as a copy that cannot be written.
+Its rows lie together wherever they were initialised or decoded. Where they do not, it is shown as a copy that cannot be written.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def put(node: Items, lanes: Lanes, row: int, prepared: Array) -> None:
         arena.resize(lanes, node, row, 0)
         arena.resize(lanes, node, row, node.shape[0])
         first = _first(node, lanes, row)
-        assert first is not None, "what is born lies together"
+        assert first is not None, "initial rows lie together"
     lanes.arrays[innermost(node).lane][first : first + prepared.size] = prepared
 
 

@@ -22,7 +22,7 @@ from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.initial_values import Birth
+    from rosetta_jit.model.initial_values import InitialValue
     from rosetta_jit.model.types import Constant
 
 ScalarType = Bool | Int | Float | Enum
@@ -46,11 +46,11 @@ class Cell:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Bit:
-    """Present when a bit of the record's presence words is set. The field is born with ``births`` then."""
+    """Present when a bit of the record's presence words is set. The field has the values ``initial`` then."""
 
     cell: Cell
     mask: int
-    births: tuple[Birth, ...] = ()
+    initial: tuple[InitialValue, ...] = ()
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -64,7 +64,7 @@ class Case:
     number: int
     start: int
     end: int
-    births: tuple[Birth, ...] = ()
+    initial: tuple[InitialValue, ...] = ()
     choice: Choice | None = None
     label: int = 0
 
@@ -104,7 +104,7 @@ class Scalar:
 class Text:
     """A string in a lane of bytes, or of UTF-16's code units."""
 
-    births: ClassVar[tuple[Birth, ...]] = ()
+    initial: ClassVar[tuple[InitialValue, ...]] = ()
     span: Cell
     lane: int
     type: String
@@ -114,7 +114,7 @@ class Text:
 class Blob:
     """Bytes in a lane, or borrowed from the message. ``length`` where the type fixes it, ``maximum`` where it bounds it."""
 
-    births: ClassVar[tuple[Birth, ...]] = ()
+    initial: ClassVar[tuple[InitialValue, ...]] = ()
     span: Cell
     lane: int
     length: int | None = None
@@ -125,7 +125,7 @@ class Blob:
 class Numbers:
     """An array of scalars: a numpy array. ``length`` where the type fixes it, ``maximum`` where it bounds it."""
 
-    births: ClassVar[tuple[Birth, ...]] = ()
+    initial: ClassVar[tuple[InitialValue, ...]] = ()
     span: Cell
     lane: int
     type: ScalarType
@@ -135,7 +135,7 @@ class Numbers:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Items:
-    """An array of anything else; ``element`` is what lies in each row of the lane, born with ``births``.
+    """An array of anything else; ``element`` is what lies in each row of the lane, at first ``initial``.
 
     ``shape`` is that of an array of several dimensions, all fixed, of numbers; it is empty for all others.
     """
@@ -145,7 +145,7 @@ class Items:
     element: Node
     length: int | None
     maximum: int | None = None
-    births: tuple[Birth, ...] = ()
+    initial: tuple[InitialValue, ...] = ()
     shape: tuple[int, ...] = ()
 
 
@@ -158,7 +158,7 @@ class Pairs:
     record: Record
     key: Scalar | Text
     value: Entry
-    births: tuple[Birth, ...] = ()
+    initial: tuple[InitialValue, ...] = ()
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -168,7 +168,7 @@ class Child:
     span: Cell
     lane: int
     record: Record
-    births: tuple[Birth, ...] = ()
+    initial: tuple[InitialValue, ...] = ()
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -208,7 +208,7 @@ Node = Scalar | Spanned | Record
 class Entry:
     """A field of a record, or a case of one of its unions.
 
-    ``default`` is what reading gives while it is absent, ``births`` what a field that cannot be absent has besides zeros.
+    ``default`` is what reading gives while it is absent, ``initial`` what a field that cannot be absent has besides zeros.
     """
 
     name: str
@@ -216,7 +216,7 @@ class Entry:
     presence: Presence | None
     field: Field
     default: Constant | None = None
-    births: tuple[Birth, ...] = ()
+    initial: tuple[InitialValue, ...] = ()
 
 
 def extent(node: Node) -> tuple[int, int, int]:

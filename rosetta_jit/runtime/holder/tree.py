@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, assert_never, cast
 
 from rosetta_jit.model import layout as slots
-from rosetta_jit.model.initial_values import Births, selecting
+from rosetta_jit.model.initial_values import InitialValues, selecting
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
 from rosetta_jit.runtime.cells import cell_key
 from rosetta_jit.runtime.holder.record import (
@@ -28,13 +28,13 @@ from rosetta_jit.runtime.holder.record import (
 )
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.initial_values import Birth
+    from rosetta_jit.model.initial_values import InitialValue
     from rosetta_jit.model.layout import Layout, Slot
     from rosetta_jit.model.types import Constant, Schema
 
 
 class Tree:
-    """The nodes of a layout. ``root`` is the message, born with ``births``; ``recursive`` has the record of each recursive lane.
+    """The nodes of a layout. ``root`` is the message, at first ``initial``; ``recursive`` has the record of each recursive lane.
 
     Raises
     ------
@@ -46,8 +46,8 @@ class Tree:
         self.schema = schema
         self.layout = layout
         self.recursive: dict[int, Record] = {}
-        self._births = Births(schema, layout)
-        self.births = self._births.of_elements(type_, 0)
+        self._initial = InitialValues(schema, layout)
+        self.initial = self._initial.of_elements(type_, 0)
         root = self._element(type_, 0)
         if not isinstance(root, Record):
             raise ValueError("a message is a struct")  # noqa: TRY004  the type is the user's data, not a mistaken call
@@ -67,9 +67,9 @@ class Tree:
             return self._record(resolved, slot, lane, (), recursive=self.layout.lanes[lane].links is not None)
         return self._node(resolved, slot, lane, ())
 
-    def births_of(self, lane: int) -> tuple[Birth, ...]:
-        """What each row of the lane of a recursive struct is born with."""
-        return self._births.of_elements(Ref(self.recursive[lane].struct), lane)
+    def initial_of(self, lane: int) -> tuple[InitialValue, ...]:
+        """The initial values of each row of the lane of a recursive struct."""
+        return self._initial.of_elements(Ref(self.recursive[lane].struct), lane)
 
     def _node(self, type_: Type, slot: Slot, lane: int, touch: tuple[Presence, ...]) -> Node:
         match type_, slot:
@@ -85,7 +85,7 @@ class Tree:
                 return self._pairs(key, value, self._cell(lane, offset, "i64"), target)
             case Ref(), slots.Span(offset, target):
                 record = cast("Record", self._element(type_, target))
-                return Child(self._cell(lane, offset, "i64"), target, record, self._births.of_elements(type_, target))
+                return Child(self._cell(lane, offset, "i64"), target, record, self._initial.of_elements(type_, target))
             case ((Ref() | Optional()), _):
                 value = type_.value if isinstance(type_, Optional) else self.schema.types[type_.name]
                 return self._node(value, slot, lane, touch)
@@ -98,15 +98,15 @@ class Tree:
         resolved = self.schema.resolve(type_.element)
         if isinstance(resolved, Bool | Int | Float | Enum):
             return Numbers(span, target, resolved, type_.fixed, type_.maximum)
-        element, births = self._element(type_.element, target), self._births.of_elements(type_.element, target)
-        return Items(span, target, element, type_.fixed, type_.maximum, births, _shape(type_.fixed, element))
+        element, initial = self._element(type_.element, target), self._initial.of_elements(type_.element, target)
+        return Items(span, target, element, type_.fixed, type_.maximum, initial, _shape(type_.fixed, element))
 
     def _pairs(self, key: Type, value: Type, span: Cell, target: int) -> Pairs:
         pair = slots.map_entry(key, value)
         record = self._element(pair, target)
         assert isinstance(record, Record)
-        births = self._births.of_elements(pair, target)
-        return Pairs(span, target, record, cast("Scalar | Text", record.entries["key"].node), record.entries["value"], births)
+        initial = self._initial.of_elements(pair, target)
+        return Pairs(span, target, record, cast("Scalar | Text", record.entries["key"].node), record.entries["value"], initial)
 
     def _record(self, struct: Struct, slot: Slot, lane: int, touch: tuple[Presence, ...], *, recursive: bool) -> Record:
         assert isinstance(slot, slots.Row)
@@ -120,12 +120,12 @@ class Tree:
             if isinstance(each.type, Union) and isinstance(member.slot, slots.Variant):
                 self._cases(record, each, member.slot, touch, choices.get(each.type.discriminator))
                 continue
-            births = self._births.of(each.type, member.slot, lane)
+            initial = self._initial.of(each.type, member.slot, lane)
             presence = None
             if member.presence is not None:
                 word, bit = divmod(member.presence, 64)
-                presence = Bit(self._cell(lane, slot.offset + 8 * word, "u64"), 1 << bit, births)
-            node = self._entry(record, each, member.slot, touch, presence, births)
+                presence = Bit(self._cell(lane, slot.offset + 8 * word, "u64"), 1 << bit, initial)
+            node = self._entry(record, each, member.slot, touch, presence, initial)
             if isinstance(node, Scalar):
                 node.choice = choices.get(each.name)
         return record
@@ -145,8 +145,8 @@ class Tree:
         name = union.type.name.rpartition(".")[2] if choice is None else union.name
         record.unions[name] = tuple(case.name for case in cases)
         for number, (case, member) in enumerate(zip(cases, slot.members, strict=True), 1):
-            births = self._births.of(case.type, member.slot, record.lane)
-            presence = Case(cell, number, slot.offset + 8, _end(slot), births, choice)
+            initial = self._initial.of(case.type, member.slot, record.lane)
+            presence = Case(cell, number, slot.offset + 8, _end(slot), initial, choice)
             if choice is not None:
                 presence.label = selecting(union.type, choice.type, number)
                 choice.cases.append(presence)
@@ -159,11 +159,11 @@ class Tree:
         slot: Slot,
         touch: tuple[Presence, ...],
         presence: Presence | None,
-        births: tuple[Birth, ...] = (),
+        initial: tuple[InitialValue, ...] = (),
     ) -> Node:
         inner = touch if presence is None else (*touch, presence)
         node = self._node(each.type, slot, record.lane, inner)
-        record.entries[each.name] = Entry(each.name, node, presence, each, _default(each, node), births if presence is None else ())
+        record.entries[each.name] = Entry(each.name, node, presence, each, _default(each, node), initial if presence is None else ())
         return node
 
 

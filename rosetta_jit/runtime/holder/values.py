@@ -94,7 +94,7 @@ def _named(type_: ScalarType, value: Any) -> Any:
 
 
 def write(node: Node, lanes: Lanes, row: int, value: Any, path: str = "", *, depth: int = 0) -> None:
-    """Make a value that of a node, which is empty. Records merge, and where an array of fixed length is given none it stays as it was born.
+    """Make a value that of a node, which is empty. Records merge, and an array of fixed length that is given none keeps its initial value.
 
     Raises
     ------

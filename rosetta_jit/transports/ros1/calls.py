@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 import threading
 from collections import deque
 from time import monotonic, time_ns
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Caller, Message, Pending, Server
+from rosetta_jit.transports.conversation import connected
 from rosetta_jit.transports.feeding import Between, ProtocolError
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.ros1.node import graph_name, nodes, refuse
@@ -94,7 +94,7 @@ class RosCaller(Caller):
                 raise TransportError("unknown", self.address, "the master knows no such service") from None
             raise
         try:
-            sock = socket.create_connection(place, max(until - monotonic(), 0.01))
+            sock = connected(*place, max(until - monotonic(), 0.01))
         except OSError as error:
             raise TransportError("unreachable", self.address, f"the service does not answer: {error.strerror or error}") from None
         self.reconnects += self._stream is not None

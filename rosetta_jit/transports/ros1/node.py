@@ -9,7 +9,7 @@ from collections import deque
 from contextlib import suppress
 from functools import cache
 from itertools import count
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.connecting import Listener, resolve
@@ -202,10 +202,10 @@ class Node:
             return [0, "this node speaks TCPROS", 0]
         return [1, f"ready on {self.host}:{self.port}", ["TCPROS", self.host, self.port]]
 
-    def _publisher_update(self, _: str, topic: str, uris: list[Any]) -> list[Any]:
+    def _publisher_update(self, _: str, topic: str, uris: object) -> list[Any]:
         for part in tuple(self._parts):
             if (part.kind, part.name) == ("subscriber", topic):
-                part.publishers([str(each) for each in uris[:MAX_CONNECTIONS]])
+                part.publishers(uris_in(uris))
         return [1, "", 0]
 
 
@@ -246,6 +246,12 @@ def nodes() -> Nodes:
 @cache
 def _nodes_of(_: int) -> Nodes:
     return Nodes()
+
+
+def uris_in(value: object) -> list[str]:
+    """The URIs of a topic's publishers, as the master names them."""
+    given = cast("list[object]", value) if isinstance(value, list) else []
+    return [each for each in given[:MAX_CONNECTIONS] if isinstance(each, str)]
 
 
 def graph_name(address: Address) -> str:

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import socket
 from time import monotonic, time_ns
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Message, Sink, Source
+from rosetta_jit.transports.conversation import connected
 from rosetta_jit.transports.feeding import Between
 from rosetta_jit.transports.limits import MAX_CONNECTIONS
 from rosetta_jit.transports.loop import loop
-from rosetta_jit.transports.ros1.node import graph_name, nodes, refuse
+from rosetta_jit.transports.ros1.node import graph_name, nodes, refuse, uris_in
 from rosetta_jit.transports.ros1.tcpros import LENGTH, disagreement, header, messages, read_header
 from rosetta_jit.transports.ros1.xmlrpc import ask
 from rosetta_jit.transports.stream import Stream, finish_all
@@ -57,9 +57,9 @@ def topics(address: Address, options: Mapping[str, Any]) -> list[tuple[str, str 
     """The topics that the master knows, with their types."""
     node = nodes().enter(options)
     try:
-        found: list[list[str]] = node.ask("getTopicTypes")
-        return [(name, type_) for name, type_ in sorted(found) if name.startswith(address.rest)]
-    except ValueError:
+        found: Any = node.ask("getTopicTypes")
+        return [(str(name), str(type_)) for name, type_ in sorted(found) if name.startswith(address.rest)]
+    except (ValueError, TypeError, AttributeError):
         raise TransportError("protocol", node.master, "what answers there is no master of ROS 1") from None
     finally:
         nodes().leave(node)
@@ -81,8 +81,7 @@ class Subscription:
 
     def register(self) -> None:
         """Tell the master, which names the publishers."""
-        uris: list[Any] = self._node.ask("registerSubscriber", self.name, self.type, self._node.uri)
-        self.publishers([str(each) for each in uris])
+        self.publishers(uris_in(self._node.ask("registerSubscriber", self.name, self.type, self._node.uri)))
 
     def unregister(self) -> None:
         """Tell the master."""
@@ -116,7 +115,7 @@ class Subscription:
             place = ask(uri, "requestTopic", self._node.name, self.name, [["TCPROS"]])
             match place:
                 case ["TCPROS", str(host), int(port)] if 0 < port < 65536:
-                    sock = socket.create_connection((host, port), CONNECT_S)
+                    sock = connected(host, port, CONNECT_S)
                 case _:
                     self._source.lose("a publisher that does not speak TCPROS", 0)
                     return

@@ -12,12 +12,17 @@ from urllib.parse import urlsplit
 from xml.parsers.expat import ExpatError
 
 from rosetta_jit.errors import TransportError
+from rosetta_jit.transports.conversation import Conversation, conversation
 from rosetta_jit.transports.limits import MAX_REQUESTS, MAX_XML_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 TIMEOUT_S = 5.0
+"""How long a request may take, from connecting to the end of the answer."""
+
+BAD_XML = (ExpatError, xmlrpc.client.Error, TypeError, LookupError, ArithmeticError, AttributeError, RecursionError)
+"""What the standard library's XML-RPC raises where it gets none."""
 
 
 def ask(uri: str, method: str, *arguments: Any) -> Any:
@@ -30,7 +35,9 @@ def ask(uri: str, method: str, *arguments: Any) -> Any:
     """
     try:
         place = urlsplit(uri)
-        connection = http.client.HTTPConnection(place.hostname or "", place.port or 11311, timeout=TIMEOUT_S)
+        host, port = place.hostname or "", place.port or 11311
+        connection = http.client.HTTPConnection(host, port)
+        connection.sock = conversation(host, port, TIMEOUT_S)
         try:
             body = xmlrpc.client.dumps(arguments, method).encode()
             connection.request("POST", place.path or "/", body, {"Content-Type": "text/xml"})
@@ -40,13 +47,14 @@ def ask(uri: str, method: str, *arguments: Any) -> Any:
         values: tuple[Any, ...] = xmlrpc.client.loads(answer)[0]
     except (OSError, http.client.HTTPException, ValueError) as error:
         raise TransportError("unreachable", uri, f"no answer: {getattr(error, 'strerror', None) or error}") from None
-    except (ExpatError, xmlrpc.client.Error, TypeError, LookupError) as error:
+    except BAD_XML as error:
         raise TransportError("protocol", uri, f"no answer of a ROS node: {type(error).__name__}") from None
     match values:
         case ([1, _, value],):
             return value
         case ([code, text, _],):
-            raise TransportError("refused", uri, f"{method} failed ({code}): {str(text)[:500]}")
+            why = text[:500] if isinstance(text, str) else "without a reason"
+            raise TransportError("refused", uri, f"{method} failed ({code if isinstance(code, int) else '?'}): {why}")
         case _:
             raise TransportError("protocol", uri, f"{method} is not answered as ROS does")
 
@@ -60,6 +68,11 @@ class _Server(ThreadingHTTPServer):
         self.methods = methods
         self.room = threading.BoundedSemaphore(MAX_REQUESTS)
         super().__init__(place, _Handler)
+
+    def get_request(self) -> tuple[Any, Any]:
+        """The next connection, for one question."""
+        sock, place = super().get_request()
+        return Conversation.over(sock, TIMEOUT_S), place
 
     def process_request(self, request: Any, client_address: Any) -> None:
         if not self.room.acquire(blocking=False):
@@ -88,7 +101,7 @@ class _Handler(BaseHTTPRequestHandler):
         try:
             arguments, method = xmlrpc.client.loads(self.rfile.read(int(size)))
             answer: Any = cast("_Server", self.server).methods[method or ""](*arguments)
-        except (ExpatError, xmlrpc.client.Error, LookupError, TypeError, ValueError, OSError) as error:
+        except (*BAD_XML, ValueError, OSError) as error:
             answer = [-1, type(error).__name__, 0]
         body = xmlrpc.client.dumps((answer,), methodresponse=True, allow_none=False).encode()
         self.send_response(200)

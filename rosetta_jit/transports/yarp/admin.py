@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-import socket
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import TransportError
+from rosetta_jit.transports.conversation import conversation
 from rosetta_jit.transports.limits import MAX_ADMIN_BYTES, MAX_ADMIN_WORDS
 
 if TYPE_CHECKING:
@@ -30,9 +30,8 @@ def words_of(command: str) -> list[str]:
 
 def leave(contact: Contact, name: str, timeout: float) -> None:
     """Tell a reader that a port sends it no more datagrams; there is nobody to be told that it does not answer."""
-    with suppress(OSError), socket.create_connection((contact.host, contact.port), timeout) as sock:
+    with suppress(OSError), conversation(contact.host, contact.port, timeout) as sock:
         sock.sendall(f"CONNECT admin\r\n~{name}\r\nq\r\n".encode())
-        sock.settimeout(timeout)
         for _ in range(100):
             if not sock.recv(4096):
                 return
@@ -48,7 +47,7 @@ def ask_port(contact: Contact, command: str, timeout: float) -> str:
     """
     got = b""
     try:
-        with socket.create_connection((contact.host, contact.port), timeout) as sock:
+        with conversation(contact.host, contact.port, timeout) as sock:
             sock.sendall(f"CONNACK admin\r\na\r\n{command}\r\n".encode())
             while b"<ACK>" not in got and len(got) < MAX_ADMIN_BYTES:
                 piece = sock.recv(4096)

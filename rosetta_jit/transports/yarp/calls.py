@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import socket
 import threading
 from time import monotonic, sleep, time_ns
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Caller, Message, Pending, Server
+from rosetta_jit.transports.conversation import connected
 from rosetta_jit.transports.feeding import SOME, ProtocolError
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.stream import Stream
@@ -18,6 +18,7 @@ from rosetta_jit.transports.yarp.port import Port, own_name
 from rosetta_jit.transports.yarp.wire import ACK, head_of, hello, int_of
 
 if TYPE_CHECKING:
+    import socket
     from collections.abc import Mapping
 
     from rosetta_jit.transports.address import Address
@@ -104,7 +105,7 @@ class YarpCaller(Caller):
         """Connect; a port that was registered just now may not listen yet."""
         while True:
             try:
-                return socket.create_connection((contact.host, contact.port), max(until - monotonic(), 0.01))
+                return connected(contact.host, contact.port, max(until - monotonic(), 0.01))
             except OSError as error:
                 if monotonic() + RETRY_S >= until or not isinstance(error, ConnectionRefusedError):
                     raise TransportError("unreachable", self.address, f"the port does not answer: {error.strerror or error}") from None

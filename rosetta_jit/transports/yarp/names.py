@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import re
-import socket
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.transports.conversation import conversation
 from rosetta_jit.transports.limits import MAX_NAMES_BYTES
 
 if TYPE_CHECKING:
@@ -62,14 +62,14 @@ class NameServer:
         where = f"{self.host}:{self.port}"
         got = b""
         try:
-            with socket.create_connection((self.host, self.port), self._timeout) as sock:
+            with conversation(self.host, self.port, self._timeout) as sock:
                 sock.sendall(f"NAME_SERVER {command}\n".encode())
                 while end not in got and len(got) < MAX_NAMES_BYTES:
                     piece = sock.recv(65536)
                     if not piece:
                         break
                     got += piece
-        except (OSError, UnicodeError) as error:
+        except OSError as error:
             raise TransportError("unreachable", where, f"YARP's name server does not answer: {_why(error)}") from None
         if end not in got:
             raise TransportError("protocol", where, "what answers there is no name server of YARP")

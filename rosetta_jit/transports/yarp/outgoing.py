@@ -62,11 +62,12 @@ class Output:
             if stream is None or stream.closed:
                 return False
             if self._is_free and not self._waiting:
-                self._is_free = self.carrier == "fast_tcp"
+                sent = stream.send(head, data)
+                self._is_free = not sent or self.carrier == "fast_tcp"
                 self._unanswered = not self._is_free
-                return stream.send(head, data)
+                return sent
             size = len(head) + len(data)
-            if self._waiting and self._bytes + size > MAX_WAITING_BYTES:
+            if (self._waiting and self._bytes + size > MAX_WAITING_BYTES) or not loop().reserve(size):
                 return False
             self._waiting.append(b"".join((head, data)))
             self._bytes += size
@@ -89,8 +90,7 @@ class Output:
         """Say goodbye; gives the number of messages that were not sent."""
         with self._changed:
             left, stream = len(self._waiting), self.stream
-            self._waiting.clear()
-            self._bytes = 0
+            self._clear()
         if stream is None:
             return left
         if stream.waiting and not loop().is_current:  # `wait` has waited for it
@@ -105,10 +105,14 @@ class Output:
         with self._changed:
             unsent = 0 if self.stream is None else self.stream.unsent.total()
             left = len(self._waiting) + (self._unanswered or unsent)
-            self._waiting.clear()
-            self._bytes = 0
+            self._clear()
             self._changed.notify_all()
         return left
+
+    def _clear(self) -> None:
+        self._waiting.clear()
+        loop().release(self._bytes)
+        self._bytes = 0
 
     def _next(self, stream: Stream) -> None:
         """The reader is ready: send what waits, one message where it acknowledges each."""
@@ -119,5 +123,8 @@ class Output:
                 self._unanswered = not self._is_free
                 data = self._waiting.popleft()
                 self._bytes -= len(data)
-                stream.send(data)
+                loop().release(len(data))
+                if not stream.send(data):  # it counts as unanswered
+                    self._unanswered = 1
+                    loop().soon(stream.end, "what waits for all peers together takes too much memory")
             self._changed.notify_all()

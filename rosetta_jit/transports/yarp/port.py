@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import socket
 import threading
 from collections import deque
 from contextlib import suppress
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.connecting import Listener, resolve
+from rosetta_jit.transports.conversation import Conversation, connected
 from rosetta_jit.transports.feeding import ProtocolError
 from rosetta_jit.transports.limits import MAX_CONNECTING, MAX_CONNECTIONS, MAX_DATAGRAM_INPUTS, MAX_OUTPUTS
 from rosetta_jit.transports.loop import loop
@@ -25,6 +25,7 @@ from rosetta_jit.transports.yarp.outgoing_datagrams import DatagramOutput, Group
 from rosetta_jit.transports.yarp.wire import CARRIERS, CONNECTIONLESS
 
 if TYPE_CHECKING:
+    import socket
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.transports.base import Message
@@ -226,13 +227,13 @@ class Port:
         if contact is None or contact.type == "mcast":
             return f"Do not know how to connect to {target}"
         try:
-            sock = socket.create_connection((contact.host, contact.port), CONNECT_S)
+            sock = connected(contact.host, contact.port, CONNECT_S)
         except OSError as error:
             return f"Cannot connect to {target}: {error.strerror or error}"
         if carrier in CONNECTIONLESS:
             try:
-                self._connected(target, self._by_datagrams(sock, contact, carrier))
-            except (OSError, ProtocolError) as error:
+                self._connected(target, self._by_datagrams(Conversation.over(sock, CONNECT_S), contact, carrier))
+            except (OSError, ValueError, ProtocolError) as error:
                 return f"Cannot connect to {target} by {carrier}: {error}"
             return ""
         output = Output(self.name, target, carrier)
@@ -374,7 +375,7 @@ class Port:
 def _listens(contact: Contact) -> bool:
     """Whether a registered port is alive, or was left behind."""
     try:
-        socket.create_connection((contact.host, contact.port), 0.5).close()
+        connected(contact.host, contact.port, 0.5).close()
     except OSError:
         return False
     return True

@@ -102,3 +102,121 @@ def test_from_a_schema_file():
         value = theirs.FromString(subject.message)
         assert subject.encoder()(value) == subject.message
         assert subject.decoder().to(subject.message, theirs) == value
+
+
+def made(text, name):
+    """The class of a message in a file of protobuf's, as its own package makes it."""
+    from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+
+    file = descriptor_pb2.FileDescriptorProto(name="h.proto", package="h", syntax=text)
+    message = file.message_type.add(name=name)
+    message.field.add(name="text", number=1, type=9, label=1)
+    message.field.add(name="number", number=2, type=5, label=2 if text == "proto2" else 1)
+    pool = descriptor_pool.DescriptorPool()
+    return message_factory.GetMessageClass(pool.AddSerializedFile(file.SerializeToString()).message_types_by_name[name])
+
+
+@pytest.fixture(scope="module")
+def handed():
+    """A class with a required field, and what encodes and decodes its messages as they are."""
+    theirs = made("proto2", "Old")
+    return theirs, rj.Encoder.of(theirs, encoding="protobuf"), rj.Decoder.of(theirs, encoding="protobuf")
+
+
+def test_what_must_be_set_is_asked_for(handed):
+    theirs, encode, decode = handed
+    for _ in range(3):  # the first call finds the way, the others take it
+        with pytest.raises(rj.EncodeError, match=r"number"):
+            encode(theirs(text="a"))
+        with pytest.raises(rj.DecodeError, match=r"number"):
+            decode.to(b"\x0a\x01a", theirs)
+        assert encode(theirs(text="a", number=2)) == b"\x0a\x01a\x10\x02"
+        assert decode.to(b"\x0a\x01a\x10\x02", theirs) == theirs(text="a", number=2)
+
+
+def test_a_message_that_passes_is_checked_nevertheless(handed):
+    """Nothing is encoded anew, so what decodes must find what is wrong."""
+    theirs, _, decode = handed
+    good = theirs(text="abc", number=1).SerializeToString()
+    for broken, kind in ((good[:-1], "truncated"), (b"\x0a\x01\xff\x10\x02", "text"), (b"\x0a\x7f", "truncated")):
+        for _ in range(3):
+            with pytest.raises(rj.DecodeError) as caught:
+                decode.to(broken, theirs)
+            assert caught.value.kind == kind
+            assert decode.to(good, theirs).number == 1
+            assert decode.to(bytearray(good), theirs).number == 1
+            assert decode.to(memoryview(good), theirs).text == "abc"
+
+
+def test_a_message_that_is_mapped(handed):
+    theirs, _, _ = handed
+    mapping = 'import "h.proto"\ndata-holder: h.Old\nwire-schema: h.Old\nunpack-rules:\n  .text = .text\n  .number = int32(.number + 1)\n'
+    schema = {
+        "h.proto": 'syntax = "proto2";\npackage h;\nmessage Old { optional string text = 1; required int32 number = 2; }\n',
+        "h.mapping": f"{mapping}pack-rules:\n  .text = .text\n  .number = int32(.number - 1)\n",
+    }
+    encode, decode = rj.Encoder("h.mapping", schema=schema), rj.Decoder("h.mapping", schema=schema)
+    for number in range(3):
+        message = theirs(text="abc", number=number)
+        assert theirs.FromString(encode(message)).number == number - 1
+        assert decode.to(message.SerializeToString(), theirs).number == number + 1
+
+
+def test_classes_in_turn(handed):
+    """What an encoder and a decoder remember is the last class alone; the others are found nevertheless, also a dict."""
+    theirs, encode, decode = handed
+
+    class Like:
+        def __init__(self, text="", number=0):
+            self.text, self.number = text, number
+
+    data = b"\x0a\x01a\x10\x02"
+    for _ in range(5):
+        for each in (theirs(text="a", number=2), Like("a", 2), {"text": "a", "number": 2}, decode(data)):
+            assert encode(each) == data
+            assert encode(each, bytearray(8), 1) == 1 + len(data)
+        for class_ in (theirs, Like):
+            one, other = decode.to(data, class_), decode.to(message=data, object_type=class_)
+            assert type(one) is type(other) is class_
+            assert (one.text, one.number) == ("a", 2)
+        with pytest.raises(TypeError):
+            decode.to(data)
+        with pytest.raises(TypeError):
+            decode.to(1, theirs)
+
+
+def test_nothing_is_counted_wrong(handed):
+    """References of what is handed over, also where it fails."""
+    import sys
+
+    theirs, encode, decode = handed
+    bad, good, data, broken = theirs(text="a"), theirs(text="a", number=2), b"\x0a\x01a\x10\x02", b"\x0a\x7f"
+    counted = (theirs, bad, good, data, broken, None)
+
+    def run():
+        for _ in range(100):
+            encode(good)
+            decode.to(data, theirs)
+            for call in (lambda: encode(bad), lambda: decode.to(broken, theirs)):
+                with pytest.raises(rj.RosettaError):
+                    call()
+
+    run()
+    before = [sys.getrefcount(each) for each in counted]
+    run()
+    after = [sys.getrefcount(each) for each in counted]
+    assert all(abs(one - other) < 10 for one, other in zip(before, after, strict=True))
+
+
+def test_threads_hand_over_at_the_same_time(handed):
+    from concurrent.futures import ThreadPoolExecutor
+
+    theirs, encode, decode = handed
+
+    def run(number):
+        message = theirs(text="x" * (number * 50), number=number)
+        data = message.SerializeToString()
+        return all(encode(message) == data and decode.to(data, theirs) == message for _ in range(300))
+
+    with ThreadPoolExecutor(4) as pool:
+        assert all(pool.map(run, range(8)))

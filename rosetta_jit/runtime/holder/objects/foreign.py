@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.runtime.holder.family import Family
     from rosetta_jit.runtime.holder.record import Record
+    from rosetta_jit.runtime.holder.serialising import Programs
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,11 +27,25 @@ class Whole:
         Given an object and a holder, gives the object the holder's values.
     make : callable
         A new object, given a holder.
+    programs : Programs
+        Decoder and encoder of the bytes as which the objects are handed over.
+    bytes_of : callable
+        The bytes of an object.
+    of_bytes : callable
+        An object of bytes.
+    reads, writes : frozenset of str
+        Encodings, or None for the framework's usual one: messages of the former are bytes of which objects can be made, those of the latter
+        are the bytes of an object.
     """
 
     take: Callable[[Any, Any], None]
     fill: Callable[[Any, Any], None]
     make: Callable[[Any], Any]
+    programs: Programs
+    bytes_of: Callable[[Any], bytes]
+    of_bytes: Callable[[bytes], Any]
+    reads: frozenset[str | None]
+    writes: frozenset[str | None]
 
 
 def same_name(record: Record, field: str) -> tuple[str, ...]:  # noqa: ARG001  whatever the record

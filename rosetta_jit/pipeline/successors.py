@@ -1,4 +1,4 @@
-"""Types of a framework and of the one that followed it: messages of one, held in the type of the other. No mapping is needed."""
+"""Types of a framework and of the one that followed it: messages of one, in holders of the other. No mapping is needed."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.model.types import Schema
 from rosetta_jit.pipeline.build import Build, Types
 from rosetta_jit.startup.cached import cached_property
-from rosetta_jit.wire.held import UnlikeError, held_in
+from rosetta_jit.wire.other_type import UnlikeError, for_other_type
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Successors
     from rosetta_jit.lowering.writer import References
     from rosetta_jit.model.types import Struct
     from rosetta_jit.wire.codec import Encoding
-    from rosetta_jit.wire.held import Pairs
+    from rosetta_jit.wire.other_type import Pairs
 
 
-class HeldBuild(Build):
+class SuccessorBuild(Build):
     """A program of a type whose holder is of another one."""
 
     def __init__(self, build: Build, other: Build, pairs: Pairs, references: References | None = None) -> None:
@@ -27,7 +27,7 @@ class HeldBuild(Build):
         self._own, self._other, self._pairs = build, other, pairs
 
     def referring(self, references: References) -> Build:
-        return HeldBuild(self._own, self._other, self._pairs, references)
+        return SuccessorBuild(self._own, self._other, self._pairs, references)
 
     @cached_property
     def types(self) -> Types:
@@ -38,7 +38,7 @@ class HeldBuild(Build):
     @cached_property
     def encoding(self) -> Encoding:
         types = self.types
-        return held_in(self._own.encoding, types.wire, types.holder, types.schema, self._pairs)
+        return for_other_type(self._own.encoding, types.wire, types.holder, types.schema, self._pairs)
 
     def files(self) -> dict[str, str | None]:
         return self._own.files()
@@ -61,22 +61,22 @@ def joined(first: Build, second: Build) -> tuple[Build, Build]:
 
     try:
         if first.request.mapping is None and (is_first_older or second.request.mapping is not None):
-            return _held(first, second, follow, is_older=is_first_older), second
+            return _with_other_holder(first, second, follow, is_older=is_first_older), second
         if second.request.mapping is None:
-            return first, _held(second, first, follow, is_older=not is_first_older)
+            return first, _with_other_holder(second, first, follow, is_older=not is_first_older)
     except UnlikeError as error:
         names = first.types.holder.name, second.types.holder.name
         raise SchemaError((words.unlike(*names, error.path, error.why),)) from error
     return first, second
 
 
-def _held(build: Build, other: Build, follow: Successors, *, is_older: bool) -> Build:
-    """A half held in the type of the other one."""
+def _with_other_holder(build: Build, other: Build, follow: Successors, *, is_older: bool) -> Build:
+    """A half whose holder is of the type of the other one."""
 
     def of_newer(wire: Struct, holder: Struct, shown: str) -> dict[str, str | None]:
         became = follow(holder, wire, shown)
         return dict.fromkeys(each.name for each in wire.fields) | {name: old for old, name in became.items() if name is not None}
 
-    held = HeldBuild(build, other, follow if is_older else of_newer)
-    held.encoding  # noqa: B018 - here it is found out that fields have no partner
-    return held
+    made = SuccessorBuild(build, other, follow if is_older else of_newer)
+    made.encoding  # noqa: B018 - here it is found out that fields have no partner
+    return made

@@ -30,7 +30,7 @@ class UnlikeError(Exception):
         self.path, self.why = path, why
 
 
-def held_in(encoding: Encoding, wire: Struct, holder: Struct, schema: Schema, pairs: Pairs) -> Encoding:
+def for_other_type(encoding: Encoding, wire: Struct, holder: Struct, schema: Schema, pairs: Pairs) -> Encoding:
     """An encoding of ``wire`` that fills, or reads, holders of ``holder``.
 
     Raises
@@ -38,10 +38,10 @@ def held_in(encoding: Encoding, wire: Struct, holder: Struct, schema: Schema, pa
     UnlikeError
         A field has no partner, or one of another kind.
     """
-    held = _Held(schema, pairs)
-    codecs = tuple(held.codec(each, wire, holder, "") for each in encoding.attempts)
+    other = _OtherType(schema, pairs)
+    codecs = tuple(other.codec(each, wire, holder, "") for each in encoding.attempts)
     written = encoding.written
-    return replace(encoding, attempts=codecs, written=None if written is None else held.codec(written, wire, holder, ""))
+    return replace(encoding, attempts=codecs, written=None if written is None else other.codec(written, wire, holder, ""))
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ class _Found:
 
 
 @dataclass(frozen=True, slots=True)
-class _Held:
+class _OtherType:
     schema: Schema
     pairs: Pairs
 
@@ -75,7 +75,7 @@ class _Held:
                 found = self.look(path, wire, holder, shown)
                 if found is None:
                     return Padding(scalar, 0, order)
-                return replace(codec, path=found.path, held=self.scalar(found, scalar))
+                return replace(codec, path=found.path, holder_scalar=self.scalar(found, scalar))
             case Blob(path) | Table(path) | Constant(path):
                 found = self.find(path, wire, holder, shown)
                 if path and type(self.schema.resolve(found.wire)) is not type(self.schema.resolve(found.holder)):
@@ -121,8 +121,8 @@ class _Held:
         """The scalar that the holder has, if it is another one than the wire's."""
         match self.schema.resolve(found.holder):
             case Int(bits, signed) if scalar[0] in "iu":
-                held = f"{'i' if signed else 'u'}{bits}"
-                return None if held == scalar else held
+                scalar_there = f"{'i' if signed else 'u'}{bits}"
+                return None if scalar_there == scalar else scalar_there
             case Float(bits) if scalar == f"f{bits}":
                 return None
             case Bool() if scalar == "bool":

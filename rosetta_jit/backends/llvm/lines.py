@@ -1,0 +1,220 @@
+"""Instructions as lines of text, written when they are made.
+
+llvmlite makes an object of each instruction, with operands, flags and metadata, and prints all of them in the end. A kernel's
+instructions are appended, printed, and never looked at again: as lines of text they take half of the time. What is rare, llvmlite makes.
+"""
+
+from __future__ import annotations
+
+from itertools import count
+from typing import TYPE_CHECKING
+
+from llvmlite import ir
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+I1, I32 = ir.IntType(1), ir.IntType(32)
+NOTHING = ir.VoidType()
+POINTER = ir.PointerType()
+
+ORDERS = {">": "gt", "<": "lt", ">=": "ge", "<=": "le"}
+EQUAL = {"==": "eq", "!=": "ne"}
+SIGNED = EQUAL | {sign: f"s{name}" for sign, name in ORDERS.items()}
+UNSIGNED = EQUAL | {sign: f"u{name}" for sign, name in ORDERS.items()}
+ORDERED = {sign: f"o{name}" for sign, name in (EQUAL | ORDERS).items()}
+UNORDERED = {sign: f"u{name}" for sign, name in (EQUAL | ORDERS).items()}
+
+
+class Line(ir.Value):
+    """An instruction: what others call its result, and its text."""
+
+    def __init__(self, type_: ir.Type, reference: str, text: str) -> None:
+        self.type, self.reference, self.text = type_, reference, text
+
+    def get_reference(self) -> str:
+        """How others name its result."""
+        return self.reference
+
+    def __str__(self) -> str:
+        return self.text
+
+
+class Branch(Line):
+    """A branch, which may be told how likely its edges are."""
+
+    def __init__(self, text: str, lines: Lines) -> None:
+        super().__init__(NOTHING, "", text)
+        self.lines = lines
+
+    def set_weights(self, weights: Sequence[int]) -> None:
+        """How often each edge is taken, in relation to the other."""
+        self.text += f", !prof {self.lines.weights(tuple(weights))}"
+
+
+class Lines(ir.IRBuilder):
+    """Appends instructions to blocks of one function; those `beside` it number their results together with it."""
+
+    def __init__(self, block: ir.Block, numbers: Iterator[int] | None = None) -> None:
+        super().__init__(block)
+        self._numbers = count(1) if numbers is None else numbers
+        self._weights: dict[tuple[int, ...], str] = {}
+
+    def beside(self, block: ir.Block) -> Lines:
+        """Another one, for another block of the function."""
+        return Lines(block, self._numbers)
+
+    def weights(self, weights: tuple[int, ...]) -> str:
+        """The name of branch weights in the module."""
+        if weights not in self._weights:
+            module = self.module
+            named = module.add_metadata([ir.MetaDataString(module, "branch_weights"), *(ir.Constant(I32, each) for each in weights)])
+            self._weights[weights] = named.get_reference()
+        return self._weights[weights]
+
+    def _insert(self, instr: ir.Value) -> None:
+        """What llvmlite makes stands behind what stands here."""
+        self._block.instructions.append(instr)
+
+    def _line(self, type_: ir.Type, text: str) -> Line:
+        reference = f"%-{next(self._numbers)}"
+        line = Line(type_, reference, f"{reference} = {text}")
+        self._block.instructions.append(line)
+        return line
+
+    def _named(self, type_: ir.Type, text: str, name: str) -> Line:
+        if not name:
+            return self._line(type_, text)
+        reference = f'%"{self._block.scope.register(name, deduplicate=True)}"'
+        line = Line(type_, reference, f"{reference} = {text}")
+        self._block.instructions.append(line)
+        return line
+
+    def _end(self, branch: Branch) -> Branch:
+        assert not self._block.is_terminated
+        self._block.instructions.append(branch)
+        self._block.terminator = branch
+        return branch
+
+    # --- memory and control --------------------------------------------------------------------------------------------------
+
+    def load(self, ptr: ir.Value, name: str = "", align: int | None = None, typ: ir.Type | None = None) -> ir.Value:
+        assert typ is not None
+        aligned = "" if align is None else f", align {align}"
+        return self._named(typ, f"load {typ}, ptr {ptr.get_reference()}{aligned}", name)
+
+    def store(self, value: ir.Value, ptr: ir.Value, align: int | None = None) -> ir.Value:
+        aligned = "" if align is None else f", align {align}"
+        line = Line(NOTHING, "", f"store {value.type} {value.get_reference()}, ptr {ptr.get_reference()}{aligned}")
+        self._block.instructions.append(line)
+        return line
+
+    def gep(
+        self, ptr: ir.Value, indices: Sequence[ir.Value], inbounds: bool = False, name: str = "", source_etype: ir.Type | None = None
+    ) -> ir.Value:
+        assert source_etype is not None
+        kind = "getelementptr inbounds" if inbounds else "getelementptr"
+        places = ", ".join([f"{each.type} {each.get_reference()}" for each in indices])
+        return self._named(POINTER, f"{kind} {source_etype}, ptr {ptr.get_reference()}, {places}", name)
+
+    def branch(self, target: ir.Block) -> ir.Terminator:
+        return self._end(Branch(f"br label {target.get_reference()}", self))
+
+    def cbranch(self, cond: ir.Value, truebr: ir.Block, falsebr: ir.Block) -> ir.Terminator:
+        edges = f"label {truebr.get_reference()}, label {falsebr.get_reference()}"
+        return self._end(Branch(f"br i1 {cond.get_reference()}, {edges}", self))
+
+    def call(self, fn: ir.Value, args: Iterable[ir.Value], name: str = "") -> ir.Value:
+        signature = fn.function_type
+        if signature.var_arg:
+            return super().call(fn, args, name)
+        given = ", ".join([f"{each.type} {each.get_reference()}" for each in args])
+        convention, result = getattr(fn, "calling_convention", ""), signature.return_type
+        text = f"call {convention}{' ' if convention else ''}{result} {fn.get_reference()}({given})"
+        if result != NOTHING:
+            return self._named(result, text, name)
+        line = Line(NOTHING, "", text)
+        self._block.instructions.append(line)
+        return line
+
+    def extract_value(self, agg: ir.Value, idx: int) -> ir.Value:
+        whole = agg.type
+        assert isinstance(whole, ir.LiteralStructType)
+        return self._line(whole.elements[idx], f"extractvalue {whole} {agg.get_reference()}, {idx}")
+
+    def select(self, cond: ir.Value, lhs: ir.Value, rhs: ir.Value) -> ir.Value:
+        type_ = lhs.type
+        return self._line(type_, f"select i1 {cond.get_reference()}, {type_} {lhs.get_reference()}, {type_} {rhs.get_reference()}")
+
+    # --- comparisons ---------------------------------------------------------------------------------------------------------
+
+    def icmp_signed(self, cmpop: str, lhs: ir.Value, rhs: ir.Value) -> ir.Value:
+        return self._line(I1, f"icmp {SIGNED[cmpop]} {lhs.type} {lhs.get_reference()}, {rhs.get_reference()}")
+
+    def icmp_unsigned(self, cmpop: str, lhs: ir.Value, rhs: ir.Value) -> ir.Value:
+        return self._line(I1, f"icmp {UNSIGNED[cmpop]} {lhs.type} {lhs.get_reference()}, {rhs.get_reference()}")
+
+    def fcmp_ordered(self, cmpop: str, lhs: ir.Value, rhs: ir.Value) -> ir.Value:
+        return self._line(I1, f"fcmp {ORDERED[cmpop]} {lhs.type} {lhs.get_reference()}, {rhs.get_reference()}")
+
+    def fcmp_unordered(self, cmpop: str, lhs: ir.Value, rhs: ir.Value) -> ir.Value:
+        return self._line(I1, f"fcmp {UNORDERED[cmpop]} {lhs.type} {lhs.get_reference()}, {rhs.get_reference()}")
+
+    # --- arithmetic ----------------------------------------------------------------------------------------------------------
+
+    def _two(self, operation: str, lhs: ir.Value, rhs: ir.Value, flags: Sequence[str] = ()) -> ir.Value:
+        told = "".join([f" {each}" for each in flags])
+        type_ = lhs.type
+        return self._line(type_, f"{operation}{told} {type_} {lhs.get_reference()}, {rhs.get_reference()}")
+
+    def add(self, lhs: ir.Value, rhs: ir.Value, flags: Sequence[str] = ()) -> ir.Value:
+        return self._two("add", lhs, rhs, flags)
+
+    def sub(self, lhs: ir.Value, rhs: ir.Value, flags: Sequence[str] = ()) -> ir.Value:
+        return self._two("sub", lhs, rhs, flags)
+
+    def mul(self, lhs: ir.Value, rhs: ir.Value, flags: Sequence[str] = ()) -> ir.Value:
+        return self._two("mul", lhs, rhs, flags)
+
+    def and_(self, lhs: ir.Value, rhs: ir.Value) -> ir.Value:
+        return self._two("and", lhs, rhs)
+
+    def or_(self, lhs: ir.Value, rhs: ir.Value) -> ir.Value:
+        return self._two("or", lhs, rhs)
+
+    def xor(self, lhs: ir.Value, rhs: ir.Value) -> ir.Value:
+        return self._two("xor", lhs, rhs)
+
+    def shl(self, lhs: ir.Value, rhs: ir.Value) -> ir.Value:
+        return self._two("shl", lhs, rhs)
+
+    def lshr(self, lhs: ir.Value, rhs: ir.Value) -> ir.Value:
+        return self._two("lshr", lhs, rhs)
+
+    def ashr(self, lhs: ir.Value, rhs: ir.Value) -> ir.Value:
+        return self._two("ashr", lhs, rhs)
+
+    def not_(self, value: ir.Value) -> ir.Value:
+        return self._two("xor", value, ir.Constant(value.type, -1))
+
+    def neg(self, value: ir.Value) -> ir.Value:
+        return self._two("sub", ir.Constant(value.type, 0), value)
+
+    # --- conversions ---------------------------------------------------------------------------------------------------------
+
+    def _cast(self, operation: str, value: ir.Value, typ: ir.Type) -> ir.Value:
+        if value.type == typ:
+            return value
+        return self._line(typ, f"{operation} {value.type} {value.get_reference()} to {typ}")
+
+    def trunc(self, value: ir.Value, typ: ir.Type) -> ir.Value:
+        return self._cast("trunc", value, typ)
+
+    def zext(self, value: ir.Value, typ: ir.Type) -> ir.Value:
+        return self._cast("zext", value, typ)
+
+    def sext(self, value: ir.Value, typ: ir.Type) -> ir.Value:
+        return self._cast("sext", value, typ)
+
+    def bitcast(self, value: ir.Value, typ: ir.Type) -> ir.Value:
+        return self._cast("bitcast", value, typ)

@@ -1,0 +1,193 @@
+"""Signals within the bytes of a frame, as of a CAN bus: read, and put together (`rosetta_jit.language.signals` says where their bits lie).
+
+signal (bytes, "start|length@order sign")                       the number
+signal_bytes (size, "start|length@order sign", number, ...)     the frame; bits of no signal are 0
+"""
+
+from __future__ import annotations
+
+from functools import partial, reduce
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import signals as words
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Wire
+from rosetta_jit.kernel.terms import add, index, type_of
+from rosetta_jit.language import typed
+from rosetta_jit.language.conversions import as_int64, describe
+from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
+from rosetta_jit.language.functions.texts import is_bytes
+from rosetta_jit.language.limits import MAX_SIGNAL_BYTES
+from rosetta_jit.language.signals import MOST_BITS, signal_of
+from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.lowering.texts.views import byte_at, kept, put, room
+from rosetta_jit.model.layout import scalar_of
+from rosetta_jit.model.types import Array, Bytes, Int, String
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Expr
+    from rosetta_jit.language.scope import Scope
+    from rosetta_jit.language.signals import Signal
+    from rosetta_jit.lowering.evaluation import Evaluation
+    from rosetta_jit.lowering.texts.views import View
+    from rosetta_jit.model import expr as model
+    from rosetta_jit.model.types import Type
+
+
+# --- types ---------------------------------------------------------------------------------------------------------------
+
+
+def _type_signal(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> typed.Expr | None:
+    if len(arguments) != 2:
+        scope.problems.append(words.arguments(call.span, call.function))
+        return None
+    frame, described = arguments
+    if not (isinstance(frame, typed.Access) and is_bytes(frame.type)):
+        scope.problems.append(words.no_field(frame.span, describe(frame.type)))
+        return None
+    signal = _signal(described, _fixed_size(frame.type), scope)
+    return None if signal is None else typed.Call("signal", (frame, typed.Const(signal.text, String())), signal.type, call.span)
+
+
+def _type_frame(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> typed.Expr | None:
+    if len(arguments) < 3 or len(arguments) % 2 == 0:
+        scope.problems.append(words.arguments(call.span, call.function))
+        return None
+    size, *rest = arguments
+    if not (isinstance(size, typed.Const) and isinstance(size.type, Int) and 1 <= int(size.value) <= MAX_SIGNAL_BYTES):
+        scope.problems.append(words.no_size(size.span, MAX_SIGNAL_BYTES))
+        return None
+    found: list[Signal] = []
+    taken: list[typed.Expr] = [size]
+    for described, value in zip(rest[::2], rest[1::2], strict=True):
+        signal, number = _signal(described, int(size.value), scope), _number(value, scope)
+        if signal is None or number is None:
+            return None
+        other = next((each for each in found if each.bits & signal.bits), None)
+        if other is not None:
+            scope.problems.append(words.overlapping(described.span, other.text, signal.text))
+            return None
+        found.append(signal)
+        taken += [typed.Const(signal.text, String()), number]
+    return typed.Call("signal_bytes", tuple(taken), Bytes(), call.span)
+
+
+def _signal(described: typed.Expr, size: int | None, scope: Scope) -> Signal | None:
+    text = described.value if isinstance(described, typed.Const) and isinstance(described.value, str) else None
+    signal = None if text is None else signal_of(text)
+    if signal is None:
+        scope.problems.append(words.no_signal(described.span, text))
+    elif not 1 <= signal.length <= MOST_BITS:
+        scope.problems.append(words.too_long(described.span, signal.length, MOST_BITS))
+    elif signal.size > (MAX_SIGNAL_BYTES if size is None else size):
+        scope.problems.append(words.beyond(described.span, MAX_SIGNAL_BYTES if size is None else size, signal.size))
+    else:
+        return signal
+    return None
+
+
+def _number(value: typed.Expr, scope: Scope) -> typed.Expr | None:
+    """An integer as int64, or a uint64."""
+    if isinstance(value.type, Int) and not value.type.signed and value.type.bits == MOST_BITS and not isinstance(value, typed.Const):
+        return value
+    whole = as_int64(value)
+    if whole is None:
+        scope.problems.append(words.no_integer(value.span, describe(value.type)))
+    return whole
+
+
+def _fixed_size(type_: Type) -> int | None:
+    length = type_.length if isinstance(type_, Array | Bytes) else None
+    return length if isinstance(length, int) else None
+
+
+# --- kernels -------------------------------------------------------------------------------------------------------------
+
+
+def _lower_signal(call: typed.Call, values: Evaluation) -> Expr:
+    """The number: an error of kind ``index`` where the frame is too short."""
+    frame, signal = call.arguments[0], _described(call.arguments[1])
+    assert isinstance(frame, typed.Access)
+    writer = values.writer
+    address, count = values.source.address(frame.place, values), values.source.count(frame.place, values)
+    writer.expect(Compare("ge", count, index(signal.size)), "index", values.where, f"no {signal.size} bytes", line=values.line)
+    lane, first = (None, address.at) if isinstance(address, Wire) else (address.lane, address.row)
+    first = writer.let("frame", first)
+    if lane is None:
+        writer.require(signal.size, values.where, at=first)
+    found: list[Expr] = []
+    for piece in signal.pieces:
+        byte = Convert("u64", byte_at(lane, add(first, piece.byte)))
+        part = _and(_shifted("shr", byte, piece.bit), piece.mask) if piece.bit or piece.count < 8 else byte
+        found.append(_shifted("shl", part, piece.shift))
+    bits = writer.let("bits", reduce(partial(Binary, "or"), found))
+    scalar = scalar_name(scalar_of(signal.type))
+    if not signal.signed or signal.length == MOST_BITS:
+        return Convert(scalar, bits)
+    above = Const("i64", MOST_BITS - signal.length)
+    return Convert(scalar, Binary("shr", Binary("shl", Convert("i64", bits), above), above))
+
+
+def _lower_frame(call: typed.Call, values: Evaluation) -> View:
+    """The bytes: an error of kind ``range`` where a number does not fit its signal."""
+    size, *rest = call.arguments
+    assert isinstance(size, typed.Const)
+    writer = values.writer
+    bytes_: list[Expr] = [Const("u64", 0)] * int(size.value)
+    for described, value in zip(rest[::2], rest[1::2], strict=True):
+        signal = _described(described)
+        number = writer.let("signal", values.of(value))
+        scalar = type_of(number)
+        least, most = signal.limits
+        text = f'the value does not fit the signal "{signal.text}"'
+        if scalar == "i64" and least > -(1 << 63):
+            writer.expect(Compare("ge", number, Const(scalar, least)), "range", values.where, text, line=values.line)
+        if most < (1 << 63 if scalar == "i64" else 1 << 64):
+            writer.expect(Compare("lt", number, Const(scalar, most)), "range", values.where, text, line=values.line)
+        bits = writer.let("bits", Convert("u64", number))
+        for piece in signal.pieces:
+            part = _shifted("shl", _and(_shifted("shr", bits, piece.shift), piece.mask), piece.bit)
+            before = bytes_[piece.byte]
+            bytes_[piece.byte] = part if isinstance(before, Const) else Binary("or", before, part)
+    start = room(writer, index(len(bytes_)))
+    for number, byte in enumerate(bytes_):
+        put(writer, add(start, number), 0 if isinstance(byte, Const) else Convert("u8", byte))
+    return kept(writer, start, start, add(start, len(bytes_)), valid=False)
+
+
+def _described(value: typed.Expr) -> Signal:
+    assert isinstance(value, typed.Const)
+    signal = signal_of(str(value.value))
+    assert signal is not None
+    return signal
+
+
+def _shifted(way: str, value: Expr, distance: int) -> Expr:
+    if not distance:
+        return value
+    return Binary("shl" if way == "shl" else "shr", value, Const("u64", distance))
+
+
+def _and(value: Expr, mask: int) -> Expr:
+    return Binary("and", value, Const("u64", mask))
+
+
+# --- records -------------------------------------------------------------------------------------------------------------
+
+SIGNAL = Row(
+    "bytes",
+    '`signal(b, "7|16@0+")`',
+    (
+        "the signal of this start bit, length, byte order and sign, written as in DBC files, in bytes or `uint8[]`: an integer",
+        "`index`",
+    ),
+)
+FRAME = Row(
+    "bytes",
+    '`signal_bytes(8, "7|16@0+", x, "24|8@1-", y)`',
+    ("so many bytes with these signals, which are integers; bits of no signal are 0", "`range`"),
+)
+
+FUNCTIONS = (
+    Function("signal", _type_signal, _lower_signal, SEVERAL, NOT_FOLLOWED, (SIGNAL,)),
+    Function("signal_bytes", _type_frame, _lower_frame, SEVERAL, NOT_FOLLOWED, (FRAME,), operation="string manipulation", kept=False),
+)

@@ -1,0 +1,101 @@
+"""Relations to signals of one frame: `.speed <-> signal(.data, "7|16@0+") * 0.01` and its like together say what `.data` is.
+
+Packing writes all bits of the frame: those of no relation are 0. It has as many bytes as its type says, or else as few as have all signals.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.both_ways.inverse import NoInverseError, Solution, fields_in, may_round, named, solve
+from rosetta_jit.language.both_ways.inverse_parts import until
+from rosetta_jit.language.signals import MOST_BITS, signal_of
+from rosetta_jit.model.expr import Call, Literal, Nearest
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float
+from rosetta_jit.model.walk import fields_of, parts
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.both_ways.inverse import TypeOf
+    from rosetta_jit.language.both_ways.knowledge import Loops
+    from rosetta_jit.language.signals import Signal
+    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.model.mapping import Relation
+
+Related = tuple["Relation", "Loops"]
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """Bytes, and the relations to the signals in them."""
+
+    bytes: Expr
+    relations: tuple[Related, ...]
+
+    def solved(self, type_of: TypeOf) -> Solution:
+        """The bytes that have these signals.
+
+        Raises
+        ------
+        NoInverseError
+        """
+        size = self.size(type_of)
+        arguments: list[Expr] = [Literal(size, self.bytes.span)]
+        for rule, _ in self.relations:
+            call = signal_in(rule)
+            assert call is not None
+            arguments += [call.arguments[1], _number(rule, call, type_of)]
+        return solve(self.bytes, Call("signal_bytes", tuple(arguments), self.bytes.span), type_of)
+
+    def size(self, type_of: TypeOf) -> int:
+        """How many bytes the frame has.
+
+        Raises
+        ------
+        NoInverseError
+        """
+        type_ = type_of(self.bytes)
+        length = type_.length if isinstance(type_, Array | Bytes) else None
+        signals = [_signal(call) for rule, _ in self.relations if (call := signal_in(rule)) is not None]
+        known = [each.size for each in signals if each is not None]
+        if len(known) < len(self.relations):
+            raise NoInverseError(self.bytes, "its signals are not known")
+        return length if isinstance(length, int) else max(known)
+
+
+def frames_of(relations: list[Related]) -> list[Frame]:
+    """The frames in which relations name signals."""
+    found: dict[object, list[Related]] = {}
+    for rule, loops in relations:
+        call = signal_in(rule)
+        if call is not None:
+            found.setdefault((call.arguments[0], loops), []).append((rule, loops))
+    frames: list[Frame] = []
+    for related in found.values():
+        call = signal_in(related[0][0])
+        assert call is not None
+        frames.append(Frame(call.arguments[0], tuple(related)))
+    return frames
+
+
+def signal_in(rule: Relation) -> Call | None:
+    """The signal that a relation reads, where its frame is the only field."""
+    if len(fields_in(rule.value)) != 1 or fields_of(rule.place, "wire"):
+        return None
+    found = (each for each in parts(rule.value) if isinstance(each, Call) and each.function == "signal" and len(each.arguments) == 2)
+    return next((each for each in found if isinstance(each.arguments[1], Literal)), None)
+
+
+def _signal(call: Call) -> Signal | None:
+    described = call.arguments[1]
+    found = signal_of(str(described.value)) if isinstance(described, Literal) else None
+    return found if found is not None and 1 <= found.length <= MOST_BITS else None
+
+
+def _number(rule: Relation, call: Call, type_of: TypeOf) -> Expr:
+    """What a signal must be: the nearest integer where it is computed with floats, if the relation gives the same of it."""
+    number, signal = until(rule.value, rule.place, call, type_of), _signal(call)
+    type_ = type_of(number)
+    if isinstance(type_, Float) and signal is not None and may_round(rule.value):
+        return Nearest(number, named(rule.value, call), rule.place, signal.type, rule.span)
+    return Call("int64", (number,), rule.span) if isinstance(type_, Bool | Enum) else number

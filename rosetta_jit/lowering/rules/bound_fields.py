@@ -1,0 +1,291 @@
+"""What the walk over a codec will bind where rules work in place (`rosetta_jit.lowering.codec.wire_fields`), known beforehand.
+
+It follows the walk (`rosetta_jit.lowering.codec.walk`) without a kernel: which numbers, counts and places of elements are bound by the
+time that rules run, and what is in the way of binding one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.language import typed
+from rosetta_jit.lowering.codec.wire_fields import EACH, leaves, numbers_of_counts
+from rosetta_jit.lowering.rules.packed_values import rule_for
+from rosetta_jit.model import expr
+from rosetta_jit.model.walk import names_of, parts
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.wire.codec import (
+    Align,
+    Blob,
+    Cases,
+    Choice,
+    Codec,
+    Computed,
+    Constant,
+    Delimited,
+    Maybe,
+    Members,
+    Number,
+    Padding,
+    Parameter,
+    Parameters,
+    Recursion,
+    Repeat,
+    Seq,
+    Table,
+    Tagged,
+    Utf16,
+    Varint,
+)
+from rosetta_jit.wire.size import fixed_size
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.kernel.ir import Direction
+    from rosetta_jit.wire.codec import Count, Path
+
+
+@dataclass(frozen=True, slots=True)
+class Obstacle:
+    """A field of the wire that rules cannot read or write in place, or have no need to, but the walk has; and why."""
+
+    path: Path
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Here:
+    """Where the walk stands: in the message, or in an element, of which the numbers ``passing`` by are known as long as it is there."""
+
+    path: Path = ()
+    outer: _Here | None = None
+    passing: set[Path] = field(default_factory=set["Path"])
+
+    @property
+    def scope(self) -> _Here:
+        """An element of which nothing has come is an array in an array: its length is told further out."""
+        return self if self.passing or self.outer is None else self.outer.scope
+
+
+@dataclass(slots=True)
+class BoundFields:
+    """The fields that are bound so far, by absolute path; what rules give is bound when the walk asks for it."""
+
+    direction: Direction
+    rules: tuple[typed.Rule, ...]
+    numbers: set[Path] = field(default_factory=set["Path"])
+    counts: set[Path] = field(default_factory=set["Path"])
+    regions: set[Path] = field(default_factory=set["Path"])
+    deferred: list[Iterator[Obstacle]] = field(default_factory=list["Iterator[Obstacle]"])
+
+    def message(self, codec: Codec) -> Iterator[Obstacle]:
+        """What is in the way of the walk over a message."""
+        yield from self.whole(codec, _Here())
+
+    def whole(self, codec: Codec, here: _Here) -> Iterator[Obstacle]:
+        """A message or an element: what is checked at its end is looked at then."""
+        outer, self.deferred = self.deferred, []
+        yield from self.walk(codec, here)
+        for each in self.deferred:
+            yield from each
+        self.deferred = outer
+
+    def walk(self, codec: Codec, here: _Here) -> Iterator[Obstacle]:
+        match codec:
+            case Seq(items):
+                for item in items:
+                    yield from self.walk(item, here)
+            case Number(path) | Table(path):
+                yield from self.number(path, here)
+            case Computed(path, _, value):
+                yield from self.computed(path, value, here)
+            case Constant(path, value, kind=kind):
+                self.constant(path, value, kind, here)
+            case Blob():
+                yield from self.blob(codec, here)
+            case Utf16():
+                yield from self.utf16(codec, here)
+            case Repeat():
+                yield from self.repeat(codec, here)
+            case Choice():
+                yield from self.choice(codec, here)
+            case Delimited(_, value):
+                yield from self.walk(value, here)
+            case Cases() | Maybe() | Members() | Parameter() | Parameters():
+                yield from self.conditional(codec, here)
+            case Tagged(path) | Varint(path) | Recursion(path):
+                yield Obstacle(here.path + path, "fields with tags come in any order, and more than once")
+            case Padding() | Align():
+                pass
+            case _:
+                assert_never(codec)
+
+    def conditional(self, codec: Cases | Maybe | Members | Parameter | Parameters, here: _Here) -> Iterator[Obstacle]:
+        """What need not be there, or may be anywhere. Members that always are have their places when they are written."""
+        match codec:
+            case Members(path, members) | Parameters(path, members) if self.direction != "decode":
+                for member in members:
+                    if member.optional:
+                        yield Obstacle(here.path + member.path, "it may be absent")
+                    yield from self.walk(member.value, here)
+            case Parameter(member, _, second) if self.direction != "decode" and (second or not member.optional):
+                yield from self.walk(member.value, here)
+            case Members(path) | Parameters(path):
+                yield Obstacle(here.path + path, "its members come in any order")
+            case Parameter(member):
+                yield Obstacle(here.path + member.path, "it may be absent")
+            case Maybe(path):
+                yield Obstacle(here.path + path, "it may be absent")
+            case Cases(path):
+                yield Obstacle(here.path + path, "it is of one of several cases")
+
+    # --- leaves ----------------------------------------------------------------------------------------------------------
+
+    def number(self, path: Path, here: _Here) -> Iterator[Obstacle]:
+        if self.direction == "decode":
+            self.put(path, here)
+        elif self.direction == "encode" and here.outer is None:
+            yield from self.told(path, here)
+
+    def put(self, path: Path, here: _Here) -> None:
+        """A number that has come."""
+        if here.outer is None:
+            self.numbers.add(path)
+        else:
+            here.passing.add(path)
+
+    def put_bytes(self, path: Path, here: _Here) -> None:
+        if here.outer is None:
+            self.counts.add(path)
+            self.regions.add((*path, EACH))
+
+    def computed(self, path: Path, value: expr.Expr, here: _Here) -> Iterator[Obstacle]:
+        if self.direction == "decode":
+            self.put(path, here)
+            self.deferred.append(self.expression(value, here))
+        elif self.direction == "encode":
+            yield from self.expression(value, here)
+
+    def constant(self, path: Path, value: float | bytes, kind: str, here: _Here) -> None:
+        if self.direction != "decode" or not path:
+            return
+        if isinstance(value, bytes):
+            self.put_bytes(path, here)
+        elif kind == "constant":
+            self.put(path, here)
+
+    def blob(self, blob: Blob, here: _Here) -> Iterator[Obstacle]:
+        yield from self.count(blob.path, blob.count, here)
+        if self.direction == "decode":
+            self.put_bytes(blob.path, here)
+        elif self.direction == "encode":
+            match rule_for(here.path + blob.path, self.rules):
+                case typed.Assign(_, typed.Access()):
+                    pass  # the walk copies it
+                case _:
+                    self.regions.add((*here.path, *blob.path, EACH))
+
+    def utf16(self, text: Utf16, here: _Here) -> Iterator[Obstacle]:
+        yield from self.count(text.path, text.count, here)
+        if self.direction == "decode":
+            self.counts.add(here.path + text.path)
+        elif self.direction == "encode":
+            yield Obstacle(here.path + text.path, "its units are written by the walk")
+
+    # --- arrays and choices ----------------------------------------------------------------------------------------------
+
+    def count(self, path: Path, count: Count, here: _Here) -> Iterator[Obstacle]:
+        """A count is read, or asked for; where other fields determine it, these must be known."""
+        computed = None if count.value is None or isinstance(count.value, int) else count.value
+        if self.direction != "decode":
+            yield from self.counted(path, here)
+        if computed is None:
+            return
+        if self.direction == "decode" and count.scalar is not None:
+            self.deferred += [self.counted(path, here), self.expression(computed, here)]
+        else:
+            yield from self.expression(computed, here.scope)
+
+    def repeat(self, repeat: Repeat, here: _Here) -> Iterator[Obstacle]:
+        key, size = here.path + repeat.path, fixed_size(repeat.item)
+        if self.direction != "decode" and isinstance(repeat.count.value, int):
+            self.counts.add(key)
+        yield from self.count(repeat.path, repeat.count, here)
+        yield from self.walk(Seq(repeat.head), here)
+        self.counts.add(key)
+        if size is not None and self.direction == "size":
+            return
+        if size is not None:
+            self.regions.update((*key, EACH, *leaf.path) for leaf in leaves(repeat.item))
+        yield from self.whole(repeat.item, _Here((*key, EACH), here))
+
+    def choice(self, choice: Choice, here: _Here) -> Iterator[Obstacle]:
+        """All alternatives are read; which one is written, its label or the number of elements says, or it is the first."""
+        alternatives = [codec for _, codec in choice.alternatives]
+        if self.direction != "decode":
+            if choice.labels:
+                yield from self.told(choice.path, here)
+            if not choice.labels and not choice.when_empty:
+                alternatives = alternatives[:1]
+            elif here.outer is None:
+                for path in (path for codec in alternatives for path in numbers_of_counts(codec)):
+                    yield from self.told(path, here)
+            if choice.when_empty and not choice.labels:
+                yield from self.counted(choice.path, here)
+                alternatives = [alternatives[choice.when_empty], alternatives[0]]
+        for codec in alternatives:
+            yield from self.walk(codec, here)
+
+    # --- what is asked for -----------------------------------------------------------------------------------------------
+
+    def expression(self, value: expr.Expr, here: _Here) -> Iterator[Obstacle]:
+        """What the schema computes of fields."""
+        for part in parts(value):
+            match part:
+                case expr.Path():
+                    yield from self.told(names_of(part), here)
+                case expr.Len(path):
+                    yield from self.counted(names_of(path), here)
+                case _:
+                    pass
+
+    def told(self, path: Path, here: _Here) -> Iterator[Obstacle]:
+        """A number that says something of what follows."""
+        key = here.path + path
+        if key in self.numbers or path in here.passing:
+            return
+        if here.outer is not None:
+            yield Obstacle(key, "what follows depends on it, and rules set it later")
+        elif self.direction == "decode":
+            yield Obstacle(key, "it comes too late")
+        elif rule_for(key, self.rules) is None:
+            yield Obstacle(key, "no rule gives it by itself")
+        else:
+            self.numbers.add(key)
+
+    def counted(self, path: Path, here: _Here) -> Iterator[Obstacle]:
+        """How many elements or bytes there are."""
+        key = here.path + path
+        if key in self.counts:
+            return
+        if self.direction == "decode":
+            yield Obstacle(key, "its length is not known where it is needed")
+        elif rule_for(key, self.rules) is None:
+            yield Obstacle(key, "no rule gives its length by itself")
+        elif _is_made(key, self.rules):
+            yield Obstacle(key, "how long it becomes is known only when it is made")
+        else:
+            self.counts.add(key)
+
+
+def _is_made(key: Path, rules: tuple[typed.Rule, ...]) -> bool:
+    """Whether a rule, or one of those in its blocks, sets a field to what a function makes."""
+    match rule_for(key, rules):
+        case typed.Assign(_, typed.Call()):
+            return True
+        case typed.When(_, then, otherwise):
+            return _is_made(key, then) or _is_made(key, otherwise)
+        case _:
+            return False

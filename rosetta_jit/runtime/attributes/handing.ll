@@ -1,0 +1,136 @@
+; Objects of other classes that are handed over as bytes (`attributes.handing`). In what does it lie: 16 a decoder, 24 an encoder, null where the bytes
+; are already what is wanted; 32 what makes a holder, 40 a function of the objects' own, 48 the Python function for all that is not the common case,
+; 56 a holder that nobody uses just now, or null.
+
+; A holder filled from bytes, which nobody else has until `give_spare`; null of an error.
+define internal ptr @filled(ptr %handing, ptr %bytes) {
+  %pair = alloca [2 x ptr]
+  %spare = call ptr @pointer(ptr %handing, i64 56)
+  %has = icmp ne ptr %spare, null
+  br i1 %has, label %take, label %new, !prof !0
+take:
+  call void @put_pointer(ptr %handing, i64 56, ptr null)
+  br label %fill
+new:
+  %maker = call ptr @pointer(ptr %handing, i64 32)
+  %made = call ptr @PyObject_Vectorcall(ptr %maker, ptr null, i64 0, ptr null)
+  %is.made = icmp ne ptr %made, null
+  br i1 %is.made, label %fill, label %failed
+fill:
+  %holder = phi ptr [ %spare, %take ], [ %made, %new ]
+  store ptr %bytes, ptr %pair
+  call void @put_pointer(ptr %pair, i64 8, ptr %holder)
+  %decoder = call ptr @pointer(ptr %handing, i64 16)
+  %decoded = call ptr @PyObject_Vectorcall(ptr %decoder, ptr %pair, i64 2, ptr null)
+  %good = icmp ne ptr %decoded, null
+  br i1 %good, label %done, label %drop, !prof !0
+done:
+  call void @Py_DecRef(ptr %decoded)
+  ret ptr %holder
+drop:
+  call void @give_spare(ptr %handing, ptr %holder)
+  br label %failed
+failed:
+  ret ptr null
+}
+
+; Keep a holder for the next object, unless another thread has given one back meanwhile.
+define internal void @give_spare(ptr %handing, ptr %holder) {
+  %spare = call ptr @pointer(ptr %handing, i64 56)
+  %has = icmp ne ptr %spare, null
+  br i1 %has, label %drop, label %keep
+keep:
+  call void @put_pointer(ptr %handing, i64 56, ptr %holder)
+  ret void
+drop:
+  call void @Py_DecRef(ptr %holder)
+  ret void
+}
+
+; What a function gives for one argument; null of an error.
+define internal ptr @called(ptr %function, ptr %argument) alwaysinline {
+  %one = alloca [1 x ptr]
+  store ptr %argument, ptr %one
+  %answer = call ptr @PyObject_Vectorcall(ptr %function, ptr %one, i64 1, ptr null)
+  ret ptr %answer
+}
+
+define internal i1 @is_single(i64 %nargsf, ptr %names) alwaysinline {
+  %count = and i64 %nargsf, 9223372036854775807
+  %one = icmp eq i64 %count, 1
+  %unnamed = icmp eq ptr %names, null
+  %single = and i1 %one, %unnamed
+  ret i1 %single
+}
+
+; hand_in(object) -> bytes. Where nothing is to be encoded they are the object's own, if they can be decoded.
+define ptr @hand_in(ptr %handing, ptr %arguments, i64 %nargsf, ptr %names) {
+  %single = call i1 @is_single(i64 %nargsf, ptr %names)
+  br i1 %single, label %write, label %python, !prof !0
+write:
+  %writer = call ptr @pointer(ptr %handing, i64 40)
+  %bytes = call ptr @PyObject_Vectorcall(ptr %writer, ptr %arguments, i64 1, ptr null)
+  %written = icmp ne ptr %bytes, null
+  br i1 %written, label %fill, label %failed, !prof !0
+fill:
+  %holder = call ptr @filled(ptr %handing, ptr %bytes)
+  %good = icmp ne ptr %holder, null
+  br i1 %good, label %look, label %drop, !prof !0
+look:
+  %encoder = call ptr @pointer(ptr %handing, i64 24)
+  %other = icmp ne ptr %encoder, null
+  br i1 %other, label %encode, label %same
+same:
+  call void @give_spare(ptr %handing, ptr %holder)
+  ret ptr %bytes
+encode:
+  call void @Py_DecRef(ptr %bytes)
+  %encoded = call ptr @called(ptr %encoder, ptr %holder)
+  call void @give_spare(ptr %handing, ptr %holder)
+  ret ptr %encoded
+drop:
+  call void @Py_DecRef(ptr %bytes)
+  br label %failed
+failed:
+  ret ptr null
+python:
+  %answer = call ptr @leave_to_python(ptr %handing, ptr %arguments, i64 %nargsf, ptr %names)
+  ret ptr %answer
+}
+
+; hand_out(bytes) -> object. Where nothing is to be encoded it is made of the same bytes, once they have been decoded.
+define ptr @hand_out(ptr %handing, ptr %arguments, i64 %nargsf, ptr %names) {
+  %single = call i1 @is_single(i64 %nargsf, ptr %names)
+  br i1 %single, label %look, label %python, !prof !0
+look:
+  %message = load ptr, ptr %arguments
+  %is.bytes = call i1 @is_exactly(ptr %message, ptr @PyBytes_Type)
+  br i1 %is.bytes, label %fill, label %python, !prof !0
+fill:
+  %holder = call ptr @filled(ptr %handing, ptr %message)
+  %good = icmp ne ptr %holder, null
+  br i1 %good, label %sort, label %failed, !prof !0
+sort:
+  %reader = call ptr @pointer(ptr %handing, i64 40)
+  %encoder = call ptr @pointer(ptr %handing, i64 24)
+  %other = icmp ne ptr %encoder, null
+  br i1 %other, label %encode, label %same
+same:
+  call void @give_spare(ptr %handing, ptr %holder)
+  %read = call ptr @called(ptr %reader, ptr %message)
+  ret ptr %read
+encode:
+  %bytes = call ptr @called(ptr %encoder, ptr %holder)
+  call void @give_spare(ptr %handing, ptr %holder)
+  %encoded = icmp ne ptr %bytes, null
+  br i1 %encoded, label %read.bytes, label %failed, !prof !0
+read.bytes:
+  %made = call ptr @called(ptr %reader, ptr %bytes)
+  call void @Py_DecRef(ptr %bytes)
+  ret ptr %made
+failed:
+  ret ptr null
+python:
+  %answer = call ptr @leave_to_python(ptr %handing, ptr %arguments, i64 %nargsf, ptr %names)
+  ret ptr %answer
+}

@@ -1,0 +1,83 @@
+"""What hands over objects of other classes as bytes, in compiled code: an encoder's call for one of them, a decoder's `to`."""
+
+from __future__ import annotations
+
+import ctypes
+from functools import cache
+from typing import TYPE_CHECKING, Any, Literal
+
+from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.specs import (
+    DEFAULT,
+    READONLY,
+    SSIZE_T,
+    TP_CALL,
+    TP_MEMBERS,
+    VECTORCALL,
+    Member,
+    address_of,
+    from_spec,
+    with_attributes,
+    write_word,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+Kind = Literal["hand_in", "hand_out"]
+ENTRY, HANDING_BYTES = 64, 72
+
+
+class _Handing:
+    """Hands over objects of one class. Compiled code reads all of it, in this order in memory (`handing.ll`)."""
+
+    __slots__ = ("decode", "encode", "new", "over", "slow", "spare")
+    decode: Callable[..., Any]
+    encode: Callable[..., Any]
+    new: Callable[[], Any]
+    over: Callable[[Any], Any]
+    slow: Callable[..., Any]
+    spare: Any
+
+
+@cache
+def _handing_class() -> type:
+    members = (Member * 2)(Member(b"__vectorcalloffset__", SSIZE_T, ENTRY, READONLY, None))
+    slots = ((TP_MEMBERS, ctypes.addressof(members)), (TP_CALL, address_of("PyVectorcall_Call")))
+    created = from_spec("Handing", _Handing, HANDING_BYTES, DEFAULT | VECTORCALL, slots)
+    return with_attributes(created, {"__module__": __name__, "_members": members, "_code": library()})
+
+
+def handing(
+    kind: Kind,
+    *,
+    decode: Callable[..., Any],
+    encode: Callable[..., Any] | None,
+    new: Callable[[], Any],
+    over: Callable[[Any], Any],
+    slow: Callable[..., Any],
+) -> Callable[..., Any]:
+    """What hands over the objects of a class.
+
+    Parameters
+    ----------
+    kind
+        ``"hand_in"`` makes bytes of an object, ``"hand_out"`` an object of bytes.
+    decode, new
+        What fills a holder from bytes, and what makes one.
+    encode
+        What makes bytes of that holder. Without it bytes go on as they are once they have been decoded, which finds what is wrong.
+    over
+        The class's own function: to hand in, from an object to its bytes; to hand out, from bytes to an object.
+    slow
+        Does the same for other arguments.
+    """
+    code = library()
+    assert code is not None, "there is code that hands over"
+    handing_class: Any = _handing_class()
+    made = handing_class.__new__(handing_class)
+    made.decode, made.new, made.over, made.slow = decode, new, over, slow
+    if encode is not None:
+        made.encode = encode
+    write_word(id(made) + ENTRY, code[kind])
+    return made
