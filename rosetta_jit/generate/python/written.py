@@ -11,9 +11,9 @@ from rosetta_jit.generate.python.expressions import CODES, bare, expression
 from rosetta_jit.generate.python.given import Binder
 from rosetta_jit.generate.python.packed import ANY, Part, part_text, with_numbers
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
+from rosetta_jit.generate.python.varints import _varint  # pyright: ignore[reportPrivateUsage] - as generated modules name it
 from rosetta_jit.kernel.ir import WIDTH, Convert, Get
 from rosetta_jit.kernel.terms import index, type_of
-from rosetta_jit.lowering.codec.varint import varint_bytes
 from rosetta_jit.model.layout import Number
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -170,7 +170,7 @@ class Written:
         if not self.begun and all(part.codes for part in self.pending):
             inner, size = self.pending, sum(struct.calcsize(f"<{part.codes}") for part in self.pending)
             self.pending, self.begun, self.list_name = around.pending, around.begun, around.list_name
-            length = varint_bytes(size)
+            length = _varint(size)
             self._add("", "B" * len(length), tuple(map(str, length)))
             for part in inner:
                 self._add("" if part.order == ANY else part.order, part.codes, part.texts)
