@@ -233,7 +233,6 @@ def test_readers_of_logs_know_no_compiler():
         "logs.channel",
         "logs.parts",
         "logs.tables",
-        "logs.staging",
         "logs.converting",
     }
     wrong = [

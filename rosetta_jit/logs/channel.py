@@ -12,9 +12,7 @@ from rosetta_jit.errors import DecodeError, LogError
 from rosetta_jit.logs.ahead import ahead
 from rosetta_jit.logs.base import Wanted
 from rosetta_jit.logs.moments import nanoseconds, shown
-from rosetta_jit.logs.parts import CLOCKS, Part, decoded_staged
-from rosetta_jit.logs.staging import Staged, Staging
-from rosetta_jit.logs.walking import gathered
+from rosetta_jit.logs.parts import CLOCKS, Collector, nothing
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
@@ -29,7 +27,7 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.base import Block, Connection
     from rosetta_jit.logs.file import LogFile
     from rosetta_jit.logs.moments import Moment
-    from rosetta_jit.logs.parts import OnError
+    from rosetta_jit.logs.parts import OnError, Part
     from rosetta_jit.logs.walking import Rows
     from rosetta_jit.runtime.batch import Batch
 
@@ -103,19 +101,14 @@ class Channel:
         self, *, start: Moment | None = None, end: Moment | None = None, pieces: range | None = None, on_error: OnError = "raise"
     ) -> Iterator[Part]:
         """The messages, decoded some megabytes at a time into one batch that is filled again and again. State begins anew."""
-        decoder, staging, batch, first = self.decoder, Staging(), None, 0
-        decoder.reset()
-        for staged in staging.filled(ahead(self._blocks(start, end, pieces))):
-            part = decoded_staged(decoder, staged, batch, on_error, first)
-            batch = part.batch
-            yield part
-            first += len(staged.log_ns)
+        self.decoder.reset()
+        yield from Collector(self.decoder, on_error, expected=self.count).parts(ahead(self._blocks(start, end, pieces)))
 
     def decoded(self, block: Block, rows: Rows, on_error: OnError = "raise") -> Batch:
         """Messages of a block, in a batch of their own; an error says of which topic and time the message is."""
-        data, offsets = gathered(block.data, rows.begins, rows.ends)
+        data = block.data.copy() if self.decoder.borrows_ else block.data  # whose memory is used again
         with self._named(rows):
-            return self.decoder.many(data.data, offsets, on_error=on_error)
+            return self.decoder.many(data.data, np.stack([rows.begins, rows.ends]), on_error=on_error)
 
     def bridge_to(self, type_: str, encode: Options) -> Bridge:
         """What turns the messages into those of another type, which has the same fields (`rosetta_jit.api.bridges.Bridge.of`)."""
@@ -126,9 +119,8 @@ class Channel:
 
     def bridged(self, block: Block, rows: Rows, bridge: Bridge) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
         """What messages of a block become, and where each of them begins; an error says of which topic and time the message is."""
-        data, offsets = gathered(block.data, rows.begins, rows.ends)
         with self._named(rows):
-            return bridge.many(data.data, offsets)
+            return bridge.many(block.data.data, np.stack([rows.begins, rows.ends]))
 
     @contextmanager
     def _named(self, rows: Rows) -> Generator[None]:
@@ -202,13 +194,8 @@ class Channel:
             yield part, table_of(part, names, chosen, form)
             given = True
         if not given:
-            empty = self._empty()
+            empty = nothing(self.decoder)
             yield empty, table_of(empty, names, chosen, form)
-
-    def _empty(self) -> Part:
-        nothing = np.empty(0, np.int64)
-        staged = Staged(np.empty(0, np.uint8), np.zeros(1, np.int64), nothing, nothing)
-        return Part(self.decoder.many(b"", staged.offsets), nothing, nothing, 0, staged)
 
     def to_arrow(self, columns: Iterable[str] | None = None, **options: Any) -> pa.Table:
         """The messages as a `pyarrow.Table`, a row each.

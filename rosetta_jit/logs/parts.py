@@ -1,59 +1,162 @@
-"""Some decoded messages of a channel: one batch of them, and their times."""
+"""Decoded messages of a channel, some megabytes at a time. Each message is decoded where it lies, without a copy of its bytes.
+
+Chunks of logs may be small, and columns and tables are made of thousands of messages: so the messages of several blocks fill one batch.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
+import numpy as np
+
 from rosetta_jit.errors import DecodeError
+from rosetta_jit.runtime.places import Places
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    import numpy as np
+    from collections.abc import Iterable, Iterator, Mapping
+
     from numpy.typing import NDArray
 
     from rosetta_jit.api.programs import Decoder
-    from rosetta_jit.logs.staging import Staged
+    from rosetta_jit.logs.base import Block
+    from rosetta_jit.logs.walking import Rows
     from rosetta_jit.runtime.batch import Batch
+    from rosetta_jit.runtime.filling import Filling
 
 OnError: TypeAlias = Literal["raise", "skip", "mask"]
 CLOCKS = ("log_time", "publish_time")
 """The columns of times that a table has beside the fields of messages."""
 
+BYTES, MESSAGES = 4 << 20, 16_384
+"""The most that a part is made of; a longer message is alone."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Refused:
+    """A message that could not be decoded: when it was logged, and its bytes."""
+
+    log_ns: int
+    data: bytes
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
-    """Some decoded messages of a channel, and their times in nanoseconds since 1970.
+    """Some decoded messages of a channel. It is good until the next part is asked for, whose messages take its memory.
 
     Attributes
     ----------
     batch
-        Filled again for the next part.
+        The messages.
     log_ns, publish_ns
-        Of the messages in it.
+        Their times in nanoseconds since 1970.
     first
         The number of the first among all messages that are read.
-    staged
-        All messages as bytes, also those that ``batch.errors`` has.
+    given
+        How many were read, those that could not be decoded included.
+    refused
+        Of these, those that could not be decoded, as `Batch.errors` numbers them.
     """
 
     batch: Batch
     log_ns: NDArray[np.int64]
     publish_ns: NDArray[np.int64]
     first: int
-    staged: Staged
+    given: int
+    refused: Mapping[int, Refused]
 
 
-def decoded_staged(decoder: Decoder, staged: Staged, batch: Batch | None, on_error: OnError, first: int) -> Part:
-    """Decode what is staged into a batch, if there is one already; ``first`` is the number of its first message among all.
+def nothing(decoder: Decoder) -> Part:
+    """A part without messages."""
+    times = np.empty(0, np.int64)
+    return Part(decoder.many(b"", np.zeros(1, np.int64)), times, times, 0, 0, {})
 
-    Raises
-    ------
-    DecodeError
-        A message is not what its type promises; the path begins with its number among all.
+
+class Collector:
+    """Decodes messages of one channel into parts.
+
+    Parameters
+    ----------
+    first
+        How many messages of the channel were read before.
+    size
+        The most bytes that the messages of a part have together.
+    expected
+        How many messages there are, if that is known: memory is taken for as many as are going to be in a part.
     """
-    try:
-        batch = decoder.many(staged.data.data, staged.offsets, into=batch, on_error=on_error)
-        return Part(batch, staged.log_ns[batch.kept], staged.publish_ns[batch.kept], first, staged)
-    except DecodeError as error:
-        number, _, path = error.path.removeprefix("[").partition("]")
-        raise DecodeError(error.kind, f"[{first + int(number)}]{path}", error.detail, error.offset) from None
+
+    def __init__(self, decoder: Decoder, on_error: OnError, *, first: int = 0, size: int = BYTES, expected: int | None = None) -> None:
+        self._decoder, self._first, self._size, self._expected = decoder, first, size, expected or 0
+        self._on_error: OnError = on_error
+        self._batch: Batch | None = None
+        self._filling: Filling | None = None
+        self._rows = np.empty((4, MESSAGES), np.int64)
+        self._places = Places(self._rows[0], self._rows[1])
+        self._bytes = 0
+        self._refused: dict[int, Refused] = {}
+
+    def parts(self, blocks: Iterable[Block]) -> Iterator[Part]:
+        """The messages of all blocks."""
+        for block in blocks:
+            yield from self.put(block, block.rows)
+        yield from self.rest()
+
+    def put(self, block: Block, rows: Rows) -> Iterator[Part]:
+        """Decode messages of a block; gives the parts that they make full.
+
+        Raises
+        ------
+        DecodeError
+            A message is not what its type promises; the path begins with its number among all.
+        """
+        done, ends = 0, np.cumsum(rows.ends - rows.begins)
+        while done < len(rows):
+            before = int(ends[done - 1]) if done else 0
+            most = int(np.searchsorted(ends, self._size - self._bytes + before, side="right")) - done
+            taken = min(most, MESSAGES - self._count) or (0 if self._count else 1)
+            if taken:
+                self._take(block, rows.only(slice(done, done + taken)))
+                self._bytes += int(ends[done + taken - 1]) - before
+                done += taken
+            if done < len(rows) or self._decoder.borrows_:  # one batch borrows from one block
+                yield from self.rest()
+
+    @property
+    def _count(self) -> int:
+        return 0 if self._filling is None else self._filling.count
+
+    def _take(self, block: Block, rows: Rows) -> None:
+        filling = self._filling = self._filling or self._decoder.filling_(self._likely(rows), self._batch, self._on_error)
+        self._batch, first = filling.batch, filling.count
+        count = first + len(rows)
+        self._rows[:, first:count] = rows.begins, rows.ends, rows.log_ns, rows.publish_ns
+        try:
+            with filling.batch.lanes as lanes:
+                self._decoder.fill_(filling, block.data, self._places, count)
+                lanes.source[0] = block.data.data if self._decoder.borrows_ else None
+        except DecodeError as error:
+            number, _, path = error.path.removeprefix("[").partition("]")
+            raise DecodeError(error.kind, f"[{self._first + int(number)}]{path}", error.detail, error.offset) from None
+        for number in filling.batch.errors:
+            if number >= first:
+                begin, end = self._places.span(number)
+                self._refused[number] = Refused(int(self._rows[2, number]), block.data[begin:end].tobytes())
+
+    def _likely(self, rows: Rows) -> int:
+        """How many messages a part is going to have that begins with some."""
+        mean = max(1, int((rows.ends - rows.begins).sum()) // len(rows))
+        return max(len(rows), min(self._size // mean, MESSAGES, self._expected - self._first))
+
+    def rest(self) -> Iterator[Part]:
+        """What is decoded and was not given yet; nothing is left."""
+        filling = self._filling
+        if filling is not None and filling.count:
+            with filling.batch.lanes:
+                batch = filling.end()
+            log_ns, publish_ns = self._rows[2:, : filling.count]
+            if batch.kept_ is not None:
+                log_ns, publish_ns = log_ns[batch.kept], publish_ns[batch.kept]
+            part = Part(batch, log_ns, publish_ns, self._first, filling.count, self._refused)
+            self._first += filling.count
+            self._filling, self._bytes, self._refused = None, 0, {}
+            yield part

@@ -23,7 +23,6 @@ define private i64 @little64(ptr %at) alwaysinline {
 
 declare i32 @llvm.bswap.i32(i32)
 declare i64 @llvm.bswap.i64(i64)
-declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)
 
 define private i64 @big32(ptr %at) alwaysinline {
   %value = load i32, ptr %at, align 1
@@ -336,32 +335,4 @@ other:
 broken:
   %result.broken = call i64 @stop(ptr %state, i64 %at, i64 4, i64 0, i64 %count)
   ret i64 %result.broken
-}
-
-; The messages of some rows, one behind the other, from the first offset on: there is one offset more than there are messages. The caller has checked that all begin and end
-; within the data, and that the target has room.
-define void @gather(ptr %data, ptr %begins, ptr %ends, i64 %count, ptr %target, ptr %offsets) {
-  %first = load i64, ptr %offsets
-  br label %head
-head:
-  %index = phi i64 [ 0, %0 ], [ %next, %each ]
-  %place = phi i64 [ %first, %0 ], [ %place.next, %each ]
-  %offset.at = getelementptr i64, ptr %offsets, i64 %index
-  store i64 %place, ptr %offset.at
-  %more = icmp ult i64 %index, %count
-  br i1 %more, label %each, label %done
-each:
-  %begin.at = getelementptr i64, ptr %begins, i64 %index
-  %begin = load i64, ptr %begin.at
-  %end.at = getelementptr i64, ptr %ends, i64 %index
-  %end = load i64, ptr %end.at
-  %size = sub i64 %end, %begin
-  %from = getelementptr i8, ptr %data, i64 %begin
-  %to = getelementptr i8, ptr %target, i64 %place
-  call void @llvm.memcpy.p0.p0.i64(ptr %to, ptr %from, i64 %size, i1 false)
-  %place.next = add i64 %place, %size
-  %next = add i64 %index, 1
-  br label %head
-done:
-  ret void
 }

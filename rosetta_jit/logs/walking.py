@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.code.native import Library
 
 WALKS = ("mcap", "lcm", "bag")
-SYMBOLS = (*WALKS, "gather")
 ROOM = 65_536
 """Messages a walk finds in one call."""
 
@@ -34,7 +33,6 @@ FEW = 4
 """Channels that are compared one by one, each in a tenth of the time that `numpy.isin` takes."""
 
 _WALK = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
-_GATHER = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p)
 
 
 class Why(IntEnum):
@@ -113,31 +111,6 @@ _LEAST = {"mcap": 31, "lcm": 28, "bag": 8}
 """Bytes that a message takes at least."""
 
 
-def gathered(data: NDArray[np.uint8], begins: NDArray[np.int64], ends: NDArray[np.int64]) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
-    """Messages of a stretch one behind the other, and their offsets, as `Decoder.many` takes them; not copied where they lie so."""
-    if not len(begins):
-        return data[:0], np.zeros(1, np.int64)
-    if bool((begins[1:] == ends[:-1]).all()):
-        return data, np.append(begins, ends[-1])
-    target, offsets = np.empty(int((ends - begins).sum()), np.uint8), np.zeros(len(begins) + 1, np.int64)
-    gather_into(data, begins, ends, target, offsets)
-    return target, offsets
-
-
-def gather_into(
-    data: NDArray[np.uint8], begins: NDArray[np.int64], ends: NDArray[np.int64], target: NDArray[np.uint8], offsets: NDArray[np.int64]
-) -> None:
-    """Put messages of a stretch one behind the other, from byte ``offsets[0]`` of the target on; the other offsets are written."""
-    begins, ends = np.ascontiguousarray(begins), np.ascontiguousarray(ends)
-    assert len(begins) == len(ends) == len(offsets) - 1 > 0
-    assert int(begins.min()) >= 0
-    assert int(ends.max()) <= data.size
-    assert bool((begins <= ends).all())
-    assert 0 <= int(offsets[0]) <= target.size - int((ends - begins).sum())
-    function = _GATHER(_library()["gather"])
-    function(data.ctypes.data, begins.ctypes.data, ends.ctypes.data, len(begins), target.ctypes.data, offsets.ctypes.data)
-
-
 @cache
 def _function(name: str) -> Any:
     return _WALK(_library()[name])
@@ -145,7 +118,7 @@ def _function(name: str) -> Any:
 
 @cache
 def _library() -> Library:
-    return library_of("walk.ll", SYMBOLS)
+    return library_of("walk.ll", WALKS)
 
 
 def library_of(file: str, symbols: tuple[str, ...]) -> Library:

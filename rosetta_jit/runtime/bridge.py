@@ -15,9 +15,9 @@ from rosetta_jit.errors import DecodeError, EncodeError, InUse
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, GROW, NUMBER, USED, lane_word
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import Context, bind_call
-from rosetta_jit.runtime.decoder import laid_out
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_SPARES
+from rosetta_jit.runtime.places import laid_out
 from rosetta_jit.runtime.program import Told, entry_of
 from rosetta_jit.runtime.registers import NOTHING_KEPT, Kept, address_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.model.layout import Layout
     from rosetta_jit.runtime.code.native import Library
+    from rosetta_jit.runtime.places import Places
 
 _NOTHING = np.empty(0, np.uint8)
 
@@ -38,10 +39,10 @@ FULL = 1
 
 _MANY = ctypes.CFUNCTYPE(
     ctypes.c_int64,
-    *(ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64),
+    *(ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64),
     *(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p),
 )
-"""The compiled `many` (`backends/entry/bridge.ll`): buffer, its size, offsets, first, count, state, target, its room, places."""
+"""The compiled `many` (`backends/entry/bridge.ll`): buffer, its size, begins, ends, first, count, state, target, its room, places."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,25 +134,25 @@ class BridgeBase(Told):
         ----------
         messages
             A bytes-like object in which they lie, with ``offsets``; or one such object for each, which costs a copy.
-        offsets : ndarray of int64, shape (n + 1,)
-            Message i is bytes ``offsets[i]`` to ``offsets[i + 1]``.
+        offsets : ndarray of int64, shape (n + 1,) or (2, n)
+            Message i is bytes ``offsets[i]`` to ``offsets[i + 1]``; of two rows, bytes ``offsets[0, i]`` to ``offsets[1, i]``.
 
         Returns
         -------
         buffer : ndarray of uint8
             What they become, one behind the other.
         offsets : ndarray of int64, shape (n + 1,)
-            As above, of the buffer.
+            Where each of them begins in the buffer, and the last ends.
 
         Raises
         ------
         DecodeError, EncodeError
             As for one message; the path begins with its number, ``[17]``.
         ValueError
-            The offsets are not int64 of one dimension, fall, or leave the buffer.
+            The offsets are not int64, have another shape, fall, or leave the buffer.
         """
         source, places = laid_out(cast("Any", messages), offsets)
-        data, count = run.readable(source), len(places) - 1
+        data, count = run.readable(source), len(places)
         ends = np.zeros(count + 1, np.int64)
         target = np.empty(max(2 * data.size, 64), np.uint8)
         with self._free() as lanes, self._keeping(lanes):
@@ -170,34 +171,34 @@ class BridgeBase(Told):
     def _many(
         self,
         data: NDArray[np.uint8],
-        offsets: NDArray[np.int64],
+        places: Places,
         first: int,
         lanes: Lanes,
         target: NDArray[np.uint8],
         ends: NDArray[np.int64],
     ) -> int:
         """Go on from one message; the first that could not be done."""
-        count = len(offsets) - 1
+        count = len(places)
         if self._loaded.library is None:
-            run.note(lanes, 0 if first == count or not 0 <= offsets[first] <= offsets[first + 1] <= data.size else run.GROW)
+            run.note(lanes, 0 if first == count or not places.are_in(first, data.size) else run.GROW)
             return first
         many = _MANY(self._loaded.library["many"])
-        buffers = data.ctypes.data, data.size, offsets.ctypes.data, first, count
+        buffers = data.ctypes.data, data.size, *places.addresses, first, count
         return many(*buffers, lanes.address, target.ctypes.data, target.size, ends.ctypes.data)
 
     def _unstuck(
         self,
         data: NDArray[np.uint8],
-        offsets: NDArray[np.int64],
+        places: Places,
         number: int,
         lanes: Lanes,
         target: NDArray[np.uint8],
         ends: NDArray[np.int64],
     ) -> NDArray[np.uint8]:
         """Do one message for which lanes must grow, or say what is wrong with it; gives the target, with room for it."""
-        begin, end = int(offsets[number]), int(offsets[number + 1])
         if run.result_of(lanes) == 0:
-            raise ValueError(f"offsets {begin} and {end} of message {number} fall, or leave the buffer of {data.size} bytes")
+            raise places.broken(number, data.size)
+        begin, end = places.span(number)
         place = int(ends[number])
         try:
             size = self._taken(lanes, data, begin, end)

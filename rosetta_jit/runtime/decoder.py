@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from threading import get_ident, local
-from typing import TYPE_CHECKING, Any, Literal, TypeVar, cast, overload
+from typing import TYPE_CHECKING, Any, TypeVar, cast, overload
 from weakref import WeakKeyDictionary
 
-import numpy as np
-
-from rosetta_jit.errors import DecodeError
-from rosetta_jit.kernel.state import CAPACITY, CLEAN, USED, VALID, lane_word
+from rosetta_jit.kernel.state import CLEAN, NUMBER, VALID
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.attributes.methods import turning
 from rosetta_jit.runtime.callable import FAILED, THREAD
+from rosetta_jit.runtime.filling import Filling
 from rosetta_jit.runtime.joining import NOT_WHOLE, broken_wires, joining
 from rosetta_jit.runtime.limits import MAX_CLASSES
-from rosetta_jit.runtime.memory import address_of
-from rosetta_jit.runtime.program import Loaded, Program, is_foreign, one_by_one
+from rosetta_jit.runtime.places import laid_out, source_of
+from rosetta_jit.runtime.program import Loaded, Program, is_foreign
 from rosetta_jit.runtime.room import roomier
 from rosetta_jit.runtime.whole_objects import decoding, decoding_whole
 from rosetta_jit.startup.cached import cached_property
@@ -25,16 +23,18 @@ from rosetta_jit.startup.cached import cached_property
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    import numpy as np
     from _typeshed import ReadableBuffer as Buffer
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.batch import Batch
+    from rosetta_jit.runtime.filling import OnError
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.holder.objects.giving import Givers
     from rosetta_jit.runtime.lanes import Lanes
+    from rosetta_jit.runtime.places import Places
 
 _Object = TypeVar("_Object")
-OnError = Literal["raise", "skip", "mask"]
 
 
 class DecoderBase(Program):
@@ -152,8 +152,8 @@ class DecoderBase(Program):
         ----------
         messages
             A bytes-like object in which they lie, with ``offsets``; or one such object for each, which costs a copy.
-        offsets : ndarray of int64, shape (n + 1,)
-            Message i is bytes ``offsets[i]`` to ``offsets[i + 1]``.
+        offsets : ndarray of int64, shape (n + 1,) or (2, n)
+            Message i is bytes ``offsets[i]`` to ``offsets[i + 1]``; of two rows, bytes ``offsets[0, i]`` to ``offsets[1, i]``.
         into
             A batch to fill again, so that no memory is taken; a new one by default.
         on_error
@@ -165,86 +165,59 @@ class DecoderBase(Program):
         DecodeError
             A message is not what the schema promises; its path begins with the number of the message, ``[17]``.
         ValueError
-            The offsets are not int64 of one dimension, fall, or leave the buffer.
+            The offsets are not int64, have another shape, fall, or leave the buffer.
         InUse
             Another thread is filling, changing or encoding the batch.
+        """
+        source, places = laid_out(cast("Any", messages), offsets)
+        data = run.readable(source)
+        filling = self.filling_(len(places), into, on_error)
+        lanes = filling.batch.lanes
+        before = lanes.source[0]
+        with lanes:
+            self.fill_(filling, data, places, len(places))
+            lanes.source[0] = source if self._loaded.borrow else None
+            batch = filling.end()
+        del before  # outside: what ends with it may run any code
+        return batch
+
+    @property
+    def borrows_(self) -> bool:
+        """Whether bytes fields show the messages that they came in."""
+        return self._loaded.borrow
+
+    def filling_(self, count: int, into: Batch | None = None, on_error: OnError = "raise") -> Filling:
+        """What decodes many messages step by step, about so many: into a batch, or into a new one.
+
+        Raises
+        ------
+        ValueError
+            There is no such way to treat errors.
+        TypeError
+            The batch is of another type.
         """
         self._refuse_part("with many others")
         if on_error not in ("raise", "skip", "mask"):
             raise ValueError(f'on_error is "raise", "skip" or "mask", not {on_error!r}')
-        source, places = laid_out(cast("Any", messages), offsets)
-        data = run.readable(source)
-        batch = self._batch(len(places) - 1) if into is None else into
-        lanes = self._lanes_of(batch)
-        before = lanes.source[0]
-        with lanes, self._keeping(lanes):
-            batch.errors, batch.kept_ = {}, None
-            self._fill(lanes, data, places, None if on_error == "raise" else batch.errors)
-            if on_error == "skip" and batch.errors:
-                batch.kept_ = _leave_out(lanes, list(batch.errors))
-            lanes.words[VALID] = CLEAN
-            lanes.source[0] = source if self._loaded.borrow else None
-        del before  # outside: what ends with it may run any code
-        return batch
+        batch = self._batch(count) if into is None else into
+        self._lanes_of(batch)
+        return Filling(self._loaded, batch, on_error, count, self._compiled_many)
+
+    def fill_(self, filling: Filling, data: NDArray[np.uint8], places: Places, count: int) -> None:
+        """One step, inside ``with lanes:``. Message ``i`` of all steps lies at place ``i``; there are ``count`` behind this step."""
+        lanes, first = filling.batch.lanes, filling.count
+        with self._keeping(lanes):
+            if not first:
+                filling.begin()
+            self._tell(lanes, count - first)
+            if first and self._asks:
+                lanes.words[NUMBER] -= first  # kernels add the row
+            filling.add(data, places, count)
 
     def _batch(self, count: int) -> Batch:
         from rosetta_jit.runtime.batch import Batch
 
         return Batch.room(self._loaded.holder_type, max(count, 1))
-
-    def _fill(self, lanes: Lanes, data: NDArray[np.uint8], places: NDArray[np.int64], errors: dict[int, DecodeError] | None) -> None:
-        """Decode all messages, making room on the way. Where errors are collected, messages that have one are left empty."""
-        count = len(places) - 1
-        _make_rows(lanes, count)
-        self._tell(lanes, count)
-        done = self._many(data, places, 0, lanes)
-        while done < count:
-            error = self._unstuck(lanes, data, places, done)
-            if isinstance(error, DecodeError) and errors is not None:
-                errors[done] = error
-                lanes.row_words(0, done, 1)[:] = 0
-                lanes.initialise(lanes.plan.initial, done, 1)
-                done += 1
-            elif error is not None:
-                raise error
-            done = self._many(data, places, done, lanes)
-
-    def _unstuck(self, lanes: Lanes, data: NDArray[np.uint8], places: NDArray[np.int64], done: int) -> Exception | None:
-        """Make the room that was missing, if it was that; otherwise what is wrong with the message."""
-        result = run.result_of(lanes)
-        if result != run.GROW:
-            return self._many_error(result, data, places, done, lanes)
-        try:
-            with run.decoding():
-                self._limit(lanes, places, done)
-                _grow_for_all(lanes, done, len(places) - 1)
-        except DecodeError as error:
-            return error
-        return None
-
-    def _limit(self, lanes: Lanes, offsets: NDArray[np.int64], done: int) -> None:
-        """As `run.limit`, of the message behind those that the lanes hold."""
-        lane, _ = run.missing(lanes)
-        used = lanes.words[lane_word(lane, USED)] if lane < len(lanes.buffers) else 0
-        try:
-            run.limit(lanes, int(offsets[done + 1] - offsets[done]), self._loaded.limit, used)
-        except DecodeError as error:
-            raise DecodeError(error.kind, f"[{done}]{error.path}", error.detail, error.offset) from None
-
-    def _many(self, data: NDArray[np.uint8], offsets: NDArray[np.int64], first: int, lanes: Lanes) -> int:
-        """Decode from one message on; the first that could not be."""
-        count = len(offsets) - 1
-        if self._loaded.library is not None:
-            where = address_of(offsets) if offsets.flags.writeable else offsets.ctypes.data
-            return self._compiled_many(data.ctypes.data, data.size, where, first, count, lanes.address)
-        return one_by_one(self._loaded.kernel, data, offsets, first, lanes)
-
-    def _many_error(self, result: int, data: NDArray[np.uint8], offsets: NDArray[np.int64], done: int, lanes: Lanes) -> Exception:
-        begin, end = int(offsets[done]), int(offsets[done + 1])
-        if result == 0:
-            return ValueError(f"offsets {begin} and {end} of message {done} fall, or leave the buffer of {data.size} bytes")
-        error = run.decode_error(self._loaded.sites[-1 - result], lanes, begin, end)
-        return DecodeError(error.kind, f"[{done}]{error.path}", error.detail, error.offset)
 
     def _call_slowly(self, *arguments: object, **named: object) -> object:
         """Whatever the entry does not do: wrong arguments, lanes that are too small, errors, holders that borrow."""
@@ -256,7 +229,7 @@ class DecoderBase(Program):
         if len(arguments) == 1 and self._context[1][THREAD] != get_ident():
             return self(message) if self._becomes_mine() else self(message, self._holder_of_thread())
         holder = self._holder if len(arguments) == 1 else self._checked(arguments[1])
-        source, before = _source(message), holder.lanes_.source[0]
+        source, before = source_of(message), holder.lanes_.source[0]
         data = run.readable(source)
         if self._loaded.wire is not None:
             self._join(data, holder, self._loaded.wire)
@@ -314,59 +287,3 @@ class DecoderBase(Program):
         if not hasattr(holders, "own"):
             holders.own = self.new()
         return holders.own
-
-
-def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | memoryview, NDArray[np.int64]]:
-    """Messages in one buffer, and where each begins and the last ends."""
-    if offsets is not None:
-        return _source(messages), _offsets(offsets)
-    try:
-        memoryview(messages)
-    except TypeError:
-        pieces = list(messages)
-    else:
-        raise TypeError("messages in one buffer take offsets, which say where each begins; without them, give a list of messages")
-    sizes = [len(each) if type(each) is bytes else memoryview(each).nbytes for each in pieces]
-    return b"".join(pieces), np.cumsum([0, *sizes], dtype=np.int64)
-
-
-def _source(message: Any) -> bytes | memoryview:
-    """What has the bytes of a message: asked once, because an object need not give out the same memory twice."""
-    return message if isinstance(message, bytes) else memoryview(message)
-
-
-def _offsets(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
-    places = np.ascontiguousarray(offsets)
-    if places.dtype != np.int64 or places.ndim != 1 or not places.size:
-        raise ValueError("offsets are an int64 array of one dimension, one longer than there are messages")
-    return places
-
-
-def _make_rows(lanes: Lanes, count: int) -> None:
-    """So many rows for messages that are going to be decoded."""
-    lanes.begin_filling()
-    missing = count - lanes.words[lane_word(0, CAPACITY)]
-    if missing > 0:
-        lanes.grow(0, missing)
-    for lane in range(1, len(lanes.buffers)):
-        lanes.words[lane_word(lane, USED)] = 0
-    lanes.words[lane_word(0, USED)] = lanes.rows = count
-
-
-def _grow_for_all(lanes: Lanes, done: int, count: int) -> None:
-    """Guess from the messages so far what all will take, so that a lane does not move often."""
-    lane, rows = run.missing(lanes)
-    if lane >= len(lanes.buffers):
-        lanes.grow(lane, rows)
-        return
-    used = lanes.words[lane_word(lane, USED)]
-    lanes.grow(lane, max(rows, (used * count) // (done + 1) + rows - lanes.words[lane_word(lane, CAPACITY)]))
-
-
-def _leave_out(lanes: Lanes, numbers: list[int]) -> NDArray[np.int64]:
-    """Do without some rows of lane 0, which refer to nothing; the numbers of the others."""
-    kept = np.delete(np.arange(lanes.rows), numbers)
-    words = lanes.row_words(0, 0, lanes.rows)
-    words[: len(kept)] = words[kept]
-    lanes.words[lane_word(0, USED)] = lanes.rows = len(kept)
-    return kept

@@ -34,11 +34,16 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.code.native import Library
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.lanes import Lanes
+    from rosetta_jit.runtime.places import Places
     from rosetta_jit.runtime.plan import Plan
     from rosetta_jit.runtime.registers import Registers
 
-MANY = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
-"""The compiled `many` (`backends/entry/many.ll`): buffer, its size, offsets, first, count, state; the first message that was not done."""
+MANY = ctypes.CFUNCTYPE(
+    *(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p),
+    *(ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p),
+)
+"""The compiled `many` (`backends/entry/many.ll`): buffer, its size, begins, ends, first, count, state.
+It gives the first message that was not done."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -263,10 +268,9 @@ class Program(Told):
         return {}
 
     @cached_property
-    def _compiled_many(self) -> Callable[..., int]:
-        """The compiled `many`, which takes addresses."""
-        assert self._loaded.library is not None, "there is code"
-        return MANY(self._loaded.library["many"])
+    def _compiled_many(self) -> Callable[..., int] | None:
+        """The compiled `many`, which takes addresses; None where there is no code."""
+        return None if self._loaded.library is None else MANY(self._loaded.library["many"])
 
     def _is_plain(self, encodings: frozenset[str | None]) -> bool:  # noqa: ARG002  whatever they are
         """Whether its bytes are those of its holders in one of some encodings, with nothing mapped. Who makes programs knows that."""
@@ -295,12 +299,12 @@ def is_foreign(value: object) -> bool:
 
 
 def one_by_one(
-    kernel: run.Run, data: NDArray[np.uint8], offsets: NDArray[np.int64], first: int, lanes: Lanes, size: run.Run | None = None
+    kernel: run.Run, data: NDArray[np.uint8], places: Places, first: int, count: int, lanes: Lanes, size: run.Run | None = None
 ) -> int:
     """What the compiled `many` does, in Python."""
-    for number in range(first, len(offsets) - 1):
-        begin, end = int(offsets[number]), int(offsets[number + 1])
-        result = 0 if 0 <= begin <= end <= data.size else None
+    for number in range(first, count):
+        begin, end = places.span(number)
+        result = 0 if places.are_in(number, data.size) else None
         if result is not None and size is not None:
             result = min(size(None, 0, run.ANY_SIZE, lanes, number), 0)
         if result == 0:
@@ -308,4 +312,4 @@ def one_by_one(
         if result is None or result < 0:
             run.note(lanes, result or 0)
             return number
-    return len(offsets) - 1
+    return count

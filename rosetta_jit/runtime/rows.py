@@ -40,7 +40,7 @@ def numpys(words: int) -> Indices:
 LONG = 256
 """Elements a span from which it is quicker to copy span by span than element by element."""
 
-BLOCK = 512
+BLOCK = 256
 """Rows whose words are transposed together: as many as the innermost cache has room for."""
 
 

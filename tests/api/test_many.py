@@ -75,6 +75,26 @@ def test_what_is_no_list_of_messages(decode, messages):
         decode.many(messages, on_error="ignore")
 
 
+def test_messages_where_they_lie(decode, messages, broken):
+    """With begins and ends, there may be other bytes between messages, and they may lie in any order."""
+    data, spans = bytearray(b"head"), []
+    for message in broken:
+        spans.append((len(data), len(data) + len(message)))
+        data += message + b"gap"
+    places = np.array(spans, np.int64).T
+    assert read(decode.many(data, places, on_error="skip")) == [plain(each) for each in range(8) if each not in BROKEN]
+    assert read(decode.many(bytes(data), places[:, [7, 2, 2]])) == [plain(7), plain(2), plain(2)]
+    assert len(decode.many(data, places[:, :0])) == 0
+    with pytest.raises(rj.DecodeError, match=r"`\[1\]"):
+        decode.many(data, places)
+    for wrong in ([[0], [len(data) + 1]], [[-1], [4]], [[8], [4]]):
+        with pytest.raises(ValueError, match="message 0 fall, or leave the buffer"):
+            decode.many(data, np.array(wrong, np.int64))
+    for wrong in (np.zeros((3, 2), np.int64), np.zeros((2, 2), np.int32), np.zeros((1, 2, 2), np.int64), np.zeros(0, np.int64)):
+        with pytest.raises(ValueError, match="of two rows: begins and ends"):
+            decode.many(data, wrong)
+
+
 def test_errors_are_raised(decode, broken):
     with pytest.raises(rj.DecodeError, match=r"^truncated.*\[1\]"):
         decode.many(broken)

@@ -16,13 +16,14 @@ from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.state import EPOCH, LANES, RESULT, USED, VALID, lane_word
 from rosetta_jit.runtime.callable import THREAD, Context, bind_call, bind_state, callable_class, is_native, message_base
 from rosetta_jit.runtime.code import native
+from rosetta_jit.runtime.places import Places
+from rosetta_jit.runtime.program import MANY
 from tests.backends import kernels
 from tests.backends.engines import outcome
 from tests.backends.holders import rows
 from tests.backends.messages import GOOD, hostile
 
 pytestmark = pytest.mark.skipif(not is_native(), reason="entries know CPython 3.11 to 3.14 alone")
-MANY = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
 SIZES = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
 
 
@@ -234,7 +235,8 @@ def test_encoding_into_what_does_not_take_it():
 
 
 def many(made, buffer, offsets, count, first=0):
-    return MANY(made.library["many"])(buffer.ctypes.data, buffer.size, offsets.ctypes.data, first, count, made.rows.state.ctypes.data)
+    places = Places.of(offsets).addresses
+    return MANY(made.library["many"])(buffer.ctypes.data, buffer.size, *places, first, count, made.rows.state.ctypes.data)
 
 
 def test_decodes_many():

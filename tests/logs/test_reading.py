@@ -12,7 +12,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.errors import DecodeError, LogError
 
-from .made import BAGS, COMPRESSIONS, LCM_TYPES, START, STEP, expected, time_of, values, write_bag, write_lcm, write_mcap
+from .made import BAGS, COMPRESSIONS, LCM_TYPES, POINT, START, STEP, expected, time_of, values, write_bag, write_lcm, write_mcap
 
 COUNT = 200
 
@@ -139,6 +139,69 @@ def test_a_message_that_its_type_does_not_allow(folder):
         list(log.messages())
     assert log["/x"].to_arrow(on_error="skip")["x"].to_pylist() == [1, 3]
     assert [each.time for each in log.messages(on_error="skip")] == [0, 2]
+
+
+def test_parts_of_many_blocks(folder):
+    """Messages of several chunks fill one batch; those that cannot be decoded keep their bytes and times."""
+    from mcap.writer import Writer
+
+    path, bad = folder / "chunks.mcap", b"\0\1\0\0\1"
+    with path.open("wb") as file:
+        writer = Writer(file, chunk_size=150)
+        writer.start()
+        channel = writer.register_channel("/x", "cdr", writer.register_schema("t/msg/X", "ros2msg", b"int32 x"))
+        for number in range(40):
+            data = bad if number in (3, 17) else b"\0\1\0\0" + number.to_bytes(4, "little")
+            writer.add_message(channel, log_time=100 + number, publish_time=number, data=data)
+        writer.finish()
+    log, good = rj.open(path), [number for number in range(40) if number not in (3, 17)]
+    assert len(list(log.blocks())) > 5
+    (part,) = log["/x"].parts(on_error="skip")
+    assert part.batch.x.tolist() == part.publish_ns.tolist() == good
+    assert (part.first, part.given, part.batch.kept.tolist()) == (0, 40, good)
+    assert {number: (each.log_ns, each.data) for number, each in part.refused.items()} == {3: (103, bad), 17: (117, bad)}
+    with pytest.raises(DecodeError, match=r"`\[3\]"):
+        log["/x"].to_arrow()
+    lent = rj.open(path, borrow=True)["/x"]
+    assert lent.to_arrow(on_error="mask")["x"].to_pylist() == [number if number in good else 0 for number in range(40)]
+
+
+def test_bytes_that_are_lent(folder):
+    """A batch borrows from one block, whose memory is used again: messages keep a copy of their bytes."""
+    from mcap.writer import Writer
+
+    path = folder / "lent.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file, chunk_size=300)
+        writer.start()
+        channel = writer.register_channel("/x", "cdr", writer.register_schema("t/msg/X", "ros2msg", b"uint8[] data"))
+        for number in range(30):
+            writer.add_message(channel, log_time=number, publish_time=number, data=b"\0\1\0\0\x20\0\0\0" + bytes([number]) * 32)
+        writer.finish()
+    log = rj.open(path, borrow=True)
+    assert [bytes(each.message.data) for each in list(log.messages())] == [bytes([number]) * 32 for number in range(30)]
+    assert log["/x"].to_arrow()["data"].to_pylist() == [bytes([number]) * 32 for number in range(30)]
+
+
+def test_counters_go_on_from_part_to_part(folder, monkeypatch):
+    """A mapping that counts messages counts those of all blocks and parts."""
+    monkeypatch.setattr("rosetta_jit.logs.parts.MESSAGES", 60)
+    files = {
+        "n.proto": 'syntax = "proto3"; package n; message Counted { int64 number = 1; double x = 2; }',
+        "t/msg/Point.msg": POINT,
+        "n.mapping": """import "n.proto"
+import "t/msg/Point.msg"
+data-holder: n.Counted
+wire-schema: t/msg/Point
+unpack-rules:
+  ignore rest
+  .number = counter()
+  .x = .x
+""",
+    }
+    log = rj.open(write_mcap(folder / "counted.mcap", COUNT), schema=files)
+    table = log["/a", "n.mapping"].to_arrow()
+    assert table["number"].to_pylist() == list(range(COUNT))
 
 
 def test_two_readings_at_once(log):

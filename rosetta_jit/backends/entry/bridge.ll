@@ -185,11 +185,11 @@ failed:
   ret i64 %result
 }
 
-; Many messages in one call, without the interpreter lock. Message i lies at offsets[i] to offsets[i + 1], and is written to places[i] on,
+; Many messages in one call, without the interpreter lock. Message i lies at begins[i] to ends[i], and is written to places[i] on,
 ; which is where places[i + 1] then says that it ends. Returns the first message that was not done: count, if all were. Then word 9 of the state
-; (`kernel.state.RESULT`) has a kernel's failure, 0 where the offsets fall or leave the buffer, or 1 where there is no room for what would be written. Each
-; offset is loaded once where it is checked and used, because another thread may write to it meanwhile.
-define i64 @many(ptr %buffer, i64 %size, ptr %offsets, i64 %first, i64 %count, ptr %state, ptr %target, i64 %room, ptr %places) {
+; (`kernel.state.RESULT`) has a kernel's failure, 0 where the message ends before it begins or leaves the buffer, or 1 where there is no room for what would be
+; written. Each place is loaded once where it is checked and used, because another thread may write to it meanwhile.
+define i64 @many(ptr %buffer, i64 %size, ptr %begins, ptr %ends, i64 %first, i64 %count, ptr %state, ptr %target, i64 %room, ptr %places) {
   %number.at = getelementptr i64, ptr %state, i64 13
   %start.at = getelementptr i64, ptr %places, i64 %first
   %start = load i64, ptr %start.at
@@ -201,10 +201,10 @@ head:
   br i1 %more, label %each, label %all
 each:
   call void @save_registers(ptr %state)
-  %begin.at = getelementptr i64, ptr %offsets, i64 %index
+  %begin.at = getelementptr i64, ptr %begins, i64 %index
   %begin = load volatile i64, ptr %begin.at
   %next = add nsw i64 %index, 1
-  %end.at = getelementptr i64, ptr %offsets, i64 %next
+  %end.at = getelementptr i64, ptr %ends, i64 %index
   %end = load volatile i64, ptr %end.at
   %positive = icmp sge i64 %begin, 0
   %ordered = icmp sle i64 %begin, %end

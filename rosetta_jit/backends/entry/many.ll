@@ -1,19 +1,19 @@
-; Many messages in one call, without the interpreter lock: message i lies at offsets[i] to offsets[i + 1] and is row i of the holder.
+; Many messages in one call, without the interpreter lock: message i lies at begins[i] to ends[i] and is row i of the holder.
 
 ; Messages first to count - 1; returns the first that was not done: count, if all were. Then word 9 of the state (`kernel.state.RESULT`) has the
-; kernel's result, or 0 where the offsets fall or leave the buffer. Another thread may write to the offsets meanwhile: each is loaded once where it
-; is checked and used.
-define i64 @many(ptr noalias %buffer, i64 %size, ptr %offsets, i64 %first, i64 %count, ptr %state) {
+; kernel's result, or 0 where a message ends before it begins or leaves the buffer. Another thread may write to the places meanwhile: each is
+; loaded once where it is checked and used.
+define i64 @many(ptr noalias %buffer, i64 %size, ptr %begins, ptr %ends, i64 %first, i64 %count, ptr %state) {
   br label %head
 head:
   %index = phi i64 [ %first, %0 ], [ %next, %decode ]
   %more = icmp slt i64 %index, %count
   br i1 %more, label %each, label %done
 each:
-  %begin.at = getelementptr i64, ptr %offsets, i64 %index
+  %begin.at = getelementptr i64, ptr %begins, i64 %index
   %begin = load volatile i64, ptr %begin.at
   %next = add nsw i64 %index, 1
-  %end.at = getelementptr i64, ptr %offsets, i64 %next
+  %end.at = getelementptr i64, ptr %ends, i64 %index
   %end = load volatile i64, ptr %end.at
   %positive = icmp sge i64 %begin, 0
   %ordered = icmp sle i64 %begin, %end

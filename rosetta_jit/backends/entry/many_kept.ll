@@ -5,7 +5,7 @@
 declare i64 @first(ptr, i64, i64, ptr, i64)
 declare i64 @kernel(ptr, i64, i64, ptr, i64)
 
-define i64 @many(ptr noalias %buffer, i64 %size, ptr %offsets, i64 %first, i64 %count, ptr %state) {
+define i64 @many(ptr noalias %buffer, i64 %size, ptr %begins, ptr %ends, i64 %first, i64 %count, ptr %state) {
   %copy = alloca [$words x i64], align 8
   %registers = alloca [$count x i64], align 8
   call void @llvm.memcpy.p0.p0.i64(ptr align 8 %copy, ptr align 8 %state, i64 $state_bytes, i1 false)
@@ -20,10 +20,10 @@ head:
   %more = icmp slt i64 %index, %count
   br i1 %more, label %each, label %done
 each:
-  %begin.at = getelementptr i64, ptr %offsets, i64 %index
+  %begin.at = getelementptr i64, ptr %begins, i64 %index
   %begin = load volatile i64, ptr %begin.at
   %next = add nsw i64 %index, 1
-  %end.at = getelementptr i64, ptr %offsets, i64 %next
+  %end.at = getelementptr i64, ptr %ends, i64 %index
   %end = load volatile i64, ptr %end.at
   %positive = icmp sge i64 %begin, 0
   %ordered = icmp sle i64 %begin, %end

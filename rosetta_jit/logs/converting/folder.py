@@ -19,8 +19,7 @@ from rosetta_jit.logs.converting.journal import NAME, PART, Journal, Progress
 from rosetta_jit.logs.converting.parts import Parts
 from rosetta_jit.logs.converting.rejected import Damaged, Rejected
 from rosetta_jit.logs.folder_names import folder_names
-from rosetta_jit.logs.parts import CLOCKS, decoded_staged
-from rosetta_jit.logs.staging import BYTES, Staging
+from rosetta_jit.logs.parts import BYTES, CLOCKS, Collector
 from rosetta_jit.logs.tables import table_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -30,26 +29,24 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.base import Block
     from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.log import Log
-    from rosetta_jit.logs.staging import Staged
-    from rosetta_jit.runtime.batch import Batch
+    from rosetta_jit.logs.parts import Part
 
 STEP_BYTES = 256 << 20
 """Messages between one writing of the journal and the next."""
 
-STAGED_BYTES = 64 << 20
-"""Messages that wait to be decoded, of all topics together."""
+WAITING_BYTES = 64 << 20
+"""Messages that wait to become tables, of all topics together."""
 
 QUARANTINE = "_quarantine.jsonl"
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Stream:
-    """A topic: its messages that wait to be decoded, and the batch that they fill again and again."""
+    """A topic, its folder, and its messages that wait to become a table."""
 
     channel: Channel
     name: str
-    staging: Staging
-    batch: Batch | None = None
+    collector: Collector
 
 
 @dataclass(slots=True)
@@ -139,13 +136,13 @@ class FolderConversion:
             raise LogError((words.not_empty(str(output)),))
 
     def _convert(self, journal: Journal, progress: Progress, parts: Parts, rejected: Rejected) -> None:
-        names, room = folder_names(each.topic for each in self.channels), min(BYTES, STAGED_BYTES // max(len(self.channels), 1))
-        streams = [_Stream(each, names[each.topic], Staging(room)) for each in self.channels]
+        names, room = folder_names(each.topic for each in self.channels), min(BYTES, WAITING_BYTES // max(len(self.channels), 1))
+        streams = [_Stream(each, names[each.topic], self._collector(each, progress, rejected, room)) for each in self.channels]
         done = 0
         for piece, within, block in ahead(self._blocks(progress)):
             for stream in streams:
                 rows = block.rows.of_channels(stream.channel.numbers)
-                self._add(stream, stream.staging.put(block, rows), progress, parts, rejected)
+                self._add(stream, stream.collector.put(block, rows), progress, parts, rejected)
             done += int((block.rows.ends - block.rows.begins).sum())
             progress.piece, progress.within = piece, within
             self.advance(len(block.rows))
@@ -154,6 +151,10 @@ class FolderConversion:
                 done = 0
         progress.is_complete = True
         self._step(streams, journal, progress, parts, rejected)
+
+    def _collector(self, channel: Channel, progress: Progress, rejected: Rejected, room: int) -> Collector:
+        first = progress.seen.get(channel.topic, 0)
+        return Collector(channel.decoder, rejected.on_error, first=first, size=room, expected=channel.count)
 
     def _blocks(self, progress: Progress) -> Iterator[tuple[int, int, Block]]:
         """The messages that are left, with the piece and the number of messages in it that are done behind each block."""
@@ -171,21 +172,17 @@ class FolderConversion:
     def _step(self, streams: list[_Stream], journal: Journal, progress: Progress, parts: Parts, rejected: Rejected) -> None:
         """Finish all files, and say so in the journal."""
         for stream in streams:
-            self._add(stream, stream.staging.flushed(), progress, parts, rejected)
+            self._add(stream, stream.collector.rest(), progress, parts, rejected)
         parts.finish()
         progress.number, progress.rejected, progress.rejected_bytes = parts.number, dict(rejected.counts), rejected.kept()
         journal.write(progress)
 
-    def _add(self, stream: _Stream, many: Iterable[Staged], progress: Progress, parts: Parts, rejected: Rejected) -> None:
-        """Decode messages, and write them as tables."""
+    def _add(self, stream: _Stream, found: Iterable[Part], progress: Progress, parts: Parts, rejected: Rejected) -> None:
+        """Write decoded messages as tables."""
         options = dict(self.options)
         columns, clocks = options.pop("columns", None), options.pop("clocks", CLOCKS)
-        topic = stream.channel.topic
-        for staged in many:
-            first = progress.seen.get(topic, 0)
-            part = decoded_staged(stream.channel.decoder, staged, stream.batch, rejected.on_error, first)
-            stream.batch = part.batch
-            rejected.add(topic, first, part.batch.errors, staged.data, staged.offsets, staged.log_ns)
+        for part in found:
+            rejected.add(stream.channel.topic, part.first, part.batch.errors, part.refused)
             if len(part.log_ns):
                 parts.add(stream.name, table_of(part, columns, clocks, options), part.log_ns)
-            progress.seen[topic] = first + len(staged.log_ns)
+            progress.seen[stream.channel.topic] = part.first + part.given

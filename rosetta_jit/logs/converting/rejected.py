@@ -15,11 +15,8 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import TextIO
 
-    import numpy as np
-    from numpy.typing import NDArray
-
     from rosetta_jit.errors import DecodeError
-    from rosetta_jit.logs.parts import OnError
+    from rosetta_jit.logs.parts import OnError, Refused
 
 Damaged: TypeAlias = Literal["stop", "skip", "quarantine"]
 
@@ -57,23 +54,16 @@ class Rejected:
         if self.path.exists():
             os.truncate(self.path, size) if size else self.path.unlink()
 
-    def add(
-        self,
-        topic: str,
-        first: int,
-        errors: Mapping[int, DecodeError],
-        data: NDArray[np.uint8],
-        places: NDArray[np.int64],
-        times: NDArray[np.int64],
-    ) -> None:
-        """Messages of a topic that were left out: by their places among those that lie in ``data``, of which the first has that number."""
+    def add(self, topic: str, first: int, errors: Mapping[int, DecodeError], refused: Mapping[int, Refused]) -> None:
+        """Messages of a topic that were left out, by their numbers behind the ``first``."""
         self.counts[topic] = self.counts.get(topic, 0) + len(errors)
         if self.policy != "quarantine" or not errors:
             return
         self._file = self._file or self.path.open("a", encoding="utf-8")
         for index, error in errors.items():
-            octets = b64encode(data[places[index] : places[index + 1]].tobytes()).decode("ascii")
-            line = {"topic": topic, "message": first + index, "log_time": int(times[index]), "error": str(error), "base64": octets}
+            message = refused[index]
+            octets = b64encode(message.data).decode("ascii")
+            line = {"topic": topic, "message": first + index, "log_time": message.log_ns, "error": str(error), "base64": octets}
             self._file.write(json.dumps(line) + "\n")
 
     def kept(self) -> int:

@@ -10,7 +10,7 @@ import numpy as np
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError, ReportError
 from rosetta_jit.logs.base import Connection
-from rosetta_jit.logs.walking import gathered
+from rosetta_jit.logs.parts import Refused
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -109,8 +109,9 @@ class Mapped:
         rows = block.rows.only(chosen)
         batch = self.channel.decoded(block, rows, self.rejected.on_error)
         if batch.errors:
-            data, offsets = gathered(block.data, rows.begins, rows.ends)
-            self.rejected.add(self.channel.topic, self.seen, batch.errors, data, offsets, rows.log_ns)
+            spans = {index: slice(rows.begins[index], rows.ends[index]) for index in batch.errors}
+            refused = {index: Refused(int(rows.log_ns[index]), block.data[span].tobytes()) for index, span in spans.items()}
+            self.rejected.add(self.channel.topic, self.seen, batch.errors, refused)
         self.seen += len(rows)
         buffer, places = self.encode.many(batch)
         octets, ends = buffer.tobytes(), places.tolist()

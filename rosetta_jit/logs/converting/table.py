@@ -57,7 +57,6 @@ class Conversion:
 
     def _tables(self, rejected: Rejected) -> Iterator[pa.Table]:
         for part, table in self.channel.tables_of_parts(on_error=rejected.on_error, **self.options):
-            staged = part.staged
-            rejected.add(self.channel.topic, part.first, part.batch.errors, staged.data, staged.offsets, staged.log_ns)
-            self.advance(len(staged.log_ns))
+            rejected.add(self.channel.topic, part.first, part.batch.errors, part.refused)
+            self.advance(part.given)
             yield table

@@ -1,0 +1,98 @@
+"""Where many messages lie in one buffer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from rosetta_jit.runtime.memory import address_of
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Places:
+    """Message i is bytes ``begins[i]`` to ``ends[i]``; between messages there may be other bytes.
+
+    Attributes
+    ----------
+    begins, ends : ndarray of int64, shape (n,)
+        Contiguous in memory, because compiled code reads them. They are not checked against any buffer.
+    """
+
+    begins: NDArray[np.int64]
+    ends: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, offsets: NDArray[np.int64]) -> Self:
+        """From offsets of shape (n + 1,), of messages that lie one behind the other, or begins and ends of shape (2, n).
+
+        Raises
+        ------
+        ValueError
+            They are not int64, or of another shape.
+        """
+        found = np.ascontiguousarray(offsets)
+        if found.dtype == np.int64 and found.ndim == 1 and found.size:
+            return cls(found[:-1], found[1:])
+        if found.dtype == np.int64 and found.ndim == 2 and len(found) == 2:
+            return cls(found[0], found[1])
+        raise ValueError(
+            "offsets are an int64 array of one dimension, one longer than there are messages, or of two rows: begins and ends of messages"
+        )
+
+    def __len__(self) -> int:
+        return len(self.begins)
+
+    @property
+    def addresses(self) -> tuple[int, int]:
+        """Where compiled code finds begins and ends."""
+        return _address_of(self.begins), _address_of(self.ends)
+
+    def span(self, number: int) -> tuple[int, int]:
+        """The first byte of a message, and the one behind its last."""
+        return int(self.begins[number]), int(self.ends[number])
+
+    def are_in(self, number: int, size: int) -> bool:
+        """Whether a message lies in a buffer of so many bytes."""
+        begin, end = self.span(number)
+        return 0 <= begin <= end <= size
+
+    def broken(self, number: int, size: int) -> ValueError:
+        """The error of a message that does not lie in a buffer of so many bytes."""
+        begin, end = self.span(number)
+        return ValueError(f"offsets {begin} and {end} of message {number} fall, or leave the buffer of {size} bytes")
+
+
+def _address_of(numbers: NDArray[np.int64]) -> int:
+    return address_of(numbers) if numbers.size and numbers.flags.writeable else numbers.ctypes.data
+
+
+def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | memoryview, Places]:
+    """Messages in one buffer, and where each of them lies in it.
+
+    Raises
+    ------
+    TypeError
+        There are no offsets, and the messages are one buffer.
+    ValueError
+        The offsets are of another type or shape.
+    """
+    if offsets is not None:
+        return source_of(messages), Places.of(offsets)
+    try:
+        memoryview(messages)
+    except TypeError:
+        pieces = list(messages)
+    else:
+        raise TypeError("messages in one buffer take offsets, which say where each begins; without them, give a list of messages")
+    sizes = [len(each) if type(each) is bytes else memoryview(each).nbytes for each in pieces]
+    return b"".join(pieces), Places.of(np.cumsum([0, *sizes], dtype=np.int64))
+
+
+def source_of(message: Any) -> bytes | memoryview:
+    """What has the bytes of a message: asked once, because an object need not give out the same memory twice."""
+    return message if isinstance(message, bytes) else memoryview(message)
