@@ -26,6 +26,7 @@ ORDER = (
     "bridges",
     "peers",
     "generated",
+    "classes",
     "attributes",
     "reading",
     "building",
