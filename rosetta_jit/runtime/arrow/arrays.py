@@ -185,8 +185,8 @@ def _distinct(values: NDArray[np.int32]) -> tuple[list[int], NDArray[Any]]:
 
 
 def _texts(node: Text, place: Place, validity: pa.Buffer | None) -> Arrow:
-    starts, counts = spans(place.lanes, node.span, place.rows)
-    data = _kept(picked(_values(place.lanes, node.lane), starts, counts), copies=True)
+    octets, starts, counts = lent(place.lanes, node.lane, *spans(place.lanes, node.span, place.rows))
+    data = _kept(picked(octets, starts, counts), copies=True)
     if node.type.encoding == "octets" and place.form.octets == "binary":
         return pa.Array.from_buffers(pa.large_binary(), len(counts), [validity, pa.py_buffer(offsets(counts, room)), pa.py_buffer(data)])
     try:
