@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import importlib.util
 import random
+import re
 import struct
 import subprocess
 import sys
@@ -19,10 +20,11 @@ from rosetta_jit.api.options import request_of
 from rosetta_jit.cli import main
 from rosetta_jit.generate.build import generated
 from tests.api.test_across_wires import MAPPING, SCHEMAS, WIRES, message
-from tests.generate import cpp
+from tests.generate import cpp, lisp
 from tests.generate.driver import SANITIZED, STRICT, needs_gcc
 
 HERE = Path(__file__).parent
+QUICK = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 NAMES = list(WIRES)
 FILES = {**SCHEMAS, "seen.mapping": MAPPING + '  reject "too steep" when .tilt.step > 1\n'}
 """A message of tilt is refused after it has set an element of an array that pose fills, too."""
@@ -108,9 +110,9 @@ def written(folder, language):
         (folder / name).write_text(text)
 
 
-def printed(told, *command):
+def printed(told, folder, *command):
     """The lines of a program that was given the messages."""
-    lines = subprocess.run(command, input=told.stream, capture_output=True, check=True).stdout.decode().splitlines()
+    lines = subprocess.run(command, input=told.stream, capture_output=True, check=True, cwd=folder).stdout.decode().splitlines()
     assert {line.split()[0] for line in lines} >= {"ok", "truncated", "rejected"}
     return lines
 
@@ -120,7 +122,7 @@ def test_c_joins_what_the_library_joins(tmp_path, told):
     written(tmp_path, "c")
     command = ["gcc", *STRICT, *SANITIZED, f"-I{tmp_path}", "-o", tmp_path / "joined", HERE / "joined.c", tmp_path / "seen.c", "-lm"]
     subprocess.run(command, check=True)
-    lines = printed(told, tmp_path / "joined")
+    lines = printed(told, tmp_path, tmp_path / "joined")
     assert [(one, two) for one, two in zip(lines, told.said, strict=True) if two is not None and one != two] == []
     assert sum(each is not None for each in told.said) > 200
 
@@ -128,9 +130,9 @@ def test_c_joins_what_the_library_joins(tmp_path, told):
 @cpp.needs_cpp
 def test_cpp_joins_what_the_library_joins(tmp_path, told, whole):
     written(tmp_path, "cpp")
-    command = ["g++", *cpp.STRICT, *cpp.SANITIZED, f"-I{tmp_path}", "-o", tmp_path / "joined", HERE / "joined.cpp", tmp_path / "seen.cpp"]
+    command = ["g++", *cpp.STRICT, *QUICK, f"-I{tmp_path}", "-o", tmp_path / "joined", HERE / "joined.cpp", tmp_path / "seen.cpp"]
     subprocess.run(command, check=True)
-    assert printed(told, tmp_path / "joined") == whole
+    assert printed(told, tmp_path, tmp_path / "joined") == whole
 
 
 def test_python_joins_what_the_library_joins(tmp_path, told, whole):
@@ -152,6 +154,15 @@ def test_python_joins_what_the_library_joins(tmp_path, told, whole):
             lines.append(f"{text} {' '.join(str(-1 if age is None else age) for age in ages)}")
         assert lines == whole
         unit.reset()
+
+
+@lisp.needs_sbcl
+def test_lisp_joins_what_the_library_joins(tmp_path, told, whole):
+    written(tmp_path, "lisp")
+    lines = printed(told, tmp_path, *lisp.COMMAND, "--load", "seen-runtime.lisp", "--load", HERE / "joined.lisp")
+    assert [
+        re.sub(r"(?<![\w.])-?[\d.]+d[+-]?\d+", lambda found: f"{float(found[0].replace('d', 'e')):.17g}", line) for line in lines
+    ] == whole
 
 
 @pytest.mark.parametrize("options", [("--directions", "borrow"), ("--emit", "object"), ("--language", "cpp", "--holder", "yarp")])
