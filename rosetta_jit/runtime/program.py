@@ -197,7 +197,8 @@ class Program(Told):
             raise TypeError(f"this {type(self).__name__} is made already: its code may be running")
         self._loaded, self._asks = loaded, loaded.told
         if beside is None:
-            self._registers, self._holder, self._owners = loaded.state.registers(), loaded.holder_type(), {}
+            made = type.__call__(loaded.holder_type)  # one holder is not worth the time to compile how classes are called
+            self._registers, self._holder, self._owners = loaded.state.registers(), made, {}
         else:
             self._registers, self._holder, self._owners = beside.shared_()
         self._plan = loaded.holder_type.family_.plan
