@@ -21,10 +21,10 @@ from rosetta_jit.language.check.across_wires import (
     values_of_others,
     wire_of,
     wires_read,
-    with_parts,
 )
 from rosetta_jit.language.places import places_in, shown_names, shown_place
-from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, IndexStep, Reject, SetLength, SetState, When
+from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, SetState, When
+from rosetta_jit.language.walk import expressions_of, placed, rebuilt
 from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Enum, Field, Float, Int, Ref, Schema, Struct, same_name
 from rosetta_jit.startup.dataclass import dataclass
@@ -140,23 +140,9 @@ def _as_one(chosen: list[tuple[Rule, _Told]]) -> Iterator[tuple[Rule, _Told]]:
 
 
 def _own(rule: Rule) -> tuple[Expr, ...]:
-    """The expressions that a rule computes itself."""
-    match rule:
-        case Assign(place, value) | SetLength(place, value):
-            return (value, *(step.index for step in place.steps if isinstance(step, IndexStep)))
-        case For(_, start, stop, _, kept=kept):
-            filtered = () if kept is None else (kept.condition, *(() if kept.count is None else (kept.count,)))
-            return (start, stop, *filtered)
-        case When(condition):
-            return (condition,)
-        case Reject(pieces=pieces):
-            return pieces
-        case SetState(_, value):
-            return (value,)
-        case Default() | Ignore():
-            return ()
-        case _:
-            assert_never(rule)
+    """The expressions that a rule computes itself, and how many rounds of a loop are kept."""
+    count = rule.kept.count if isinstance(rule, For) and rule.kept is not None else None
+    return (*expressions_of(rule), *(() if count is None else (count,)))
 
 
 def kept_values(rules: tuple[Rule, ...]) -> list[tuple[str, Expr]]:
@@ -256,8 +242,7 @@ def of_wire(rule: Rule, wire: str, memory: Memory = NOTHING_KEPT) -> Rule:
 
     match rule:
         case Assign(place, value) | SetLength(place, value):
-            steps = tuple(replace(step, index=seen(step.index)) if isinstance(step, IndexStep) else step for step in place.steps)
-            return replace(rule, place=_without_wire(replace(place, steps=steps)), value=seen(value))
+            return replace(rule, place=_without_wire(placed(place, seen)), value=seen(value))
         case Default(place) | Ignore(place):
             return replace(rule, place=_without_wire(place))
         case For(_, start, stop, _, kept=kept):
@@ -279,7 +264,7 @@ def value_of_wire(expr: Expr, wire: str, memory: Memory = NOTHING_KEPT) -> Expr:
     known = remembered(expr, wire, memory)
     if known is not None:
         return known
-    found = with_parts(expr, lambda part: value_of_wire(part, wire, memory))
+    found = rebuilt(expr, lambda part: value_of_wire(part, wire, memory))
     match found:
         case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place) | typed.Search(place):
             return replace(found, place=_without_wire(place))
