@@ -51,7 +51,7 @@ NO_PROOF = {
     "is_short_and_straight",
     "calls_to_host",
     "our_functions",
-    "is_told",
+    "asks_host",
 }
 """Functions of `shape` that tell backends and passes how large kernels are, and whom they call."""
 DEMANDS = {"oblige", "certify", "demand"}
