@@ -288,8 +288,8 @@ class Program(ProgramBase):
     def _lanes_of(self, batch: Batch) -> Lanes:
         """The lanes of a batch of this program's holders."""
         expected = self._loaded.holder_type
-        lanes = batch.lanes
-        if batch.family_ is not expected.family_ or lanes.plan.layout is not expected.family_.layout:
+        lanes: Lanes | None = getattr(batch, "lanes", None)
+        if lanes is None or batch.family_ is not expected.family_ or lanes.plan.layout is not expected.family_.layout:
             raise TypeError(f"a batch of {expected.__qualname__} is needed")
         return lanes
 
