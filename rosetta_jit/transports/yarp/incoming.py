@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 _GROUP = struct.Struct(">4BH")
 
+NO_ANSWER = struct.pack("<ii", 256, 0)
+"""An empty bottle. Where nothing stands before the acknowledgement, YARP takes that for a bottle, and who asked waits for ever."""
+
 HELLO_S = 10.0
 """How long a connection may say nothing."""
 
@@ -122,7 +125,7 @@ def messages(port: Owner, line: Line | None, sender: str, carrier: str) -> Machi
 
 def _reply_to(line: Line, ack: bytes) -> Reply:
     def reply(answer: bytes | None, _: str | None) -> None:
-        line.send((answer or b"") + ack)
+        line.send((answer or NO_ANSWER) + ack)
 
     return reply
 
