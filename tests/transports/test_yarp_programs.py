@@ -154,6 +154,18 @@ def test_questions_go_both_ways(at, server):
             assert text_of(ask(bottle("how are you")).data) == "fine 2.5 (1 2)"
 
 
+def test_ports_answer_commands(at, server):
+    def said(*command, **how):
+        return subprocess.run([YARP, *command], env=server[1], capture_output=True, text=True, timeout=10, check=True, **how).stdout
+
+    with rj.publish(at("/out")), rj.subscribe(at("/out")):
+        assert "/out" in said("ping", "/out")
+        assert said("exists", "/out") == ""
+        lines = said("admin", "rpc", "/out", input="[ver]\n[list] [in]\n[nonsense]\n").splitlines()
+        assert lines[:2] == ["Response: [ver] 1 2 3", "Response: anon_rpc"]
+        assert lines[2].startswith("Response: [fail]")
+
+
 def test_a_reader_that_is_killed_costs_nobody_else(at, server):
     with rj.publish(at("/out")) as sink, rj.subscribe(at("/out")) as source:
         with running(YARP, "read", "/killed", env=server[1]):

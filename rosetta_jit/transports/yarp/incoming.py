@@ -117,6 +117,9 @@ def messages(port: Owner, line: Line | None, sender: str, carrier: str) -> Machi
                 port.asked(message, _reply_to(line, ACK if has_acks else b""))
                 continue
             take(message)
+        elif command == "a" and line is not None:
+            port.administer(to_text(frame.payload, port.dialect), _bottle_to(line, ACK if has_acks else b"", port.dialect))
+            continue
         if has_acks and line is not None:
             line.send(ACK)
         if command == "q":
@@ -128,6 +131,15 @@ def _reply_to(line: Line, ack: bytes) -> Reply:
         line.send((answer or NO_ANSWER) + ack)
 
     return reply
+
+
+def _bottle_to(line: Line, ack: bytes, dialect: str) -> Callable[[str], object]:
+    """What answers a command that came as a bottle."""
+
+    def answer(text: str) -> None:
+        line.send(from_text(text, dialect) + ack)
+
+    return answer
 
 
 def _text(port: Owner, line: Line, *, has_acks: bool) -> Machine:
