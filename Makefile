@@ -10,13 +10,15 @@ BENCH = -vv --benchmark-quiet --benchmark-json=$(RUN) --benchmark-autosave --ben
 
 .DEFAULT_GOAL := help
 RUN := build/bench/run.json
+BASELINE = $(sort $(wildcard bench/baseline/*.json))
+PLANTED := build/bench/planted.json
 
 # Where CMake finds the YARP of `make yarp`.
 ifneq ($(wildcard $(YARP)/cmake/.built),)
 export YARP_DIR ?= $(abspath $(YARP))/cmake
 endif
 
-.PHONY: help demo usecase test check campaign conformance bench bench-check bench-compare native peers yarp clean
+.PHONY: help demo usecase test check campaign conformance bench bench-check bench-planted bench-compare native peers yarp clean
 
 help: ## show this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -44,11 +46,15 @@ conformance: $(VENV)/.test ## protobuf's own conformance suite; CONFORMANCE_TEST
 # What the report shows is in pytest-benchmark's JSON, of which each run's is kept in build/bench/runs, too.
 bench: $(VENV)/.bench native ## measure everything, write build/bench/report.html and the figures of the docs; QUICK=1: a look
 	mkdir -p $(dir $(RUN))
-	$(BIN)/python -m pytest bench --bench-report $(if $(QUICK),,--bench-readme) $(BENCH) $(ARGS); status=$$?; $(BIN)/python -m bench.report $(RUN) && exit $$status
+	$(BIN)/python -m pytest bench --bench-report $(if $(QUICK),,--bench-readme) $(BENCH) $(ARGS); status=$$?; $(BIN)/python -m bench.report $(if $(QUICK),,--keep) $(RUN) && exit $$status
 
-bench-check: $(VENV)/.bench native ## the same, failing where a target is missed
+bench-check: $(VENV)/.bench native ## the same, failing where a target is missed or, on a machine of the same kind, a ratio is 15 % worse than in bench/baseline
 	mkdir -p $(dir $(RUN))
-	$(BIN)/python -m pytest bench $(BENCH) $(ARGS)
+	$(BIN)/python -m pytest bench $(BENCH) $(ARGS); status=$$?; $(BIN)/python -m bench.compare --same-machine $(BASELINE) $(RUN) && exit $$status
+
+bench-planted: $(VENV)/.bench native ## whether the benchmarks watch: with a loop planted in all compiled code, each family of rows must fail
+	mkdir -p $(dir $(RUN))
+	$(BIN)/python -m pytest bench --planted --quick --bench-report --benchmark-quiet --benchmark-json=$(PLANTED) $(ARGS) && $(BIN)/python -m bench.planting $(PLANTED)
 
 bench-compare: $(VENV)/.bench ## what changed since the run in OLD, a JSON file or several; fails where a ratio with a target is 15 % worse
 	@test -n "$(OLD)" || { echo "name a run: make bench-compare OLD=build/bench/runs/..." >&2; exit 2; }

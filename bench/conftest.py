@@ -26,6 +26,7 @@ ORDER = (
     "bridges",
     "peers",
     "generated",
+    "classes",
     "attributes",
     "reading",
     "building",
@@ -50,6 +51,7 @@ MESSAGES = pytest.StashKey[int | None]()
 def pytest_addoption(parser):
     parser.addoption("--quick", action="store_true", help="few and short rounds, small curves: a look, in minutes")
     parser.addoption("--bench-report", action="store_true", help="missed targets are shown and do not fail the run")
+    parser.addoption("--planted", action="store_true", help="with a loop planted in all compiled code: is it told?")
     parser.addoption(
         "--bench-readme",
         action="store_true",
@@ -58,6 +60,10 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
+    if config.getoption("--planted"):
+        from bench.planting import plant  # before the modules of benchmarks are imported
+
+        plant()
     config.stash[FOUND] = {"rows": [], "comparisons": [], "curves": []}
 
 
@@ -93,7 +99,8 @@ def record(request, found):
     """Call it with the fields of a `Row`: the row joins the report, and its target is demanded unless only a report is wanted."""
 
     def record_row(what, measured, at_most, unit, detail="", against=""):
-        row = Row(what, measured, at_most, unit, detail, against, request.node.stash.get(MESSAGES, None))
+        family = request.node.path.stem.removeprefix("test_")
+        row = Row(what, measured, at_most, unit, detail, against, request.node.stash.get(MESSAGES, None), family)
         found("rows", row)
         if not request.config.getoption("--bench-report"):
             assert row.met, f"{what}: {measured.median:.3g} {unit}, at most {at_most:.3g} wanted"

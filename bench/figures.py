@@ -62,6 +62,7 @@ class Row:
 
     ``at_most`` None: no target, the figure is only reported. ``against``: which of several the ratio was taken to, where that depends on
     what is installed. ``messages``: how many different ones came in turn; 1 of one that was repeated, None where there are none.
+    ``family``: the module of benchmarks that it comes from.
     """
 
     what: str
@@ -71,6 +72,7 @@ class Row:
     detail: str = ""
     against: str = ""
     messages: int | None = None
+    family: str = ""
 
     @property
     def met(self) -> bool:
@@ -155,6 +157,7 @@ def from_json(data: Mapping[str, Any]) -> Report:
                 *(each["what"], _spread(each["measured"]), each["at_most"], each["unit"], each["detail"]),
                 against=each.get("against", ""),
                 messages=each.get("messages"),
+                family=each.get("family", ""),
             )
             for each in data["rows"]
         ),

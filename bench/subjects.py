@@ -74,6 +74,34 @@ RST_ANGLES = Subject(
 RST_ANGLES_PACKED = Subject("rj.PackedJointAngles", "protobuf", b"\x0a\xc0\x01" + _doubles(24), _ANGLES)
 RST_IMAGE = Subject("rst.vision.Image", "protobuf", b"\x0a\x80\x88\x0e" + noise(320 * 240 * 3) + b"\x10\xc0\x02\x18\xf0\x01")
 
+
+def _field(number: int, value: int | bytes) -> bytes:
+    """A field of protobuf: a varint, or bytes behind their length."""
+    head = number << 3 | (0 if isinstance(value, int) else 2)
+    return _varint(head) + (_varint(value) if isinstance(value, int) else _varint(len(value)) + value)
+
+
+def _varint(value: int) -> bytes:
+    return bytes([value]) if value < 0x80 else bytes([value & 0x7F | 0x80]) + _varint(value >> 7)
+
+
+def _thing(number: int) -> bytes:
+    position = b"".join(bytes([each << 3 | 1]) + struct.pack("<d", number + each) for each in (1, 2, 3))
+    color, confidence = struct.pack("<4f", 0.25, 0.5, 0.75, 1), b"\x29" + struct.pack("<d", 0.5)
+    return _field(1, number + 1) + _field(2, b"thing_%d" % number) + _field(3, position) + _field(4, color) + confidence
+
+
+def _scene(things: int) -> bytes:
+    """Messages within a message, a case of a oneof, and a map."""
+    weights = (_field(6, _field(1, b"weight_%d" % number) + b"\x11" + struct.pack("<d", number + 1)) for number in range(8))
+    camera = _field(1, b"left_camera") + _field(2, 640) + _field(3, 480)
+    stamp = _field(1, 1_700_000_000) + _field(2, 123_456_789)
+    parts = [_field(1, stamp), _field(2, b"map"), *(_field(3, _thing(number)) for number in range(things)), _field(5, camera)]
+    return b"".join([*parts, *weights])
+
+
+SCENE = Subject("rj.Scene", "protobuf", _scene(20), {"schema": {"scene.proto": ANGLES_PROTO.with_name("scene.proto").read_text("utf-8")}})
+
 SUBJECTS = {
     "Imu": IMU,
     "JointState, 32 joints": JOINT_STATE,

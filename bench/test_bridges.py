@@ -10,7 +10,7 @@ import pytest
 import rosetta_jit as rj
 from bench.contest import Contender
 
-CHAPTER = "Bridges"
+CHAPTER, SHORT = "Bridges", "an iCub's torso, YARP to RST"
 OURS, TWO, MOVE = "rosetta_jit, a bridge", "rosetta_jit, decode and encode", "memmove"
 AT_MOST = 0.8
 LOOP = 20
@@ -41,7 +41,7 @@ def of_ros2(type_, values):
     return rj.Encoder.of(type_, encoding="cdr")(values), decode, encode, bridge
 
 
-KINDS = {"an iCub's torso, YARP to RST": torso, "an image of 230 KB, CDR to CDR 2": image, "1 MB of points, CDR to CDR 2": cloud}
+KINDS = {SHORT: torso, "an image of 230 KB, CDR to CDR 2": image, "1 MB of points, CDR to CDR 2": cloud}
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -65,3 +65,13 @@ def test_bridges(kind, effort, compare, record):
     ]
     outcome = compare(CHAPTER, kind, contenders)
     record(f"bridge, {kind}", outcome.ratio(OURS, TWO), AT_MOST, "x decode and encode", f"{outcome.took(OURS).median:.0f} ns")
+
+
+def test_one_call(effort, compare, record):
+    message, _, _, bridge = torso()
+    contenders = [
+        Contender(OURS, "ours", "bytes, anew", effort.call(bridge, message)),
+        Contender("len()", "limit", "a number", effort.call(len, message)),
+    ]
+    outcome = compare(CHAPTER, f"{SHORT}, one call", contenders)
+    record(f"bridge, {SHORT}, one call", outcome.ratio(OURS, "len()"), 3.6, "x len()", f"{outcome.took(OURS).median:.0f} ns")

@@ -24,8 +24,8 @@ PURE = "protobuf's pure Python"
 TIMED = """
 import json, os, sys, time
 from bench.peers import generated_python, protobuf
-from bench.subjects import SUBJECTS
-subject = SUBJECTS[sys.argv[1]]
+from bench.subjects import SCENE, SUBJECTS
+subject = {**SUBJECTS, "Scene": SCENE}[sys.argv[1]]
 (ours,), theirs = generated_python.peers(subject), protobuf.message_class(subject)
 from google.protobuf.internal import api_implementation
 assert api_implementation.Type() == "python"
@@ -95,7 +95,7 @@ def test_against_what_frameworks_generate(name, job, effort, compare, record):
     record(f"{name}, generated Python, {job}d", outcome.ratio(WHO, peer.who), AT_MOST, f"x {against}", took)
 
 
-@pytest.mark.parametrize("name", ["RST JointAngles, packed", "RST JointAngles, unpacked", "RST Image 320x240"])
+@pytest.mark.parametrize("name", ["RST JointAngles, packed", "RST JointAngles, unpacked", "RST Image 320x240", "Scene"])
 def test_against_pure_protobuf(name, effort, record):
     rounds = str(max(5, effort.rounds))
     said = processes.run("-c", TIMED, name, rounds, PROTOCOL_BUFFERS_PYTHON_IMPLEMENTATION="python")

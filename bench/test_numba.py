@@ -9,11 +9,12 @@ from numba import njit
 from bench import varied
 from bench.contest import Contender
 
-CHAPTER, LOOP, MANY, COUNT = "Numba", "rosetta_jit, a loop of one's own", "its decode, `many(into=)`", 10_000
+CHAPTER, LOOP, MANY, MOVED, COUNT = "Numba", "rosetta_jit, a loop of one's own", "its decode, `many(into=)`", "each message copied", 10_000
 READS = {
     "Imu": (lambda: varied.imu(1), "holder.angular_velocity.z + holder.orientation_covariance[8]"),
     "JointState, 32 joints": (lambda: varied.joint_state(1), "holder.position[0] + len(holder.name)"),
 }
+AT_MOST = {"Imu": 0.3, "JointState, 32 joints": 1.0}
 
 
 @pytest.mark.parametrize("what", READS)
@@ -23,6 +24,7 @@ def test_loop(what, effort, compare, record):
     decode = made.subject.decoder()
     messages = (made.messages * (COUNT // len(made.messages) + 1))[:COUNT]
     recording, offsets = b"".join(messages), np.cumsum([0, *map(len, messages)])
+    octets = np.frombuffer(recording, np.uint8)
     batch, holder, run = decode.many(recording, offsets), decode.new(), loop(decode.kernel, expression)
     assert run(recording, offsets, holder) == pytest.approx(sum(eval(expression, {"holder": each}) for each in batch))  # noqa: S307 - our own text
     outcome = compare(
@@ -33,11 +35,12 @@ def test_loop(what, effort, compare, record):
             Contender(
                 MANY, "limit", "a batch, used again", effort.call(lambda: decode.many(recording, offsets, into=batch), messages=COUNT)
             ),
+            Contender(MOVED, "limit", "a copy", effort.call(copied, octets, offsets, np.empty_like(octets), messages=COUNT)),
         ],
     )
-    record(
-        f"{what}, a loop in numba that reads two fields", outcome.ratio(LOOP, MANY), 1.2, "x many", f"{outcome.took(LOOP).median:.0f} ns"
-    )
+    took = f"{outcome.took(LOOP).median:.0f} ns"
+    record(f"{what}, a loop in numba that reads two fields", outcome.ratio(LOOP, MANY), 1.2, "x many", took)
+    record(f"{what}, that loop against a copy", outcome.ratio(LOOP, MOVED), AT_MOST[what], "x copying each message in numba", took)
 
 
 def loop(kernel, expression):
@@ -53,3 +56,10 @@ def loop(kernel, expression):
         scope,
     )
     return njit(nogil=True)(scope["run"])
+
+
+@njit(nogil=True)
+def copied(octets, offsets, copies):
+    """What no loop that reads all of each message gets below."""
+    for index in range(len(offsets) - 1):
+        copies[offsets[index] : offsets[index + 1]] = octets[offsets[index] : offsets[index + 1]]

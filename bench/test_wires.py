@@ -10,9 +10,12 @@ import rosetta_jit as rj
 from bench.contest import Contender
 
 CHAPTER = "Several wires"
-OURS, ALONE = "rosetta_jit, one of two wires", "rosetta_jit, a mapping of its own"
+OURS, ALONE, LEN = "rosetta_jit, one of two wires", "rosetta_jit, a mapping of its own", "len()"
 AT_MOST = 1.2
 """Its part is cleared field by field, where a mapping of its own clears the holder in one go; and the message is counted."""
+
+CALL = 2.5
+"""One call, in multiples of `len()`."""
 
 JOINED = (Path(__file__).parent.parent / "mappings" / "joined" / "odometry.mapping").read_text()
 PARTS = {
@@ -44,7 +47,9 @@ def test_an_arrival(wire, effort, compare, record):
         [
             Contender(OURS, "ours", "the holder of both", effort.call(joined[wire], message)),
             Contender(ALONE, "ours", "a holder", effort.call(alone, message)),
+            Contender(LEN, "limit", "a number", effort.call(len, message)),
         ],
     )
     took = f"{outcome.took(OURS).median:.1f} ns a message"
     record(f"the {wire} of two wires", outcome.ratio(OURS, ALONE), AT_MOST, "x a mapping of its own", took)
+    record(f"the {wire} of two wires, one call", outcome.ratio(OURS, LEN), CALL, "x len()", took)

@@ -76,7 +76,7 @@ class Batch:
         ----------
         source
             A table, or whatever has Arrow's stream or array interface: frames of pandas and polars, relations of DuckDB. A field
-            without a column is as in a new message.
+            without a column is as in a new message; columns named with dots are fields of nested messages.
 
         Raises
         ------
@@ -87,12 +87,13 @@ class Batch:
         TypeError
             If the source is no table, or messages contain each other: leave that column out.
         """
-        from rosetta_jit.runtime.arrow import back
+        from rosetta_jit.runtime.arrow import back, sources
 
-        table = back.table_of(source)
-        batch = cls.room(holder_class, table.num_rows)
+        root = holder_class.family_.tree.root
+        columns = sources.columns_of(source, root, cls.room(holder_class, 0).lanes)
+        batch = cls.room(holder_class, columns.rows)
         with batch.lanes as lanes:
-            back.write_table(batch.family_.tree.root, lanes, table)
+            back.write_columns(root, lanes, columns)
         return batch
 
     def reset(self, count: int) -> None:

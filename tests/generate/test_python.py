@@ -22,7 +22,7 @@ from tests.generate.test_cpp import OUTER
 from tests.golden import GOLDEN, check_golden
 
 BOTH = ("decode", "encode")
-FEW = {"lcm exlcm.example_t", "corba RTC::TimedWChar little", "protobuf rj.OneOf", "protobuf rj.Tree"}
+FEW = {"lcm exlcm.example_t", "corba RTC::TimedWChar little", "protobuf rj.OneOf", "protobuf rj.Maps", "protobuf rj.Tree"}
 
 
 @pytest.fixture
@@ -89,6 +89,41 @@ def test_messages_that_are_numbers_alone(type_, good, module):
     if type_ == "geometry_msgs/Twist":
         with pytest.raises(unit.EncodeError, match="range"):
             unit.encode(unit.Twist(linear=unit.Vector3(x="1")))
+
+
+NESTED = """syntax = "proto3"; package n;
+message Point { double x = 1; float y = 2; repeated sint32 z = 3; }
+message All {
+  Point point = 1; repeated Point points = 2; map<string, Point> places = 3; map<int32, string> names = 4;
+  optional double half = 7; optional string note = 8;
+  oneof choice { int64 number = 5; Point place = 6; string text = 9; bytes raw = 10; }
+}
+"""
+
+
+def test_messages_within_others_are_written_from_the_objects(module):
+    """Behind their lengths, whatever is there of them: fields with their default, -0.0, cases with the value 0, nothing at all."""
+    given = {"encoding": "protobuf", "schema": {"n.proto": NESTED}}
+    request = type_request("decode", "n.All", given)
+    assert "_encode_" not in generated(request, "python", ("encode",), "unit")["unit.py"]
+    unit, encode, decode = module(request), rj.Encoder.of("n.All", **given), rj.Decoder.of("n.All", **given)
+    point, wide = unit.Point(x=-0.0, y=1.5, z=[-1, 300]), unit.Point(x=float("nan"), z=[*range(200)])
+    assert unit.encode(unit.All()) == b""
+    present = {"point": {}, "half": 0.0, "note": ""}
+    assert unit.encode(unit.All(point=unit.Point(), half=0.0, note="")) == encode(encode.holder_type.from_dict(present))
+    for made in (
+        unit.All(point=point, choice=("number", 0)),
+        unit.All(points=[point, wide, unit.Point()], choice=("place", wide)),
+        unit.All(places={"a": point, "": wide}, names={-1: "x", 7: ""}, choice=("text", "")),
+        unit.All(choice=("raw", b"\0" * 20000), half=1.5, note="é" * 100),
+    ):
+        message = unit.encode(made)
+        assert encode(decode(message)) == message
+        assert repr(unit.decode(message)) == repr(made)
+    wrong = [unit.All(point=unit.Point(x="1")), unit.All(points=[None]), unit.All(names={2**40: ""}), unit.All(choice=("number", "x"))]
+    for made in wrong:
+        with pytest.raises(unit.EncodeError):
+            unit.encode(made)
 
 
 def test_decimal_numbers(module):

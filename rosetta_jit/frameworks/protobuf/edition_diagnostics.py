@@ -1,4 +1,4 @@
-"""What can be wrong with editions in a `.proto` file: features, visibility, style, and what editions no longer have."""
+"""What can be wrong with editions in a `.proto` file: features, visibility, and what editions no longer have."""
 
 from __future__ import annotations
 
@@ -54,28 +54,6 @@ def misplaced_visibility(span: Span, word: str) -> Diagnostic:
 def local_name(name: Name, full: str, file: str) -> Diagnostic:
     """A message or an enum that is local to another file."""
     return _error("visibility", f"`{full}` is local to `{file}`", name.span, "not visible", "Write `export` before its declaration.")
-
-
-def nested_export(name: Name) -> Diagnostic:
-    """Something nested that is exported where visibility is strict."""
-    return _error(
-        "visibility",
-        f"`{name.text}` is nested and cannot be exported under STRICT",
-        name.span,
-        "in a message",
-        "Declare it outside. Enums can stay in a local message that says `reserved 1 to max;`.",
-    )
-
-
-def style(name: Name, example: str) -> Diagnostic:
-    """A name that is not written as the style guide wants it."""
-    return _error(
-        "style",
-        f"`{name.text}` is not in the style of its edition",
-        name.span,
-        f"expected a name like `{example}`",
-        "Else write `option features.enforce_naming_style = STYLE_LEGACY;`.",
-    )
 
 
 def reserved_string(name: Name) -> Diagnostic:

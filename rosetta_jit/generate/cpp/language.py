@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,6 +10,7 @@ from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.functions import print_kernel
 from rosetta_jit.generate.c.language import parts_of
+from rosetta_jit.generate.cleared import without_clearing
 from rosetta_jit.generate.cpp.manners import MANNERS
 from rosetta_jit.generate.cpp.source import header, source
 
@@ -24,6 +26,8 @@ def files(unit: Unit) -> dict[str, str]:
     manners = {each.name: each for each in MANNERS}.get(unit.holder or "own")
     if manners is None:
         raise SchemaError((words.unknown_holder(unit.holder, tuple((each.name, each.summary) for each in MANNERS)),))
+    if "borrow" in unit.kernels:
+        unit = replace(unit, kernels={**unit.kernels, "borrow": without_clearing(unit.kernels["borrow"], unit.layout)})
     parts = parts_of(unit, lambda kernel, lanes, role: print_kernel(kernel, lanes, role, unit.origins.get(role, ())), dialect="c++")
     return {
         f"{unit.name}.hpp": header(unit, manners),

@@ -10,7 +10,6 @@ rosetta_jit::result<rosetta_jit::done> codec::try_decode(const void *data, std::
     holder->number = number;
 $kept
     holder->most = rosetta_jit::detail::most_rows(size);
-    row = {};
 $reset
 $bind
     int64_t result = $first;
@@ -45,7 +44,7 @@ rosetta_jit::error unplaced(rosetta_jit::error found)
 void gather(const ::$name::holder &source, ${name}_holder *holder)
 {
     auto &row = holder->message;
-    row = {};
+$clear
     holder->most = rosetta_jit::detail::most_rows(std::size_t{1} << 39);
 $reset
 $bind

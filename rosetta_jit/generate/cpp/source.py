@@ -14,8 +14,10 @@ from rosetta_jit.generate.c.state import MEMBERS
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import C_TYPES, RESERVED
+from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.classes import classes
 from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
+from rosetta_jit.model.layout import Row
 from rosetta_jit.model.types import Ref, Struct
 
 if TYPE_CHECKING:
@@ -241,7 +243,7 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref) -> tuple[
     else:
         head = f"template <class Source>\nvoid collect{name}(const Source &source, {unit.name}_holder &to, {row} &row)"
         target, unused = "source", ("source", "to", "row")
-    walk.writer.lines, walk.writer.depth, walk.depth = [], 1, 0
+    walk.writer.lines, walk.writer.depth, walk.depth, walk.in_rows = [], 1, 0, 1 if lane else 0
     for each in unused:
         walk.writer.line(f"static_cast<void>({each});")
     walk.value(type_, unit.layout.lanes[lane].element, element, "row", Spot(target))
@@ -263,7 +265,7 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]]) -> list
             Template(known["decode"]).substitute(
                 words,
                 bind="\n".join(f"    holder->{lanes.rows(each.lane)}.fill({each.spot.at});" for each in directs["decode"]),
-                reset="\n".join(f"    holder->{lanes.rows(lane)}.used = 0;" for lane in range(1, lanes.own) if lane not in bound),
+                reset="\n".join(f"    holder->{lanes.rows(lane)}.reset();" for lane in range(1, lanes.own) if lane not in bound),
                 first=run(first, "failure"),
                 others="".join(Template(known["other"]).substitute(call=run(each, "other")) for each in others),
                 finish=finish,
@@ -274,7 +276,8 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]]) -> list
         texts.append(
             Template(known["encode"]).substitute(
                 words,
-                reset="\n".join(f"    holder->{lanes.rows(lane)}.used = 0;" for lane in range(1, lanes.own)),
+                clear="" if _is_collected(unit) else "    row = {};",
+                reset="\n".join(f"    holder->{lanes.rows(lane)}.reset();" for lane in range(1, lanes.own)),
                 bind="\n".join(_read(lanes.rows(each.lane), each) for each in directs["encode"]),
                 size=run(printed["size"].attempts[0], "failure"),
                 run=run(printed["encode"].attempts[0], "failure"),
@@ -284,6 +287,13 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]]) -> list
             )
         )
     return [re.sub(r"\n+(\n    |\n})", r"\1", text) for text in texts]
+
+
+def _is_collected(unit: Unit) -> bool:
+    """Whether all fields of the message's row are set from an object: what may be absent is not."""
+    slots = [*slots_of(unit.layout.root)]
+    may_lack = any(isinstance(each, Row) and each.unknown is not None for each in slots) or unit.layout.recursive
+    return not may_lack and offsets_of(unit.layout.root) is not None
 
 
 def _read(lane: str, each: Direct) -> str:

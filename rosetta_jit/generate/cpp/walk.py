@@ -4,7 +4,8 @@
     collect(source, to)              the rows get what a class has, for an encoder
 
 A lane is *direct* where a field of the message itself is a container of numbers or characters: kernels then work on the elements of that
-container, and nothing is copied. Bytes that a decoder left in the message are copied once, from there.
+container, and nothing is copied. Bytes that a decoder left in the message are copied once, from there. An encoder copies no numbers or
+characters that a message has once: the lane shows the elements of their container.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ class Direct:
 
 @dataclass(slots=True)
 class Walk:
-    """One of the two functions being printed."""
+    """One of the two functions being printed; ``in_rows`` is how many lists there are around a value."""
 
     unit: Unit
     lanes: Lanes
@@ -69,6 +70,7 @@ class Walk:
     direct: frozenset[int] = frozenset()
     writer: Writer = field(default_factory=Writer)
     depth: int = 0
+    in_rows: int = 0
 
     # --- names and templates ---------------------------------------------------------------------------------------------------------
 
@@ -186,7 +188,7 @@ class Walk:
         if slot.lane in self.direct:
             return
         if not isinstance(type_, Array) or isinstance(self.unit.layout.lanes[slot.lane].element, Number):
-            self.lines("sequence", spot, row=row, lane=lane)
+            self.lines("sequence", spot, row=row, lane=lane, how="take" if self.in_rows else "show")
             return
         self.lines("list", spot, row=row, lane=lane)
         self.depth += 1
@@ -202,6 +204,7 @@ class Walk:
 
     def row(self, type_: Type, lane: int, index: str, spot: Spot) -> None:
         """One row of a lane, and the element that belongs to it."""
+        self.in_rows += 1
         rows, inner, element = self.lanes.rows(lane), self.local("row"), self.lanes.all[lane].element
         slot = self.unit.layout.lanes[lane].element
         recursive = self.unit.layout.lanes[lane].links is not None
@@ -226,6 +229,7 @@ class Walk:
             self.value(type_, slot, element, within, Spot(target))
         if self.direction == "encode":
             self.writer.line(f"to.{rows}.rows[{index}] = {inner};")
+        self.in_rows -= 1
 
     def link(self, slot: Span, row: str, spot: Spot, present: str = "") -> None:
         """A field of a type that contains itself: no row, or one."""
@@ -251,6 +255,7 @@ class Walk:
     def map(self, key: Type, value: Type, slot: Span, row: str, spot: Spot) -> None:
         """Entries of a map: later ones of equal keys replace earlier ones."""
         self.depth += 1
+        self.in_rows += 1
         lane = self.lanes.rows(slot.lane)
         entry, inner, index = map_entry(key, value), self.local("row"), self.local("i")
         element, layout = self.lanes.all[slot.lane].element, self.unit.layout.lanes[slot.lane].element
@@ -276,6 +281,7 @@ class Walk:
                     self._plain(type_, member, own.type, f"{inner}.{own.identifier}", f"each_{self.depth}.{at}")
                 self.writer.line(f"to.{lane}.rows[{index}++] = {inner};")
         self.writer.line("}")
+        self.in_rows -= 1
         self.depth -= 1
 
     def _plain(self, type_: Type, member: Member, element: object, row: str, at: str) -> None:
@@ -322,21 +328,18 @@ class Walk:
             found, at = self.unit.schema.resolve(each.type), f"{row}.{own.identifier}"
             inner = self.member_of(spot.at, name)
             match found, member.slot:
-                case ((String() | Array()), Span(_, lane)) if member.presence is None and self._may_grow(found) and self._is_numbers(lane):
+                case ((String() | Bytes() | Array()), Span(_, lane)) if member.presence is None and self._is_plain(found, lane):
                     yield Direct(lane, at, Spot(self.text("direct", inner), inner.owner, inner.field))
                 case Struct(), Row() if member.presence is None:
                     yield from self.directs(found, member.slot, own.type, at, Spot(inner.at))
                 case _:
                     pass
 
-    def _may_grow(self, type_: String | Array) -> bool:
-        if isinstance(type_, String):
-            return True
-        return not isinstance(type_.length, int) and not isinstance(self.unit.schema.resolve(type_.element), Enum)
-
-    def _is_numbers(self, lane: int) -> bool:
+    def _is_plain(self, type_: String | Bytes | Array, lane: int) -> bool:
+        """Whether a container has the very numbers that the lane has: enums are of another type, and bools may be bits."""
         element = self.unit.layout.lanes[lane].element
-        return isinstance(element, Number) and element.scalar != "bool"
+        is_enum = isinstance(type_, Array) and isinstance(self.unit.schema.resolve(type_.element), Enum)
+        return isinstance(element, Number) and element.scalar != "bool" and not is_enum
 
 
 def _members(struct: RowStruct) -> list[RowMember]:

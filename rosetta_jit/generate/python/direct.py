@@ -13,6 +13,7 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING, cast
 
+from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.kernel.ir import (
@@ -35,14 +36,13 @@ from rosetta_jit.kernel.ir import (
     Nearest,
     Place,
     Reserve,
-    Return,
     SetField,
     Used,
     Wire,
 )
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.shape import expressions_of, extents_of, statements, subexpressions
-from rosetta_jit.kernel.terms import add, index, mul, type_of
+from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.model.layout import Number, Row, Span
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -231,7 +231,7 @@ class _Search:
     def _one_by_one(self, block: Block, lane: int, start: Local, count: Expr, fills: list[Stmt]) -> bool:
         loops = [each for each in block if isinstance(each, For) and each.count == count and any(fill in each.body for fill in fills)]
         element = self.layout.lanes[lane].element
-        needed = _offsets(element)
+        needed = offsets_of(element)
         if len(loops) != 1 or needed is None:
             return False
         loop = loops[0]
@@ -279,49 +279,9 @@ def _if_any(stmt: Stmt, count: Expr, copy: Copy) -> bool:
     return isinstance(stmt, If) and stmt.condition == Compare("gt", count, index(0)) and stmt.then == (copy,) and not stmt.otherwise
 
 
-def slots_of(slot: Slot) -> Iterator[Slot]:
-    """The numbers and spans of a row."""
-    yield slot
-    if isinstance(slot, Row):
-        for member in slot.members:
-            yield from slots_of(member.slot)
-        if slot.unknown is not None:
-            yield slot.unknown
-
-
-def settled(block: Block) -> frozenset[tuple[int, str]]:
-    """The fields of the message's row, by offset and type, that a body sets whatever the message is, before it reads them."""
-    found, read = set[tuple[int, str]](), set[int]()
-    for stmt in block:
-        for each, _ in statements((stmt,)):
-            parts = (part for expr in expressions_of(each) for part in subexpressions(expr))
-            read |= {part.place.offset for part in parts if isinstance(part, Get) and part.place.lane == 0}
-            if isinstance(each, Return) and each is not block[-1]:
-                return frozenset(found)
-        if isinstance(stmt, SetField) and stmt.place.lane == 0 and stmt.place.offset not in read:
-            found.add((stmt.place.offset, type_of(stmt.value)))
-    return frozenset(found)
-
-
 def _spans(layout: Layout, lane: int) -> dict[int, int]:
     """The lanes of a row's spans by their offsets."""
     return {each.offset: each.lane for each in slots_of(layout.lanes[lane].element if lane else layout.root) if isinstance(each, Span)}
-
-
-def _offsets(slot: Slot) -> list[int] | None:
-    """Where the scalars of a row lie; None where not all of them are there in each."""
-    found: list[int] = []
-    for each in slots_of(slot):
-        match each:
-            case Number(offset, _):
-                found.append(offset)
-            case Span(offset, _):
-                found += [offset, offset + 8]
-            case Row(_, _, 0, _):
-                pass
-            case _:
-                return None
-    return found
 
 
 def numbers_of(slot: Slot, stride: int) -> tuple[Scalar, ...]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer
 from rosetta_jit.generate.c.statements import reached, read_names
+from rosetta_jit.generate.python.asked import without_lengths
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.functions import words_of
 from rosetta_jit.generate.python.given import Given
@@ -23,6 +24,10 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.unit import Unit
     from rosetta_jit.kernel.ir import Block, Kernel, Routine
+
+
+KNOWN = {"write_varint": "_varint"}
+"""Routines of which a module has a function already, which gives the bytes that they write."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,8 +50,10 @@ def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str,
     """
     if len(kernel.bodies) != 1:
         raise NotInParts
-    loads, written, texts = set[str](), dict[str, str](), dict[str, list[str]]()
+    loads, written, texts = set[str](), dict(KNOWN), dict[str, list[str]]()
     for routine in kernel.routines:
+        if routine.name in KNOWN:
+            continue
         try:
             texts[routine.name] = _routine(unit, kernel, routine, _scope(kernel, lanes, paths, loads), written)
         except NotInParts:
@@ -62,9 +69,9 @@ def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str,
     while pending:
         name = pending.pop()
         called.add(name)
-        pending |= {each for each, function in written.items() if any(f"{function}(" in line for line in texts[name][1:])} - called
+        pending |= {each for each, function in written.items() if any(f"{function}(" in line for line in texts.get(name, ())[1:])} - called
     lines = [*(["        parts = []"] if parts.begun else []), *parts.function.writer.lines]
-    routines = tuple("\n".join(texts[name]) for name in written if name in called)
+    routines = tuple("\n".join(texts[name]) for name in written if name in called and name in texts)
     return InParts(routines, tuple(lines), frozenset(loads), frozenset(scope.told))
 
 
@@ -73,7 +80,7 @@ def _scope(kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], loads: set[str]
 
 
 def _parts(unit: Unit, kernel: Kernel, scope: Given, block: Block, written: dict[str, str], depth: int) -> Parts:
-    body = without_positions(counted(block))
+    body = without_positions(counted(without_lengths(block, kernel.sites, scope.lanes.own)))
     objects = Objects(lambda _, __: "message")
     function = Function(scope, kernel, kernel.sites, {}, unit.origins.get("encode", ()), objects, writer=Writer(depth=depth))
     function.read = read_names(without_places(body))

@@ -5,14 +5,15 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
+from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.python.classes import member_names
-from rosetta_jit.generate.python.direct import slots_of
 from rosetta_jit.generate.python.expressions import Scope, bare, expression, within
 from rosetta_jit.generate.python.positions import NotInParts
-from rosetta_jit.kernel.ir import Binary, Expr, Local, Place
+from rosetta_jit.kernel.arithmetic import FLOATS
+from rosetta_jit.kernel.ir import WIDTH, Binary, Expr, Local, Place
 from rosetta_jit.kernel.terms import index
-from rosetta_jit.model.layout import Member, Number, Row, Slot, Span
-from rosetta_jit.model.types import Array, Bytes, Optional, String, Struct, Type
+from rosetta_jit.model.layout import Member, Number, Row, Slot, Span, Variant, map_entry
+from rosetta_jit.model.types import Array, Bytes, Map, Optional, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -31,6 +32,19 @@ class Listed:
     lane: int
     element: Type | None
     slot: Slot
+    is_map: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Maybe:
+    """What a row has under a condition: the local that holds it, or None, its type and slot; ``case`` of a union or not."""
+
+    lane: int
+    row: Expr
+    local: str
+    type: Type
+    slot: Slot
+    case: bool = False
 
 
 @dataclass(slots=True)
@@ -39,7 +53,8 @@ class Given(Scope):
 
     ``objects`` has the expressions of fields by lane, row and offset; ``starts`` and ``counts`` are the locals of a kernel that say where
     the rows of a sequence start and how many there are, with the lane of the sequence. ``numbers`` are the expressions whose values a
-    program has set, and that may be no numbers of their type.
+    program has set, and that may be no numbers of their type; ``floats_of`` has the types of those that are floats. ``maybe`` has what is
+    there under a condition, by the field that says so and the bit or number of it.
     """
 
     objects: dict[tuple[int, Expr], dict[int, str]] = field(default_factory=dict[tuple[int, "Expr"], dict[int, str]])
@@ -47,11 +62,15 @@ class Given(Scope):
     starts: dict[str, int] = field(default_factory=dict[str, int])
     counts: dict[str, int] = field(default_factory=dict[str, int])
     numbers: set[str] = field(default_factory=set[str])
+    floats_of: dict[str, str] = field(default_factory=dict[str, str])
+    maybe: dict[tuple[Place, int], Maybe] = field(default_factory=dict[tuple[Place, int], Maybe])
 
     def place(self, place: Place, scalar: str) -> str:
         """A scalar of a row of an object."""
         known = self.objects.get((place.lane, place.row))
         if known is not None and place.offset in known:
+            if (float_ := self.floats_of.get(known[place.offset])) is not None and scalar not in FLOATS:
+                return f"_bits{8 * WIDTH[float_]}({known[place.offset]})"
             return _checked(known[place.offset], scalar) if known[place.offset] in self.numbers else known[place.offset]
         found = self.element_of(place, scalar)
         if self.numpy and scalar[0] in "iu" and self.sequences[place.lane].element is not None:
@@ -99,12 +118,16 @@ def _checked(text: str, scalar: str) -> str:
 
 @dataclass(slots=True)
 class Binder:
-    """Prints the statements that take objects apart; ``needed`` are the fields, by lane and offset, that anything reads."""
+    """Prints the statements that take objects apart.
+
+    ``needed`` are the fields, by lane and offset, that anything reads; ``row`` is that at hand.
+    """
 
     unit: Unit
     function: Function
     scope: Given
     needed: set[tuple[int, int]]
+    row: Expr = field(default_factory=lambda: index(0))
 
     def local(self, what: str) -> str:
         """A new local."""
@@ -113,8 +136,26 @@ class Binder:
     def bind(self, lane: int, row: Expr, at: str, type_: Type, slot: Slot) -> None:
         """The fields of a row that anything reads, from an object."""
         found: dict[int, str] = {}
+        self.row = row
         self.value(lane, at, type_, slot, found)
         self.scope.objects[lane, row] = found
+
+    def bind_entry(self, entries: Listed, row: Expr, names: list[str]) -> None:
+        """Key and value of a map, which are locals."""
+        assert isinstance(entries.element, Struct)
+        assert isinstance(entries.slot, Row)
+        found: dict[int, str] = {}
+        self.row = row
+        for name, each, member in zip(names, entries.element.fields, entries.slot.members, strict=True):
+            self.value(entries.lane, name, each.type, member.slot, found)
+        self.scope.objects[entries.lane, row] = found
+
+    def there(self, maybe: Maybe) -> None:
+        """The fields of what is there, where that is known."""
+        found = dict(self.scope.objects[maybe.lane, maybe.row])
+        self.row = maybe.row
+        self.value(maybe.lane, maybe.local, maybe.type, maybe.slot, found)
+        self.scope.objects[maybe.lane, maybe.row] = found
 
     def _is_needed(self, lane: int, slot: Slot) -> bool:
         return any((lane, offset) in self.needed for each in slots_of(slot) for offset in (each.offset, each.offset + 8))
@@ -126,12 +167,36 @@ class Binder:
             case _, Number(offset, scalar):
                 found[offset] = f"(1 if {at} else 0)" if scalar == "bool" else at
                 self.scope.numbers |= {at} if scalar != "bool" else set()
+                self.scope.floats_of |= {at: scalar} if scalar in FLOATS else {}
             case Struct(), Row():
                 self._struct(lane, at, resolved, slot, found)
             case ((String() | Bytes() | Array()), Span()):
                 self._sequence(at, resolved, slot, found)
+            case Map(key, value), Span():
+                self._map(at, map_entry(key, value), slot, found)
+            case Union(), Variant():
+                self._union(lane, at, resolved, slot, found)
             case _:
                 raise NotInParts
+
+    def _map(self, at: str, entry: Struct, slot: Span, found: dict[int, str]) -> None:
+        lane = self.unit.layout.lanes[slot.lane]
+        if lane.links is not None:
+            raise NotInParts
+        own = self.local(lane.name.rpartition(".")[2] or "entries")
+        self.function.line(f"{own} = {at}.items()")
+        self.scope.sequences[slot.lane] = Listed(own, slot.lane, entry, lane.element, is_map=True)
+        found[slot.offset], found[slot.offset + 8] = f"{START}{slot.lane}", f"len({own})"
+
+    def _union(self, lane: int, at: str, union: Union, slot: Variant, found: dict[int, str]) -> None:
+        """The number of the case that a pair names, or 0; what it has is taken apart where that is known."""
+        case, own, which = self.local("case"), self.local("value"), self.local("which")
+        self.function.line(f"{case}, {own} = {at} or (None, None)")
+        numbers = "".join(f'{number} if {case} == "{each.name}" else ' for number, each in enumerate(union.cases, 1))
+        self.function.line(f"{which} = 0 if {own} is None else {numbers}0")
+        found[slot.offset] = which
+        for number, (each, member) in enumerate(zip(union.cases, slot.members, strict=True), 1):
+            self.scope.maybe[Place(lane, self.row, slot.offset), number] = Maybe(lane, self.row, own, each.type, member.slot, case=True)
 
     def _struct(self, lane: int, at: str, struct: Struct, slot: Row, found: dict[int, str]) -> None:
         if not at.isidentifier():
@@ -141,7 +206,7 @@ class Binder:
         words = [list[str]() for _ in range(slot.presence_words)]
         for each, member, name in zip(struct.fields, slot.members, member_names(struct), strict=True):
             if member.presence is not None:
-                self._optional(lane, f"{at}.{name}", each.type, member, words, found)
+                self._optional(lane, f"{at}.{name}", each.type, member, words, (slot.offset, found))
             elif self._is_needed(lane, member.slot):
                 self.value(lane, f"{at}.{name}", each.type, member.slot, found)
         if slot.unknown is not None and self._is_needed(lane, slot.unknown):
@@ -151,23 +216,21 @@ class Binder:
                 word = found[slot.offset + 8 * number] = self.local("presence")
                 self.function.line(f"{word} = {' | '.join(bits)}")
 
-    def _optional(self, lane: int, at: str, type_: Type, member: Member, words: list[list[str]], found: dict[int, str]) -> None:
-        """A field that may be None, for which its bit is 0, and what else is read of it is 0 or empty."""
+    def _optional(
+        self, lane: int, at: str, type_: Type, member: Member, words: list[list[str]], around: tuple[int, dict[int, str]]
+    ) -> None:
+        """A field that may be None, for which its bit is 0. A number is 0 then; others are taken apart where they are known to be there.
+
+        ``around`` is where the presence words of the struct begin, and its fields.
+        """
         assert isinstance(type_, Optional)
         assert member.presence is not None
-        own, (word, bit) = self.local(at.rpartition(".")[2]), divmod(member.presence, 64)
+        own, (word, bit), (begin, found) = self.local(at.rpartition(".")[2]), divmod(member.presence, 64), around
         self.function.line(f"{own} = {at}")
         words[word].append(f"({1 << bit} if {own} is not None else 0)")
-        if not self._is_needed(lane, member.slot):
-            return
-        match self.unit.schema.resolve(type_.value), member.slot:
-            case _, Number():
-                self.value(lane, f"(0 if {own} is None else {own})", type_.value, member.slot, found)
-            case (String() | Bytes()) as text, Span() as span:
-                empty = '""' if isinstance(text, String) else 'b""'
-                self._sequence(f"({empty} if {own} is None else {own})", text, span, found)
-            case _:
-                raise NotInParts
+        self.scope.maybe[Place(lane, self.row, begin + 8 * word), 1 << bit] = Maybe(lane, self.row, own, type_.value, member.slot)
+        if isinstance(member.slot, Number) and self._is_needed(lane, member.slot):
+            self.value(lane, f"(0 if {own} is None else {own})", type_.value, member.slot, found)
 
     def _sequence(self, at: str, type_: String | Bytes | Array, slot: Span, found: dict[int, str]) -> None:
         lane = self.unit.layout.lanes[slot.lane]

@@ -32,6 +32,7 @@ REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 
 RUNTIME = Path(__file__).with_name("runtime.py")
 DECIMALS = Path(__file__).with_name("decimals.py")
+VARINTS = Path(__file__).with_name("varints.py")
 ARRAYS = Path(__file__).with_name("arrays.py")
 OF_DECIMALS = ("_nearest(", "_shortest(", "_fixed_digits(")
 NO_MEMORY = "the message asks for more memory than its size allows"
@@ -64,6 +65,9 @@ class _Module:
         if any(function in part for function in OF_DECIMALS for part in parts):
             decimals = DECIMALS.read_text("utf-8")
             runtime += f"\n\n\n{decimals[decimals.index('def ') :].rstrip()}"
+        if any("_varint(" in part for part in parts):
+            varints = VARINTS.read_text("utf-8")
+            runtime += f"\n\n\n{varints[varints.index('_SHORT') :].rstrip()}".replace("  # pyright: ignore[reportUnusedFunction]", "")
         if self.unit.numpy:
             arrays = ARRAYS.read_text("utf-8")
             runtime = runtime.replace(

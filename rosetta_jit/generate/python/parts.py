@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.python.direct import numbers_of, slots_of
-from rosetta_jit.generate.python.expressions import CODES, bare, expression
-from rosetta_jit.generate.python.given import Binder
+from rosetta_jit.generate.python.asked import bit_asked, case_asked, named_in_rounds, places_read
+from rosetta_jit.generate.python.expressions import bare, expression
 from rosetta_jit.generate.python.groups import turned
-from rosetta_jit.generate.python.packed import Part, part_text, with_numbers
+from rosetta_jit.generate.python.packed import Part
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
-from rosetta_jit.generate.python.statements import print_statement
+from rosetta_jit.generate.python.statements import fail, print_statement
+from rosetta_jit.generate.python.written import Written
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Assign,
@@ -51,36 +51,26 @@ from rosetta_jit.model.layout import Number
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rosetta_jit.generate.python.given import Given, Listed
+    from rosetta_jit.generate.python.given import Given, Listed, Maybe
     from rosetta_jit.generate.python.statements import Function
     from rosetta_jit.generate.unit import Unit
     from rosetta_jit.kernel.ir import Block, Expr, Stmt
 
-MOST_STARRED = 40
-"""Numbers of an array of a fixed length that are packed together with those around it."""
 
-FEW_STARRED = 4
-"""The same of an array of numpy's, whose elements become Python's one by one."""
+class Parts(Written):
+    """Prints a body.
 
-
-class Parts:
-    """Prints a body; ``pending`` are parts that no line has written yet, ``begun`` is whether any has.
-
-    ``routines`` are the functions that give the bytes which routines write, ``called`` those of them that are.
+    ``routines`` are the functions that give the bytes which routines write, ``called`` those of them that are. ``lengths`` are the locals
+    of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has.
     """
 
     def __init__(self, unit: Unit, function: Function, scope: Given, body: Block, routines: Mapping[str, str]) -> None:
-        self.unit, self.function, self.scope, self.body = unit, function, scope, body
-        self.routines, self.called = routines, set[str]()
-        self.positions, self.pending, self.begun = Positions(), list[Part](), False
-        parts = [part for stmt, _ in statements(body) for expr in expressions_of(stmt) for part in subexpressions(expr)]
-        needed = {(part.place.lane, part.place.offset) for part in parts if isinstance(part, Get)}
-        self.binder = Binder(unit, function, scope, needed)
-        self.exact: dict[int, int] = {}
-        self.limits: dict[Expr, int] = {}
-
-    def line(self, text: str) -> None:
-        self.function.line(text)
+        exprs = (expr for stmt, _ in statements(body) for expr in expressions_of(stmt))
+        needed = {(place.lane, place.offset) for expr in exprs for place in places_read(expr)}
+        super().__init__(unit, function, scope, needed)
+        self.body, self.routines, self.called = body, routines, set[str]()
+        self.lengths, self.words = set[str](), dict[str, Place]()
+        self.counted = named_in_rounds(body)
 
     # --- statements ------------------------------------------------------------------------------------------------------------------
 
@@ -97,9 +87,8 @@ class Parts:
                     self.flush()
                     print_statement(self.function, stmt)
                 self.positions.variable(name, value)
-            case Expect(condition, _):
-                self._note(condition)
-                print_statement(self.function, stmt)
+            case Expect():
+                self._expect(stmt)
             case Store(at, value, order):
                 self._store(at, value, order)
             case Copy(Wire(at), Place() as source, size):
@@ -117,7 +106,8 @@ class Parts:
             case If():
                 self._if(stmt)
             case Switch(value, cases, default):
-                self._branches(f"match {self.function.text(value)}:", [(f"case {number}:", each) for number, each in cases], default)
+                asked = [(f"case {number}:", each, self._maybe(Compare("eq", value, index(number)))) for number, each in cases]
+                self._branches(f"match {self.function.text(value)}:", asked, default)
             case For():
                 self._for(stmt)
             case While():
@@ -125,7 +115,29 @@ class Parts:
             case _:
                 raise NotInParts
 
+    def _expect(self, stmt: Expect) -> None:
+        match stmt.condition:
+            case Compare("eq", Local(_, name), Local(_, same)) if name == same and name in self.around:
+                self.finish(name)
+            case condition if (maybe := self._maybe(condition)) is not None and not maybe.case:
+                with self.function.writer.indented(f"if {maybe.local} is None:"):
+                    fail(self.function, stmt.failure)
+                self.binder.there(maybe)
+            case condition:
+                self._note(condition)
+                print_statement(self.function, stmt)
+
+    def _maybe(self, condition: Expr) -> Maybe | None:
+        """What an object has if a condition holds: a field that may be absent, or the case of a union."""
+        asked = bit_asked(condition, self.words) or case_asked(condition, self.words)
+        return None if asked is None else self.scope.maybe.get(asked)
+
     def _let(self, stmt: Let) -> None:
+        if isinstance(stmt.value, Get) and stmt.value.place.lane >= self.scope.lanes.own:
+            self.lengths.add(stmt.name)
+            return
+        if isinstance(stmt.value, Get) and stmt.value.type in ("u64", "i64"):
+            self.words[stmt.name] = stmt.value.place
         match stmt.value:
             case Get(_, place) if (lane := self.scope.start(place)) is not None:
                 self.scope.starts[stmt.name] = lane
@@ -156,97 +168,28 @@ class Parts:
             case _:
                 return False
 
-    # --- bytes -----------------------------------------------------------------------------------------------------------------------
-
-    def _store(self, at: Expr, value: Expr, order: str) -> None:
-        type_ = type_of(value)
-        match value:
-            case Get(_, place) if not self.scope.has(place):
-                text = self.scope.element_of(place, type_)
-            case Get(_, place):
-                text = bare(self.scope.objects[place.lane, place.row][place.offset])
-            case Convert(_, count) if self.limits.get(count, 1 << 64) <= 1 << 8 * WIDTH[type_] - (type_[0] == "i"):
-                text = bare(expression(self.scope, count))
-            case _:
-                text = bare(expression(self.scope, value))
-        self._add(order if WIDTH[type_] > 1 else "", CODES[type_], (f"1 if {text} else 0" if type_ == "bool" else text,))
-        self.positions.written(at, Sum(WIDTH[type_]))
-
-    def _add(self, order: str, codes: str, texts: tuple[str, ...]) -> None:
-        """Numbers behind the parts so far."""
-        self.pending = with_numbers(self.pending, order, codes, texts)
-
-    def _copy(self, at: Expr, source: Place, size: Expr) -> None:
-        """A sequence as a whole."""
-        sequence, start = self.scope.sequences.get(source.lane), self.scope.behind(source)
-        if sequence is None or start != index(0) or source.offset:
-            raise NotInParts
-        stride = self.unit.layout.lanes[source.lane].stride
-        size_sum = self.positions.sum(size)
-        counts = [self.positions.values[name] for name, lane in self.scope.counts.items() if lane == source.lane]
-        exact = self.exact.get(source.lane)
-        if not any(size_sum == Sum().plus(count, stride) for count in counts) and size_sum != Sum(
-            stride * exact if exact is not None else -1
-        ):
-            raise NotInParts
-        codes = numbers_of(sequence.slot, stride)
-        if sequence.element is None:
-            self.pending.append(Part("", "", (sequence.local,)))
-        elif isinstance(sequence.slot, Number):
-            self._numbers(sequence, "<", exact)
-        elif codes:
-            self._each(sequence, codes)
-        else:
-            raise NotInParts
-        self.positions.written(at, size_sum)
-
-    def _numbers(self, sequence: Listed, order: str, exact: int | None) -> None:
-        assert isinstance(sequence.slot, Number)
-        code, own = CODES[sequence.slot.scalar], sequence.local
-        if exact is not None and 0 < exact <= (FEW_STARRED if self.unit.numpy else MOST_STARRED):
-            self._add(order if WIDTH[sequence.slot.scalar] > 1 else "", code * exact, (f"*{own}",))
-        elif self.unit.numpy:
-            dtype, is_bool = self.scope.dtype(sequence.slot.scalar, order), sequence.slot.scalar == "bool"
-            self.pending.append(Part("", "", (f"_raw({dtype}, {own}{', is_bool=True' if is_bool else ''})",)))
-        elif sequence.slot.scalar == "u8":
-            self.pending.append(Part("", "", (f"bytes({own})",)))
-        else:
-            names = [name for name, lane in self.scope.counts.items() if lane == sequence.lane and name in self.function.read]
-            count = self.scope.locals.identifier(names[0]) if names else f"len({own})"
-            self.pending.append(Part("", "", (f'Struct(f"{order.replace("<", "")}{{{count}}}{code}").pack(*{own})',)))
-
-    def _each(self, sequence: Listed, codes: tuple[str, ...]) -> None:
-        """Rows that are numbers."""
-        assert sequence.element is not None
-        self.flush()
-        self.begun = True
-        element, lane = self.binder.local("element"), sequence.lane
-        with self.function.writer.indented(f"for {element} in {sequence.local}:"):
-            found: dict[int, str] = {}
-            needed = {(lane, each.offset) for each in slots_of(sequence.slot)}
-            Binder(self.unit, self.function, self.scope, needed).value(lane, element, sequence.element, sequence.slot, found)
-            texts = tuple(text for _, text in sorted(found.items()))
-            self.pending.append(Part("<", "".join(CODES[each] for each in codes), texts))
-            self.flush()
-
-    def flush(self) -> None:
-        """Write the parts that are pending."""
-        texts = [part_text(each, self.scope, self.exact) for each in self.pending]
-        self.pending = []
-        if texts:
-            self.begun = True
-            self.line(f"parts.append({texts[0]})" if len(texts) == 1 else f"parts += {', '.join(texts)}")
-
     def _call(self, call: Call) -> None:
         """A routine that writes from its first argument on, and gives the position behind."""
         if call.routine not in self.routines or call.results[0].name in self.function.read:
             raise NotInParts
-        given = ", ".join(self.function.text(each) for each in call.arguments[1:])
-        self.pending.append(Part("", "", (f"{self.routines[call.routine]}({given})",)))
+        match call.arguments[1:]:
+            case (Convert(_, Local(_, name)),) if name in self.lengths:
+                self.begin(name, self.routines[call.routine])
+            case arguments:
+                given = ", ".join(self._argument(each) for each in arguments)
+                self.pending.append(Part("", "", (f"{self.routines[call.routine]}({given})",)))
         behind = self.positions.new()
         self.positions.written(call.arguments[0], behind.plus(self.positions.at, -1))
         self.positions.values[call.results[0].name] = behind
         self.called.add(call.routine)
+
+    def _argument(self, value: Expr) -> str:
+        """A number that a routine gets; the length of a sequence is no negative one."""
+        match value:
+            case Convert("u64", Local(_, name) as count) if name in self.scope.counts:
+                return self.function.text(count)
+            case _:
+                return self.function.text(value)
 
     def _return(self, stmt: Return, position: Expr, registers: Sequence[tuple[int, Expr]]) -> None:
         if self.positions.sum(position) != self.positions.at or self.function.writer.depth != 2:
@@ -257,16 +200,6 @@ class Parts:
         self.end("message")
         print_statement(self.function, Return(index(0), stmt.registers))
 
-    def end(self, name: str) -> None:
-        """Join the parts: that is the result, or has a name."""
-        if self.begun:
-            self.flush()
-        texts = [part_text(each, self.scope, self.exact) for each in self.pending]
-        if len(texts) == 1 and not self.pending[0].codes:
-            texts = [f"bytes({texts[0]})"]
-        made = 'b"".join(parts)' if self.begun else texts[0] if len(texts) == 1 else f'b"".join(({", ".join(texts)}))' if texts else 'b""'
-        self.line(f"{name} = {made}" if name else f"return {made}")
-
     # --- branches and loops ----------------------------------------------------------------------------------------------------------
 
     def _if(self, stmt: If) -> None:
@@ -274,22 +207,26 @@ class Parts:
             case If(Compare("gt", _, Const(_, 0)), (Copy(Wire(at), Place() as source, size),), ()):
                 self._copy(at, source, size)  # a copy of nothing does nothing
             case If(condition, (), otherwise):
-                self._branches(f"if {self.function.text(folded(Unary('not', condition)))}:", [("", otherwise)], ())
+                self._branches(f"if {self.function.text(folded(Unary('not', condition)))}:", [("", otherwise, None)], ())
             case If(condition, then, otherwise):
-                self._branches(f"if {self.function.text(condition)}:", [("", then)], otherwise)
+                maybe = self._maybe(condition)
+                text = self.function.text(condition) if maybe is None or maybe.case else f"{maybe.local} is not None"
+                self._branches(f"if {text}:", [("", then, maybe)], otherwise)
 
-    def _branches(self, head: str, cases: list[tuple[str, Block]], default: Block) -> None:
+    def _branches(self, head: str, cases: list[tuple[str, Block, Maybe | None]], default: Block) -> None:
         self.flush()
         before, ends = self.positions, list[Positions]()
         writer = self.function.writer
         is_match = bool(cases[0][0]) if cases else True
 
-        def inside(block: Block) -> None:
-            lines, exact = len(writer.lines), dict(self.exact)
+        def inside(block: Block, maybe: Maybe | None = None) -> None:
+            lines, exact, objects = len(writer.lines), dict(self.exact), dict(self.scope.objects)
             self.positions = before.branch()
+            if maybe is not None:
+                self.binder.there(maybe)
             self.block(block)
             self.flush()
-            self.exact = exact
+            self.exact, self.scope.objects = exact, objects
             if len(writer.lines) == lines:
                 self.line("pass")
             if not (block and isinstance(block[-1], Expect) and block[-1].condition == FALSE):
@@ -297,12 +234,12 @@ class Parts:
 
         if is_match:
             with writer.indented(head):
-                for line, block in (*cases, ("case _:", default)):
+                for line, block, maybe in (*cases, ("case _:", default, None)):
                     with writer.indented(line):
-                        inside(block)
+                        inside(block, maybe)
         else:
             with writer.indented(head):
-                inside(cases[0][1])
+                inside(*cases[0][1:])
             if default:
                 with writer.indented("else:"):
                     inside(default)
@@ -323,12 +260,12 @@ class Parts:
         if holds is None:
             self.positions.at = outer.plus(self.positions.values[loop.variable], width)
         begin = self.positions.at
-        exact = dict(self.exact)
+        exact, objects = dict(self.exact), dict(self.scope.objects)
         with self.function.writer.indented(self._head(loop)):
             self._rows(loop)
             self.block(loop.body)
             self.flush()
-        self.exact = exact
+        self.exact, self.scope.objects = exact, objects
         self._end(holds, begin, width)
         if holds is None:
             self.positions.at = outer.plus(self.positions.sum(loop.count), width)
@@ -364,8 +301,16 @@ class Parts:
         sequence, own = self._sequence_of(loop), self.scope.locals.identifier(loop.variable)
         if sequence is None:
             return f"for {own} in range({self.function.text(loop.count)}):"
-        element = self.scope.locals.identifier(f"element\0{loop.variable}")
-        return f"for {own}, {element} in enumerate({sequence.local}):"
+        rows = ", ".join(self._row_names(loop, sequence))
+        if loop.variable not in self.counted:
+            return f"for {rows} in {sequence.local}:"
+        return f"for {own}, {f'({rows})' if sequence.is_map else rows} in enumerate({sequence.local}):"
+
+    def _row_names(self, loop: For, sequence: Listed) -> list[str]:
+        """The locals for an element, or for key and value of a map."""
+        return [
+            self.scope.locals.identifier(f"{each}\0{loop.variable}") for each in (("key", "value") if sequence.is_map else ("element",))
+        ]
 
     def _rows(self, loop: For) -> None:
         sequence = self._sequence_of(loop)
@@ -374,8 +319,11 @@ class Parts:
         assert sequence.element is not None
         start = next(name for name, lane in self.scope.starts.items() if lane == sequence.lane)
         row = Binary("add", Local("i64", start), Local("i64", loop.variable))
-        element = self.scope.locals.identifier(f"element\0{loop.variable}")
-        self.binder.bind(sequence.lane, row, element, sequence.element, sequence.slot)
+        names = self._row_names(loop, sequence)
+        if sequence.is_map:
+            self.binder.bind_entry(sequence, row, names)
+        else:
+            self.binder.bind(sequence.lane, row, names[0], sequence.element, sequence.slot)
 
     def _turned(self, loop: For, place: Place, base: Expr, type_: str) -> None:
         sequence = self.scope.sequences.get(place.lane)
@@ -387,11 +335,11 @@ class Parts:
     def _while(self, loop: While) -> None:
         self.flush()
         holds = self.positions.loop(stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, Assign))
-        begin, exact = self.positions.at, dict(self.exact)
+        begin, exact, objects = self.positions.at, dict(self.exact), dict(self.scope.objects)
         with self.function.writer.indented(f"while {self.function.text(loop.condition)}:"):
             self.block(loop.body)
             self.flush()
             if not loop.body:
                 self.line("pass")
-        self.exact = exact
+        self.exact, self.scope.objects = exact, objects
         self._end(holds, begin, 0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.python.direct import slots_of
+from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.python.expressions import CODES, bare, expression
 from rosetta_jit.kernel.ir import Binary, Const, IsText, Wire
 from rosetta_jit.model.layout import Number

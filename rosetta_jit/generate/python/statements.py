@@ -151,7 +151,7 @@ def print_statement(function: Function, stmt: Stmt) -> None:
             _fail_if(function, _lacks(function, at, size), failure)
         case Expect(condition, failure):
             if condition == FALSE:
-                _fail(function, failure)
+                fail(function, failure)
             elif (taken := takes_text(function.scope, condition)) is not None:
                 _taken(function, taken, failure)
             else:
@@ -207,10 +207,11 @@ def _lacks(function: Function, at: Expr, size: Expr) -> str:
 
 def _fail_if(function: Function, condition: str, failure: Failure) -> None:
     with function.writer.indented(f"if {condition}:"):
-        _fail(function, failure)
+        fail(function, failure)
 
 
-def _fail(function: Function, failure: Failure) -> None:
+def fail(function: Function, failure: Failure) -> None:
+    """The line that ends an attempt."""
     site = function.sites[failure.site]
     at = function.text(failure.at)
     if function.is_routine:
@@ -267,7 +268,7 @@ def _taken(function: Function, taken: str, failure: Failure) -> None:
     with function.writer.indented("try:"):
         function.line(taken)
     with function.writer.indented("except UnicodeDecodeError:"):
-        _fail(function, failure)
+        fail(function, failure)
 
 
 def _list(function: Function, lane: int, at: Expr, size: Expr, order: str) -> str:
@@ -394,4 +395,4 @@ def _host_call(function: Function, call: HostCall) -> None:
     with function.writer.indented("try:"):
         function.line(f'{result} = functions["{call.function}"]({given})')
     with function.writer.indented("except Refused:"):
-        _fail(function, call.failure)
+        fail(function, call.failure)

@@ -1,4 +1,4 @@
-"""Arrow arrays as lanes: the way back of `rosetta_jit.runtime.arrow`, column by column with numpy.
+"""Arrow arrays as lanes: the way back of `rosetta_jit.runtime.arrow`, column by column with numpy. The columns are those of `sources`.
 
 Nothing is altered: a value that its field cannot hold exactly, of another kind, or null where the field cannot be absent, is one error
 that names the field. Columns may be missing; their fields stay as they are in a new message. Nulls are taken out where they stand for
@@ -7,7 +7,6 @@ absence, so that all arrays below have none.
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
@@ -29,21 +28,20 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from rosetta_jit.runtime.arrow.sources import Columns
     from rosetta_jit.runtime.holder.record import Cell, Choice, Entry, Node, Spanned
     from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.rows import Flags, Indices
 
-_INDEX = re.compile("__index_level_[0-9]+__")
-"""How pandas names an index without a name, which is no field."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Target:
-    """Rows of a lane, which are new and zero, and their path."""
+    """Rows of a lane, which are new and zero, and their path; ``has_gaps`` as of `Columns`."""
 
     lanes: Lanes
     rows: Indices
     path: str = ""
+    has_gaps: bool = False
 
     def column(self, cell: Cell, scalar: str, behind: int = 0) -> NDArray[Any]:
         """A cell of all rows of the lane."""
@@ -52,40 +50,21 @@ class _Target:
         return np.ndarray((count,), dtype, buffer.data, (cell.index + behind) * size, (cell.step * size,))
 
     def within(self, name: str) -> _Target:
-        return _Target(self.lanes, self.rows, self.path + name)
+        return _Target(self.lanes, self.rows, self.path + name, self.has_gaps)
 
     def only(self, chosen: Flags) -> _Target:
-        return _Target(self.lanes, self.rows[chosen], self.path)
+        return _Target(self.lanes, self.rows[chosen], self.path, self.has_gaps)
 
 
-def table_of(source: Any) -> pa.Table:
-    """What has Arrow's stream interface (tables, frames of pandas and polars) or array interface, as a table.
-
-    Raises
-    ------
-    TypeError
-        If it has neither.
-    """
-    if hasattr(source, "__arrow_c_stream__"):
-        return pa.RecordBatchReader.from_stream(source).read_all()
-    if hasattr(source, "__arrow_c_array__"):
-        return pa.table(source)
-    raise TypeError(f"a batch, or a table or frame with Arrow's interface is needed, not {type(source).__name__}")
-
-
-def write_table(root: Record, lanes: Lanes, table: pa.Table) -> None:
-    """Make the columns of a table fields of new messages, which are zero yet.
+def write_columns(root: Record, lanes: Lanes, columns: Columns) -> None:
+    """Make columns fields of new messages, which are zero yet.
 
     Raises
     ------
     ValuesError
         If a column is of no field, or a field cannot take its values.
     """
-    names = [name for name in table.schema.names if not _INDEX.fullmatch(name)]
-    if len(set(names)) < len(names):
-        raise ValuesError("", f"several columns have the same name among {', '.join(names)}")
-    columns = {name: table.column(name).combine_chunks() for name in names}
-    _write_record(root, columns, _Target(lanes, np.arange(table.num_rows)))
+    _write_record(root, columns.arrays, _Target(lanes, np.arange(columns.rows), has_gaps=columns.has_gaps))
 
 
 def _write_record(record: Record, columns: Mapping[str, pa.Array], target: _Target) -> None:
@@ -106,7 +85,7 @@ def _write_entry(entry: Entry, array: pa.Array | None, target: _Target) -> None:
         return
     match entry.presence:
         case None:
-            _write(entry.node, solid(array, target.path), target)
+            _write(entry.node, array, target)
         case Bit(cell, mask):
             there = target.only(_valid(array))
             there.column(cell, "u64")[there.rows] |= np.uint64(mask)
@@ -128,10 +107,14 @@ def _valid(array: pa.Array) -> Flags:
 
 
 def _write(node: Node, array: pa.Array, target: _Target) -> None:
-    """Make the elements of an array, none of which is null, those of the rows."""
+    """Make the elements of an array those of the rows. None of them may be null, unless that is a float which can be NaN."""
+    if not isinstance(node, Scalar):
+        array = solid(array, target.path)
+        if types.is_null(array.type):
+            return  # there are no elements
     match node:
         case Scalar(cell, type_):
-            target.column(cell, scalar_of(type_))[target.rows] = numbers_of(type_, array, target.path)
+            target.column(cell, scalar_of(type_))[target.rows] = numbers_of(type_, array, target.path, has_gaps=target.has_gaps)
         case Text(_, _, type_):
             data, counts = text_of(type_, array, target.path)
             _check(counts, None, type_.maximum, target.path)
@@ -143,7 +126,7 @@ def _write(node: Node, array: pa.Array, target: _Target) -> None:
         case Numbers(_, _, type_, length, maximum):
             values, counts = listed_of(array, target.path)
             _check(counts, length, maximum, target.path)
-            _put(node, numbers_of(type_, values, f"{target.path}[]"), counts, target)
+            _put(node, numbers_of(type_, values, f"{target.path}[]", has_gaps=target.has_gaps), counts, target)
         case Items(_, _, element, length, maximum):
             values, counts = listed_of(array, target.path)
             _check(counts, length, maximum, target.path)
@@ -206,7 +189,7 @@ def _extended(node: Spanned, counts: Indices, target: _Target) -> _Target:
     total = int(counts.sum())
     start = target.lanes.take(node.lane, total)
     _refer(node, start, counts, target)
-    return _Target(target.lanes, np.arange(start, start + total), f"{target.path}[]")
+    return _Target(target.lanes, np.arange(start, start + total), f"{target.path}[]", target.has_gaps)
 
 
 def _refer(node: Spanned, start: int, counts: Indices, target: _Target) -> None:

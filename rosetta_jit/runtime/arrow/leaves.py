@@ -11,6 +11,7 @@ from pyarrow import types
 from rosetta_jit.errors import ValuesError
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
+from rosetta_jit.runtime.arrow.plain import is_text, pairs
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder.coerce import UTF_16
 from rosetta_jit.runtime.rows import offsets
@@ -42,10 +43,12 @@ def solid(array: pa.Array, path: str) -> pa.Array:
     return array
 
 
-def numbers_of(type_: ScalarType, array: pa.Array, path: str) -> NDArray[Any]:
-    """Numbers as their cells take them."""
-    array = solid(array, path)
+def numbers_of(type_: ScalarType, array: pa.Array, path: str, *, has_gaps: bool) -> NDArray[Any]:
+    """Numbers as their cells take them; ``has_gaps`` as of `sources.Columns`."""
+    array = solid(_without_gaps(type_, array, path) if has_gaps and types.is_floating(array.type) else array, path)
     match type_:
+        case _ if types.is_null(array.type):
+            return np.empty(0, dtype_of(scalar_of(type_)))  # of no type, for there are none
         case Bool() if types.is_boolean(array.type):
             return _numpy(array)
         case Int() if types.is_integer(array.type):
@@ -58,6 +61,22 @@ def numbers_of(type_: ScalarType, array: pa.Array, path: str) -> NDArray[Any]:
             return _named(type_, array, path)
         case Bool() | Int() | Float() | Enum():
             raise refused(_WANTED[type(type_)], array, path)
+        case _:
+            assert_never(type_)
+
+
+def _without_gaps(type_: ScalarType, array: pa.Array, path: str) -> pa.Array:
+    """Floats of pandas: NaN where one is null, or the integers that they stand for."""
+    match type_:
+        case Float():
+            return array.fill_null(float("nan")) if array.null_count else array
+        case Int():
+            try:
+                return array.cast(pa.from_numpy_dtype(dtype_of(scalar_of(type_))))
+            except pa.ArrowInvalid as error:
+                raise ValuesError(path, f"a value is no integer, or out of range: {error}") from None
+        case Bool() | Enum():
+            return array
         case _:
             assert_never(type_)
 
@@ -114,8 +133,7 @@ def _number(type_: Enum, numbers: dict[str, int], name: str, path: str) -> int:
 
 
 def _is_text(array: pa.Array) -> bool:
-    type_ = array.type.value_type if types.is_dictionary(array.type) else array.type
-    return types.is_string(type_) or types.is_large_string(type_) or types.is_string_view(type_)
+    return is_text(array.type.value_type if types.is_dictionary(array.type) else array.type)
 
 
 def text_of(type_: String, array: pa.Array, path: str) -> tuple[NDArray[Any], Indices]:
@@ -131,7 +149,7 @@ def text_of(type_: String, array: pa.Array, path: str) -> tuple[NDArray[Any], In
 def blob_of(array: pa.Array, path: str) -> tuple[NDArray[np.uint8], Indices]:
     """The same of bytes."""
     type_ = array.type
-    if not (types.is_binary(type_) or types.is_large_binary(type_) or types.is_fixed_size_binary(type_) or types.is_binary_view(type_)):
+    if not (types.is_binary(type_) or types.is_large_binary(type_) or types.is_fixed_size_binary(type_)):
         raise refused("bytes", array, path)
     return _content(array.cast(pa.large_binary()), path)
 
@@ -157,14 +175,13 @@ def _as_utf16(octets: NDArray[np.uint8], counts: Indices) -> tuple[NDArray[np.ui
 
 
 def listed_of(array: pa.Array, path: str) -> tuple[pa.Array, Indices]:
-    """The elements of lists, or the entries of maps, none of which may be null, and how many each has."""
-    type_ = array.type
-    if types.is_map(type_):
-        array = array.cast(pa.list_(pa.struct([type_.key_field.with_name("key"), type_.item_field.with_name("value")])))
-    if types.is_fixed_size_list(type_):
-        counts = np.full(len(array), type_.list_size, np.int64)
-    elif types.is_list(array.type) or types.is_large_list(type_) or types.is_list_view(type_) or types.is_large_list_view(type_):
+    """The elements of lists, or the entries of maps, and how many each has."""
+    if types.is_map(array.type):
+        array = pairs(array)
+    if types.is_fixed_size_list(array.type):
+        counts = np.full(len(array), array.type.list_size, np.int64)
+    elif types.is_list(array.type) or types.is_large_list(array.type):
         counts = np.asarray(_numpy(array.value_lengths()), np.int64)
     else:
         raise refused("lists", array, path)
-    return solid(array.flatten(), f"{path}[]"), counts
+    return array.flatten(), counts

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 Unit = Literal["s", "ms", "us", "ns"]
 SECOND_NS = 1_000_000_000
+UNITS_NS: dict[str, int] = {"s": SECOND_NS, "ms": 1_000_000, "us": 1_000, "ns": 1}
 _MOST = (1 << 63) - 1
 _FRACTIONS = {"n": 1, "u": 1_000, "micro": 1_000, "m": 1_000_000}
 """What the name of the second field begins with, and how many nanoseconds its unit has."""
@@ -109,11 +110,9 @@ def moment_columns(record: Record, array: pa.Array, path: str) -> dict[str, pa.A
     moment = _moment(record)
     if moment is None:
         raise ValuesError(path, f"{record.struct or 'the record'} is no time, found a column of {array.type}")
-    try:
-        stamps = array.cast(pa.timestamp("ns", array.type.tz)).cast(pa.int64()).to_numpy()
-    except pa.ArrowInvalid as error:
-        raise ValuesError(path, str(error)) from None
-    seconds, rest = np.divmod(stamps, SECOND_NS)
+    unit_ns = UNITS_NS[array.type.unit]
+    seconds, rest = np.divmod(array.cast(pa.int64()).to_numpy(), SECOND_NS // unit_ns)
+    rest *= unit_ns
     if (rest % moment.unit_ns).any():
         raise ValuesError(path, f"value {np.argmax(rest % moment.unit_ns != 0)} has parts that the field has no room for")
     return dict(zip(record.entries, (pa.array(seconds), pa.array(rest // moment.unit_ns)), strict=True))

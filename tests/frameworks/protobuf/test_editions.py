@@ -68,6 +68,17 @@ def test_enums_are_open_unless_they_choose_otherwise():
     assert types["vec.lexical.Message.Freed"].closed is False
 
 
+def test_what_no_byte_depends_on_is_not_checked():
+    """Names out of style, types exported from within others under STRICT, and values of features of a single language."""
+    text = """edition = "2024";
+        import option "google/protobuf/cpp_features.proto";
+        option features.default_symbol_visibility = STRICT;
+        message lower { export message Inner {} int32 Upper = 1; string s = 2 [features.(pb.cpp).string_type = NONE]; }"""
+    types = parse(Source("style.proto", text), load_from(SHIPPED)).types
+    assert {"lower", "lower.Inner"} <= types.keys()
+    assert [field.name for field in types["lower"].fields] == ["Upper", "s"]
+
+
 @pytest.mark.parametrize("name", FILES)
 def test_a_generated_class_has_the_schema_of_its_file(name, sets, native):
     file = descriptor_pb2.FileDescriptorSet.FromString(sets[name]).file[-1]

@@ -490,8 +490,7 @@ rosetta_jit::result<rosetta_jit::done> codec::try_decode(const void *data, std::
     holder->now = now;
     holder->number = number;
     holder->most = rosetta_jit::detail::most_rows(size);
-    row = {};
-    holder->unknown.used = 0;
+    holder->unknown.reset();
     holder->angles.fill((*target.mutable_angles()));
     int64_t result = borrow_1(holder, bytes, end, &failure);
     if (result < 0 && failure.site != 0) {
@@ -525,8 +524,8 @@ void gather(const ::torso_state::holder &source, torso_state_holder *holder)
     auto &row = holder->message;
     row = {};
     holder->most = rosetta_jit::detail::most_rows(std::size_t{1} << 39);
-    holder->unknown.used = 0;
-    holder->angles.used = 0;
+    holder->unknown.reset();
+    holder->angles.reset();
     holder->angles.read(source.angles());
     row.angles = {0, holder->angles.used};
     collect(source, *holder, row);

@@ -14,8 +14,6 @@ from rosetta_jit.frameworks.protobuf.proto.check_features import check_features
 from rosetta_jit.frameworks.protobuf.proto.check_fields import check_fields
 from rosetta_jit.frameworks.protobuf.proto.check_json import check_json
 from rosetta_jit.frameworks.protobuf.proto.check_numbers import check_numbers
-from rosetta_jit.frameworks.protobuf.proto.check_style import check_style
-from rosetta_jit.frameworks.protobuf.proto.check_visibility import check_visibility
 from rosetta_jit.frameworks.protobuf.proto.options import check_options
 
 if TYPE_CHECKING:
@@ -32,8 +30,6 @@ CHECKS: tuple[Check, ...] = (
     check_json,
     check_options,
     check_features,
-    check_visibility,
-    check_style,
 )
 
 

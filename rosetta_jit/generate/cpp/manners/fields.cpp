@@ -16,7 +16,7 @@ rosetta_jit::detail::put($row, $at);
 rosetta_jit::detail::assign_span($at, from.$lane, $row, bytes);
 
 /* == sequence encode == */
-rosetta_jit::detail::take_span(to.$lane, $row, $at);
+rosetta_jit::detail::${how}_span(to.$lane, $row, $at);
 
 /* == list decode == */
 rosetta_jit::detail::resize_to($at, $row.count);

@@ -224,12 +224,28 @@ constexpr std::int64_t most_rows(std::size_t bytes) noexcept
     return (std::int64_t{1} << 20) + 64 * static_cast<std::int64_t>(bytes < most ? bytes : most);
 }
 
-/* Rows of its own. */
+/* Rows of its own; to write a message, it may show the elements of a container instead. */
 template <class Row> struct lane {
     Row *rows = nullptr;
     std::int64_t capacity = 0;
     std::int64_t used = 0;
+    std::int64_t room = 0; /* of the memory */
     std::unique_ptr<Row[]> memory;
+
+    /* No rows, and its own memory. */
+    void reset()
+    {
+        rows = memory.get();
+        capacity = room;
+        used = 0;
+    }
+
+    void show(const Row *elements, std::int64_t count)
+    {
+        rows = const_cast<Row *>(elements); /* the functions that write messages change no row */
+        capacity = count;
+        used = count;
+    }
 
     /* Makes room for more rows; false where that would be more than `most`. */
     bool grow(std::int64_t missing, std::int64_t most)
@@ -245,6 +261,7 @@ template <class Row> struct lane {
         memory = std::move(more);
         rows = memory.get();
         capacity = wanted;
+        room = wanted;
         return true;
     }
 };
@@ -446,6 +463,21 @@ template <class Lane, class Span, class Container> void take_span(Lane &to, Span
     }
 }
 
+/* The same of what a message has once: numbers that lie as rows do are not copied. */
+template <class Lane, class Span, class Container> void show_span(Lane &to, Span &span, const Container &from)
+{
+    using Row = std::remove_reference_t<decltype(*to.rows)>;
+    if constexpr (has_data<const Container>::value) {
+        using Number = std::remove_cv_t<std::remove_reference_t<decltype(*std::data(from))>>;
+        if constexpr (same_numbers<Number, Row>) {
+            span = {0, count_of(from)};
+            to.show(reinterpret_cast<const Row *>(std::data(from)), span.count);
+            return;
+        }
+    }
+    take_span(to, span, from);
+}
+
 /* Rows that are the elements of a container, so that nothing is copied. */
 template <class Row, class Container> struct field_lane {
     Row *rows = nullptr;
@@ -455,6 +487,8 @@ template <class Row, class Container> struct field_lane {
 
     using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(std::declval<Container &>()))>>;
     static_assert(same_numbers<Number, Row>, "the class has elements of another type than the schema");
+
+    void reset() { used = 0; }
 
     void fill(Container &target)
     {
@@ -474,9 +508,10 @@ template <class Row, class Container> struct field_lane {
         if (missing > most - capacity) {
             return false;
         }
-        resize_to(*container, capacity + missing);
+        const std::int64_t wanted = capacity + missing;
+        resize_to(*container, wanted);
         look();
-        return true;
+        return capacity >= wanted; /* one of a fixed length has the room that it has */
     }
 
     /* Leaves the elements of a span alone. Where its count is negative they are bytes of the message. */

@@ -1,0 +1,173 @@
+// A message in a class of a framework's, decoded and encoded by the code that `rosetta-jit generate` writes for that class, and by the framework's own.
+// HEADER and UNIT are those of the generated unit, which is compiled by itself; ROS1, ROS2 or PROTOBUF says whose class it is. rclcpp's structs have no code
+// of their own that reads them: roscpp's struct of the same data, which PEER_HEADER declares, is filled beside them. The program gets two files, a message
+// for ours and the same for theirs, the number of rounds, and the seconds of one; it prints nanoseconds a message, a line for who and job.
+#include HEADER
+#if defined(ROS2)
+#include PEER_HEADER
+#endif
+#include "timing.hpp"
+
+#if defined(PROTOBUF)
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#endif
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Message = UNIT::holder;
+#if defined(ROS2)
+using Theirs = PEER;
+#else
+using Theirs = Message;
+#endif
+
+using Bytes = std::vector<unsigned char>;
+
+// A message in several places, of which each round reads another: where two blocks lie modulo a page can make a copy ten times slower.
+struct Places {
+    static constexpr std::size_t COUNT = 5, STEP = 1376;
+    std::vector<Bytes> memory;
+    std::size_t size;
+
+    explicit Places(const Bytes& message) : size(message.size()) {
+        for (std::size_t place = 0; place < COUNT; place++) {
+            memory.emplace_back(place * STEP);
+            memory.back().insert(memory.back().end(), message.begin(), message.end());
+        }
+    }
+    const unsigned char* of(int round) const {
+        const std::size_t place = static_cast<std::size_t>(round) % COUNT;
+        return memory[place].data() + place * STEP;
+    }
+};
+
+#if defined(ROS1) || defined(ROS2)
+bool theirs_read(const unsigned char* data, std::size_t size, Theirs& message) {
+    ros::serialization::IStream stream(const_cast<unsigned char*>(data), static_cast<std::uint32_t>(size));
+    ros::serialization::deserialize(stream, message);
+    return true;
+}
+
+bool theirs_write(const Theirs& message, unsigned char* data, std::size_t size) {
+    ros::serialization::OStream stream(data, static_cast<std::uint32_t>(size));
+    ros::serialization::serialize(stream, message);
+    return true;
+}
+
+// The message as the framework writes it whatever it was read from, to be compared.
+std::string canonical(const Theirs& message) {
+    std::string found(ros::serialization::serializationLength(message), 0);
+    theirs_write(message, reinterpret_cast<unsigned char*>(&found[0]), found.size());
+    return found;
+}
+#elif defined(PROTOBUF)
+bool theirs_read(const unsigned char* data, std::size_t size, Theirs& message) { return message.ParseFromArray(data, static_cast<int>(size)); }
+
+bool theirs_write(const Theirs& message, unsigned char* data, std::size_t size) { return message.SerializeToArray(data, static_cast<int>(size)); }
+
+// The message as the framework writes it whatever it was read from, to be compared: entries of maps in order.
+std::string canonical(const Theirs& message) {
+    std::string found;
+    {
+        google::protobuf::io::StringOutputStream stream(&found);
+        google::protobuf::io::CodedOutputStream coded(&stream);
+        coded.SetSerializationDeterministic(true);
+        message.SerializeToCodedStream(&coded);
+    }
+    return found;
+}
+#endif
+
+template <class Class, class Read> double read(Read work, std::int64_t iterations) {
+    Class message;
+    publish(message);
+    return nanoseconds(iterations, [&] { return work(message); });
+}
+
+template <class Class, class Write> double write(const Class& message, std::size_t size, Write work, std::int64_t iterations) {
+    std::vector<unsigned char> buffer(size);
+    publish(message);
+    publish(buffer);
+    return nanoseconds(iterations, [&] { return work(message, buffer.data()); });
+}
+
+// Whether what ours reads from the one message is what theirs reads from the other, and comes back the same.
+bool agree(UNIT::codec& codec, const Message& one, const Theirs& other, const Bytes& ours) {
+    std::string written;
+#if defined(ROS2)
+    return codec.try_encode(one, written) && written.size() == ours.size() && std::equal(ours.begin(), ours.end(), written.begin(), [](unsigned char byte, char back) {
+        return byte == static_cast<unsigned char>(back);
+    }) && one.header.frame_id == other.header.frame_id;
+#else
+    Message again;
+    if (ours.empty() || canonical(one) != canonical(other) || !codec.try_encode(other, written)) {
+        return false;
+    }
+    return codec.try_decode(written.data(), written.size(), again) && canonical(again) == canonical(other);
+#endif
+}
+
+Bytes content(const char* path) {
+    std::ifstream file(path, std::ios::binary);
+    return Bytes(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+}
+
+struct Contender {
+    const char* name;
+    std::function<double(std::int64_t iterations, int round)> job;
+    std::int64_t iterations;
+};
+
+}  // namespace
+
+int main(int, char** arguments) {
+    const Bytes ours = content(arguments[1]), theirs = content(arguments[2]);
+    const int rounds = std::atoi(arguments[3]);
+    const double round_ns = 1e9 * std::atof(arguments[4]);
+    UNIT::codec codec;
+    Message one;
+    Theirs other;
+    if (!codec.try_decode(ours.data(), ours.size(), one) || !theirs_read(theirs.data(), theirs.size(), other) || !agree(codec, one, other, ours)) {
+        std::fputs("the messages that are read or written differ\n", stderr);
+        return 1;
+    }
+    const Places our_places(ours), their_places(theirs);
+    const auto encode = [&](const Message& message, unsigned char* buffer) { return codec.try_encode(message, buffer, ours.size()).has_value(); };
+    const auto peer_encode = [&](const Theirs& message, unsigned char* buffer) { return theirs_write(message, buffer, theirs.size()); };
+    Contender contenders[] = {
+        {"ours decode", [&](std::int64_t iterations, int round) {
+            const unsigned char* const data = our_places.of(round);
+            return read<Message>([&](Message& message) { return codec.try_decode(data, ours.size(), message).has_value(); }, iterations);
+        }, 0},
+        {"theirs decode", [&](std::int64_t iterations, int round) {
+            const unsigned char* const data = their_places.of(round);
+            return read<Theirs>([&](Theirs& message) { return theirs_read(data, theirs.size(), message); }, iterations);
+        }, 0},
+        {"ours encode", [&](std::int64_t iterations, int) { return write(one, ours.size(), encode, iterations); }, 0},
+        {"theirs encode", [&](std::int64_t iterations, int) { return write(other, theirs.size(), peer_encode, iterations); }, 0},
+    };
+    for (Contender& each : contenders) {
+        each.iterations = std::max<std::int64_t>(1, static_cast<std::int64_t>(round_ns / std::max(each.job(100, 0), 0.1)));
+    }
+    for (int round = 0; round < rounds; round++) {  // in turns, so that a busy moment of the machine hits all alike
+        for (const Contender& each : contenders) {
+            const double took = each.job(each.iterations, round);
+            if (took < 0) {
+                return 1;
+            }
+            std::printf("%s %.3f\n", each.name, took);
+        }
+    }
+    return 0;
+}

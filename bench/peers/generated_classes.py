@@ -1,0 +1,90 @@
+"""Classes of frameworks, filled by generated C++ and by the code of the framework itself."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from bench.peers.generated import SOURCES
+from rosetta_jit.generate.build import Wishes, generated
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rosetta_jit.pipeline.request import Request
+
+ROSCPP = ("-lroscpp_serialization", "-lrostime", "-lcpp_common")
+LIBRARIES = {"ros1": ROSCPP, "ros2": ROSCPP, "protobuf": ("-lprotobuf",)}
+HEADERS = {"ros1": "sensor_msgs/JointState.h", "ros2": "sensor_msgs/JointState.h", "protobuf": "google/protobuf/message.h"}
+GENERATORS = {"protobuf": "protoc", "ros2": "rosidl"}
+ROSIDL = tuple(f"-I/usr/include/rosidl_runtime_{each}" for each in ("c", "cpp"))
+"""What the structs of rclcpp include besides."""
+IDL = SOURCES.parents[1] / "idl"
+RCLCPP = {
+    "builtin_interfaces": ("Time",),
+    "std_msgs": ("Header",),
+    "geometry_msgs": ("Point", "Quaternion", "Vector3", "Pose", "PoseArray"),
+    "sensor_msgs": ("Imu", "JointState", "LaserScan", "Image"),
+}
+"""The structs of rclcpp that are made."""
+
+
+def installed(holder: str) -> bool:
+    """Whether the framework's generator, headers and compiler are."""
+    if any(shutil.which(each) is None for each in ("g++", GENERATORS.get(holder, "g++"))):
+        return False
+    command = ["g++", "-std=c++17", "-E", "-x", "c++", "-"]
+    return subprocess.run(command, input=f"#include <{HEADERS[holder]}>\n", capture_output=True, text=True, check=False).returncode == 0
+
+
+@dataclass(frozen=True, slots=True)
+class Messages:
+    """The same data twice: as generated code reads it, and as the framework's own does."""
+
+    ours: bytes
+    theirs: bytes
+
+
+def program(request: Request, holder: str, folder: Path, *, proto: str = "", peer: str = "") -> Path:
+    """A program that measures both; protoc makes the class from ``proto``, roscpp's struct ``peer`` stands beside one of rclcpp's."""
+    include = proto.replace(".proto", ".pb.h")
+    for name, text in generated(request, "cpp", ("decode", "encode"), "unit", Wishes(holder=holder, include=include)).items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text)
+    sources = [str(SOURCES / "classes.cpp"), "unit.cpp"]
+    if proto:
+        subprocess.run(["protoc", f"--cpp_out={folder}", "-I", SOURCES, "-I", IDL, proto], check=True)
+        sources.append(proto.replace(".proto", ".pb.cc"))
+    if peer:
+        _structs_of_rclcpp(folder)
+    words = ['-DHEADER="unit.hpp"', "-DUNIT=unit", f"-D{holder.upper()}"]
+    words += [f'-DPEER_HEADER="{peer}.h"', f"-DPEER={peer.replace('/', '::')}", *ROSIDL] if peer else []
+    options = ["-std=c++17", "-O2", f"-I{folder}", f"-I{SOURCES}", *words]
+    made = folder / "classes"
+    subprocess.run(["g++", *options, *sources, *LIBRARIES[holder], "-o", made], cwd=folder, check=True)
+    return made
+
+
+def _structs_of_rclcpp(folder: Path) -> None:
+    """The headers that ROS 2's own generator writes."""
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    for package, names in RCLCPP.items():
+        files = [f"msg/{name}.msg" for name in names]
+        command = ["rosidl", "generate", "-o", str(folder / package), "-t", "cpp", "-I", "..", package, *files]
+        subprocess.run(command, cwd=IDL / "ros2" / package, env=environment, check=True, capture_output=True)
+
+
+def measured(program: Path, messages: Messages, rounds: int, round_s: float) -> dict[str, tuple[float, ...]]:
+    """Nanoseconds a message, a figure a round, by who and job, as ``"ours decode"``; it fails where both do not read and write the same."""
+    for name in ("ours", "theirs"):
+        program.with_name(name).write_bytes(getattr(messages, name))
+    command = [str(program), *(str(program.with_name(name)) for name in ("ours", "theirs")), str(rounds), str(round_s)]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    found: dict[str, list[float]] = {}
+    for line in said.splitlines():
+        who, took = line.rsplit(" ", 1)
+        found.setdefault(who, []).append(float(took))
+    return {who: tuple(taken) for who, taken in found.items()}

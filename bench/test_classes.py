@@ -1,0 +1,67 @@
+"""Generated C++ that fills the classes of roscpp, rclcpp and protoc, against the code of roscpp and protoc that does."""
+
+from __future__ import annotations
+
+import pytest
+
+from bench.contest import Contender, Outcome, comparison
+from bench.peers import generated_classes as peers
+from bench.peers.generated_classes import Messages
+from bench.report import words
+from bench.subjects import ROS_2, SCENE, SUBJECTS
+from rosetta_jit.api.options import type_request
+
+CHAPTER = "Generated C++ in frameworks' classes"
+OURS = "rosetta_jit, generated C++"
+PEERS = {"ros1": "roscpp", "ros2": "roscpp", "protobuf": "protobuf"}
+JOBS = {"decode": ("an object, used again", 1), "encode": ("a buffer that is given", None)}
+"""What each makes, and the target."""
+ROS = ("Imu", "JointState, 32 joints", "LaserScan 1080", "PoseArray 1000", "Image 640x480")
+PROTOBUF = {
+    "RST JointAngles, packed": "angles.proto",
+    "RST JointAngles, unpacked": "angles.proto",
+    "RST Image 320x240": "rst/vision/Image.proto",
+    "Scene": "scene.proto",
+}
+
+
+@pytest.fixture
+def against(tmp_path, effort, found, record):
+    """Call it with a row's name, a request, whose classes, and the messages: each job becomes a row."""
+
+    def measure(name, request, holder, messages, **given):
+        taken = peers.measured(peers.program(request, holder, tmp_path, **given), messages, effort.rounds, effort.round_s)
+        whose = {OURS: "ours", f"{PEERS[holder]} in C++": "theirs"}
+        for job, (makes, at_most) in JOBS.items():
+            outcome = Outcome({who: taken[f"{each} {job}"] for who, each in whose.items()})
+            contenders = [Contender(who, "ours" if each == "ours" else "peer", makes, lambda: 0.0) for who, each in whose.items()]
+            found("comparisons", comparison(CHAPTER, f"{name}, {job}d", contenders, outcome))
+            mine, other = (words.time(outcome.took(who).median) for who in whose)
+            record(f"{name}, generated C++, {job}d", outcome.ratio(*whose), at_most, f"x {PEERS[holder]}", f"{mine} against {other}")
+
+    return measure
+
+
+@pytest.mark.skipif(not peers.installed("ros1"), reason="roscpp is not installed")
+@pytest.mark.parametrize("name", ROS)
+def test_structs_of_roscpp(name, against):
+    subject = SUBJECTS[name]
+    request = type_request("decode", subject.type, {"encoding": "ros1"})
+    against(name, request, "ros1", Messages(subject.message, subject.message))
+
+
+@pytest.mark.skipif(not peers.installed("ros2"), reason="rosidl, which makes the structs of rclcpp, is not installed, or roscpp is not")
+@pytest.mark.parametrize("name", ROS)
+def test_structs_of_rclcpp(name, against):
+    """ROS 2's own reader is part of its middleware: roscpp, which reads the same data as ROS 1 has them, stands for it."""
+    older, newer = SUBJECTS[name], ROS_2[f"{name}, ROS 2"]
+    request = type_request("decode", newer.type, {"encoding": "cdr"})
+    against(f"{name}, CDR", request, "ros2", Messages(newer.message, older.message), peer=older.type)
+
+
+@pytest.mark.skipif(not peers.installed("protobuf"), reason="protoc and its library are not installed")
+@pytest.mark.parametrize("name", PROTOBUF)
+def test_classes_of_protoc(name, against):
+    subject = {**SUBJECTS, "Scene": SCENE}[name]
+    request = type_request("decode", subject.type, {"encoding": "protobuf", **subject.options})
+    against(name, request, "protobuf", Messages(subject.message, subject.message), proto=PROTOBUF[name])
