@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
-from typing import TYPE_CHECKING, Any, Literal, assert_never, cast
+from typing import TYPE_CHECKING, Any, Literal, assert_never, cast, get_args
 
 import numpy as np
 import pyarrow as pa
@@ -21,7 +21,7 @@ from rosetta_jit.errors import EncodeError
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 from rosetta_jit.runtime.arrow.texts import NoTextError, text_array
-from rosetta_jit.runtime.arrow.times import time_array
+from rosetta_jit.runtime.arrow.times import Unit, time_array
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, lent, offsets, picked, read, room_for, spans
 from rosetta_jit.startup.dataclass import dataclass
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.arrow.times import Unit
     from rosetta_jit.runtime.handed import Handed
     from rosetta_jit.runtime.holder.record import Entry, Node, ScalarType
     from rosetta_jit.runtime.lanes import Lanes
@@ -69,6 +68,27 @@ class Form:
     copies: bool = True
     times: Mapping[str, Unit] = field(default_factory=dict[str, "Unit"])
     handed: Handed | None = None
+
+    @classmethod
+    def of(cls, octets: Octets, copies: bool, times: Iterable[str] | Mapping[str, Unit], handed: Handed | None = None) -> Form:
+        """As a user says it.
+
+        Raises
+        ------
+        ValueError
+            If there is no such form of strings, or no such unit.
+        TypeError
+            If one name is given instead of several.
+        """
+        if octets not in get_args(Octets):
+            raise ValueError(f'octets is "string" or "binary", not {octets!r}')
+        if isinstance(times, str):
+            raise TypeError(f"times is a list of names, or units by name: times=[{times!r}]")
+        units = units_of(times)
+        unknown = [each for each in units.values() if each not in get_args(Unit)]
+        if unknown:
+            raise ValueError(f'the unit of a time is "s", "ms", "us" or "ns", not {unknown[0]!r}')
+        return cls(octets, copies, units, handed)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
