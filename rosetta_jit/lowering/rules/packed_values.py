@@ -10,7 +10,7 @@ from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.functions.texts import is_textual
-from rosetta_jit.language.walk import parts
+from rosetta_jit.language.walk import operands
 from rosetta_jit.lowering.rules.values import constant, scalar_type
 from rosetta_jit.lowering.rules.wire_side import wire_key
 from rosetta_jit.lowering.writer import Where, block
@@ -203,7 +203,7 @@ def _read_by(expr: typed.Expr) -> list[typed.Place]:
             texts = [each.place for each in arguments if isinstance(each, typed.Access) and is_textual(each.type)]
             return texts + _read(*arguments)
         case _:
-            return _read(*parts(expr))
+            return _read(*operands(expr))
 
 
 def _indexed(place: typed.Place) -> list[typed.Place]:
