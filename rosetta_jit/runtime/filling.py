@@ -46,6 +46,8 @@ class Filling:
         """Forget what the batch holds."""
         batch, lanes = self.batch, self.batch.lanes
         batch.errors, batch.kept_, self.count = {}, None, 0
+        if batch.handed_ is not None:
+            batch.handed_.renew(lanes)
         lanes.begin_filling()
         for lane in range(len(lanes.buffers)):
             lanes.words[lane_word(lane, USED)] = 0

@@ -197,7 +197,8 @@ class Program(ProgramBase):
             raise TypeError(f"this {type(self).__name__} is made already: its code may be running")
         self._loaded, self._asks = loaded, loaded.told
         if beside is None:
-            self._registers, self._holder, self._owners = loaded.state.registers(), loaded.holder_type(), {}
+            made = type.__call__(loaded.holder_type)  # one holder is not worth the time to compile how classes are called
+            self._registers, self._holder, self._owners = loaded.state.registers(), made, {}
         else:
             self._registers, self._holder, self._owners = beside.shared_()
         self._plan = loaded.holder_type.family_.plan
@@ -287,8 +288,8 @@ class Program(ProgramBase):
     def _lanes_of(self, batch: Batch) -> Lanes:
         """The lanes of a batch of this program's holders."""
         expected = self._loaded.holder_type
-        lanes = batch.lanes
-        if batch.family_ is not expected.family_ or lanes.plan.layout is not expected.family_.layout:
+        lanes: Lanes | None = getattr(batch, "lanes", None)
+        if lanes is None or batch.family_ is not expected.family_ or lanes.plan.layout is not expected.family_.layout:
             raise TypeError(f"a batch of {expected.__qualname__} is needed")
         return lanes
 

@@ -160,7 +160,11 @@ def place_pointer(frame: Frame, place: Place) -> ir.Value:
     base, rows = _parts(place.row)
     row = expression(frame, base)
     start = row if stride == 1 else builder.mul(row, constant(stride), flags=("nsw",))
-    return _moved(frame, builder.gep(frame.address(place.lane), [start], source_etype=I8), rows * stride + place.offset)
+    address = builder.gep(frame.address(place.lane), [start], source_etype=I8)
+    offset = None if frame.given is None else frame.given.offsets.get((place.lane, place.offset))
+    if offset is None:
+        return _moved(frame, address, rows * stride + place.offset)
+    return builder.gep(_moved(frame, address, rows * stride), [offset], source_etype=I8)
 
 
 def _parts(index: Expr) -> tuple[Expr, int]:

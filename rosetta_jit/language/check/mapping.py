@@ -20,6 +20,7 @@ from rosetta_jit.language.check.left_out import left_out
 from rosetta_jit.language.check.rounding import rounded
 from rosetta_jit.language.check.state import idle, set_again
 from rosetta_jit.language.check.unequal_lengths import other_lengths
+from rosetta_jit.language.check.unreachable import unreachable
 from rosetta_jit.language.check.wires import message_of_wires, wrong_wires
 from rosetta_jit.language.imports.declarations import Imports, merge, reached, read_imports
 from rosetta_jit.language.imports.mappings import read_others
@@ -107,7 +108,7 @@ def check(
     problems = _wrong(texts, resolved)
     if _errors(problems):
         raise _error(problems)
-    problems += [*_silent_losses(texts.mapping, resolved, _blocks(texts.written)), *idle(texts.mapping)]
+    problems += [*_silent_losses(texts.mapping, resolved, _blocks(texts.written)), *idle(texts.mapping), *unreachable(texts.written)]
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
     functions, uses = dict(resolved.functions), tuple(texts.others.uses)
     notes, warnings = ([each for each in problems if (each.severity == "note") == is_note] for is_note in (True, False))
@@ -162,7 +163,8 @@ def _wrong(texts: _Texts, resolved: Resolved) -> list[Diagnostic]:
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in wrong_factors(block.rules)]
     problems += [*_unused(texts.imported, resolved), *misnamed(mapping, texts.schema)]
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in set_again(block.rules)]
-    problems += _of_wires(resolved) if mapping.wires else ()
+    again = {each.span for each in problems if each.code == "set-twice"}
+    problems += [each for each in (_of_wires(resolved) if mapping.wires else ()) if each.span not in again]
     return problems + [in_used(other.state[0].span, other.source.name) for other in texts.others.mappings() if other.state]
 
 
@@ -262,7 +264,8 @@ def _is_used(one: Imported, used: set[str], known: set[tuple[str, ...]]) -> bool
 
 
 def _sorted(problems: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
-    def place(problem: Diagnostic) -> tuple[str, int]:
-        return ("", -1) if problem.span is None else (problem.span.source.name, problem.span.start)
+    def place(problem: Diagnostic) -> tuple[str, int, bool]:
+        is_warning = problem.severity != "error"  # of one place, what is wrong comes before what is suspect
+        return ("", -1, is_warning) if problem.span is None else (problem.span.source.name, problem.span.start, is_warning)
 
     return tuple(sorted(dict.fromkeys(problems), key=place))
