@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from rosetta_jit.errors import DecodeError
     from rosetta_jit.runtime.arrow.arrays import Form, Octets
     from rosetta_jit.runtime.arrow.times import Unit
+    from rosetta_jit.runtime.handed import Handed
     from rosetta_jit.runtime.holder import Holder, Manners
     from rosetta_jit.runtime.holder.classes import HolderFamily
 
@@ -48,13 +49,14 @@ class Batch:
         Which of the messages that were given each row is.
     """
 
-    __slots__ = ("errors", "family_", "kept_", "lanes")
+    __slots__ = ("errors", "family_", "handed_", "kept_", "lanes")
 
     def __init__(self, family: HolderFamily, lanes: Lanes) -> None:
         self.family_ = family
         self.lanes = lanes
         self.errors: dict[int, DecodeError] = {}
         self.kept_: NDArray[np.int64] | None = None
+        self.handed_: Handed | None = None
 
     @classmethod
     def new(cls, holder_class: type[Holder], count: int) -> Batch:
@@ -101,6 +103,8 @@ class Batch:
     def reset(self, count: int) -> None:
         """So many empty messages, in the memory that is there."""
         with self.lanes:
+            if self.handed_ is not None:
+                self.handed_.renew(self.lanes)
             self.lanes.reset(count)
             self.errors, self.kept_ = {}, None
 
@@ -292,7 +296,7 @@ class Batch:
         """
         from rosetta_jit.runtime.arrow import arrays, tables
 
-        table = tables.table(self._record_batch(columns, arrays.Form.of(octets, copy, times)))
+        table = tables.table(self._record_batch(columns, arrays.Form.of(octets, copy, times, self.handed_)))
         table = tables.flat(table) if flatten else table
         return table if errors is None else tables.with_errors(table, errors, self.errors, self.kept.tolist())
 
