@@ -266,6 +266,16 @@ def test_what_cannot_be_opened_is_tried_again(run):
         assert any("taken" in line for line in said)
         in_the_way.close()
         until(lambda: not bridge.snapshot()[0]["problem"])
+        bridge.stop(0.2)
+        assert bridge.snapshot()[0]["problem"] == "closed"
+
+
+def test_why_a_route_never_ran_is_said_at_the_end(run):
+    source = free_port()
+    with rj.subscribe(f"tcp:{source}"):
+        bridge, _ = run(route(source, free_port()))
+        bridge.stop(0.2)
+    assert "taken" in bridge.snapshot()[0]["problem"]
 
 
 def test_channels_are_found(run):
