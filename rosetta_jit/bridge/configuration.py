@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 from rosetta_jit.bridge.limits import MAX_QUEUE
-from rosetta_jit.bridge.places import Places, place_of_syntax
+from rosetta_jit.bridge.toml_spans import TomlSpans, place_of_syntax
 from rosetta_jit.catalogue import bridge as words
 from rosetta_jit.errors import BridgeError
 from rosetta_jit.source import Source
@@ -122,7 +122,7 @@ class Configuration:
     metrics: str | None
     interval_s: float
     search_path: tuple[str, ...]
-    places: Places
+    spans: TomlSpans
 
 
 def read(path: str) -> Configuration:
@@ -140,7 +140,7 @@ def read(path: str) -> Configuration:
         plain = tomllib.loads(source.text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise BridgeError((words.no_toml(place_of_syntax(source, str(error)), str(error)),)) from None
-    reading = _Reading(Places(source), [])
+    reading = _Reading(TomlSpans(source), [])
     configuration = reading.configuration(path, plain)
     if reading.problems:
         raise BridgeError(tuple(reading.problems))
@@ -149,7 +149,7 @@ def read(path: str) -> Configuration:
 
 @dataclass(slots=True)
 class _Reading:
-    places: Places
+    spans: TomlSpans
     problems: list[Diagnostic]
 
     def configuration(self, path: str, plain: Mapping[str, Any]) -> Configuration:
@@ -159,15 +159,15 @@ class _Reading:
         routes = [self.route(each, number) for number, each in enumerate(self.tables(plain, "route"))]
         rpcs = [self.rpc(each, number) for number, each in enumerate(self.tables(plain, "rpc"))]
         if not routes and not rpcs and not self.problems:
-            self.problems.append(words.no_routes(self.places.of()))
+            self.problems.append(words.no_routes(self.spans.of()))
         seen: set[str] = set()
         for kind, each in (*(("route", each) for each in routes), *(("rpc", each) for each in rpcs)):
             if each.name in seen:
-                self.problems.append(words.name_twice(self.places.of(kind, each.number, "name"), each.name))
+                self.problems.append(words.name_twice(self.spans.of(kind, each.number, "name"), each.name))
             seen.add(each.name)
         folders, interval = self.sound(settings, "search_path", ()), self.sound(settings, "interval", 1.0)
         search_path = (str(Path(path).resolve().parent), *folders)
-        return Configuration(path, tuple(routes), tuple(rpcs), settings.get("metrics"), float(interval), search_path, self.places)
+        return Configuration(path, tuple(routes), tuple(rpcs), settings.get("metrics"), float(interval), search_path, self.spans)
 
     def sound(self, table: Mapping[str, Any], key: str, default: Any) -> Any:
         """The value of a key; its default where it is wrong, which has been noted."""
@@ -176,13 +176,13 @@ class _Reading:
     def tables(self, plain: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
         value = plain.get(key, [])
         if not isinstance(value, list) or not all(isinstance(each, dict) for each in cast("list[Any]", value)):
-            self.problems.append(words.bad_value(self.places.of(key), key, f"written as [[{key}]]"))
+            self.problems.append(words.bad_value(self.spans.of(key), key, f"written as [[{key}]]"))
             return []
         return cast("list[dict[str, Any]]", value)
 
     def table(self, value: object, place: tuple[str | int, ...]) -> dict[str, Any]:
         if not isinstance(value, dict):
-            self.problems.append(words.bad_value(self.places.of(*place), str(place[-1]), f"written as [{place[-1]}]"))
+            self.problems.append(words.bad_value(self.spans.of(*place), str(place[-1]), f"written as [{place[-1]}]"))
             return {}
         return cast("dict[str, Any]", value)
 
@@ -190,9 +190,9 @@ class _Reading:
         """Note keys that mean nothing, and values of another kind."""
         for key, value in table.items():
             if key not in keys:
-                self.problems.append(words.unknown_key(self.places.of(*place, key), key, where, keys))
+                self.problems.append(words.unknown_key(self.spans.of(*place, key), key, where, keys))
             elif key in KINDS and not _takes(key, value):
-                self.problems.append(words.bad_value(self.places.of(*place, key), key, KINDS[key][1]))
+                self.problems.append(words.bad_value(self.spans.of(*place, key), key, KINDS[key][1]))
 
     def route(self, table: dict[str, Any], number: int) -> Route:
         place = ("route", number)
@@ -200,14 +200,14 @@ class _Reading:
         self.known(table, ROUTE, "a route", place)
         if ("source" in table) == ("sources" in table) or ("target" in table) == ("call" in table):
             needed = "one of `source` and `sources`, or one of `target` and `call`"
-            self.problems.append(words.missing_key(self.places.of(*place), "this route", needed))
+            self.problems.append(words.missing_key(self.spans.of(*place), "this route", needed))
         sources = self.sources(table, place) if len(self.problems) == before else ()
         if len(self.problems) > before:
             return Route(str(table.get("name", number)), "", "", Translation(), number)
         source = " + ".join(address for _, address in sources) or str(table["source"])
         target = str(table.get("target") or table.get("call"))
         if source == target:
-            self.problems.append(words.same_address(self.places.of(*place, "target"), source))
+            self.problems.append(words.same_address(self.spans.of(*place, "target"), source))
         return Route(
             name=str(table.get("name") or f"{source} > {target}"),
             source=source,
@@ -227,11 +227,11 @@ class _Reading:
         """The address of each wire of a route that joins several."""
         given = cast("dict[str, object]", table.get("sources", {}))
         if "sources" in table and (not given or not all(isinstance(each, str) and "*" not in each for each in given.values())):
-            self.problems.append(words.bad_value(self.places.of(*place, "sources"), "sources", KINDS["sources"][1]))
+            self.problems.append(words.bad_value(self.spans.of(*place, "sources"), "sources", KINDS["sources"][1]))
         if given and not ("mapping" in table or "decode_mapping" in table):
-            self.problems.append(words.missing_key(self.places.of(*place, "sources"), "this route", "a `mapping` of several wires"))
+            self.problems.append(words.missing_key(self.spans.of(*place, "sources"), "this route", "a `mapping` of several wires"))
         if "on" in table and table["on"] not in given:
-            self.problems.append(words.bad_value(self.places.of(*place, "on"), "on", "one of the names in `sources`"))
+            self.problems.append(words.bad_value(self.spans.of(*place, "on"), "on", "one of the names in `sources`"))
         return tuple((wire, str(address)) for wire, address in given.items())
 
     def rpc(self, table: dict[str, Any], number: int) -> Rpc:
@@ -239,7 +239,7 @@ class _Reading:
         before = len(self.problems)
         self.known(table, RPC, "an rpc", place)
         if "serve" not in table or "call" not in table:
-            self.problems.append(words.missing_key(self.places.of(*place), "this rpc", "`serve` or `call`"))
+            self.problems.append(words.missing_key(self.spans.of(*place), "this rpc", "`serve` or `call`"))
         if len(self.problems) > before:
             return Rpc(str(table.get("name", number)), "", "", Translation(), Translation(), number)
         serve, call = str(table["serve"]), str(table["call"])
@@ -260,7 +260,7 @@ class _Reading:
             ("between", *(key for key in TRANSLATION if key != "between")),
         )
         for one, other in [(one, other) for one, *others in ways for other in others if {one, other} <= given.keys()]:
-            self.problems.append(words.two_ways(self.places.of(*place, other), one, other))
+            self.problems.append(words.two_ways(self.spans.of(*place, other), one, other))
         if "mapping" in given:
             given["decode_mapping"] = given.pop("mapping")
         return Translation(json.dumps(given, sort_keys=True, default=str) if given else "")
