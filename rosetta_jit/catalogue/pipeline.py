@@ -9,14 +9,18 @@ from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from rosetta_jit.source import Span
 
 
-def unknown_encoding(name: str, framework: str, known: Sequence[str]) -> Diagnostic:
-    """An encoding that the framework of the wire's type does not have."""
-    return Diagnostic("error", "unknown-encoding", f"{framework} has no encoding `{name}`", help=f"choose one of {', '.join(known)}")
+def unknown_encoding(name: str, framework: str, known: Sequence[str], frameworks: Mapping[str, Collection[str]]) -> Diagnostic:
+    """An encoding that the framework of the wire's type does not have. The name of a framework is taken for one sometimes."""
+    message = f"{framework} has no encoding `{name}`"
+    if name in frameworks and name != framework:
+        message = f"`{name}` is the name of a framework, and no encoding"
+        known = tuple(frameworks[name])
+    return Diagnostic("error", "unknown-encoding", message, help=f"choose one of {', '.join(known)}")
 
 
 def no_encoding(name: str, known: Sequence[str]) -> Diagnostic:

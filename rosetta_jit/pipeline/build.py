@@ -89,7 +89,8 @@ class Build:
         framework = self.wire_framework
         name = self.request.encoding or next(iter(framework.encodings))
         if name not in framework.encodings:
-            raise report(self.request, words.unknown_encoding(name, framework.name, tuple(framework.encodings)))
+            every = {each.name: each.encodings for each in readers_of(self.request).frameworks.values()}
+            raise report(self.request, words.unknown_encoding(name, framework.name, tuple(framework.encodings), every))
         encoding = framework.encoding(name)(self.types.wire, self.types.schema, name, self._choices(framework, name))
         if self.request.direction == "encode" and encoding.written is None:
             raise report(self.request, words.ambiguous_encoding(name, tuple(each for each in framework.encodings if each != name)))
