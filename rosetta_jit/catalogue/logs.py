@@ -73,6 +73,11 @@ def log_cut(name: str, at: int) -> Diagnostic:
     return Diagnostic("warning", "log-cut", f"{name} is cut short within the record at byte {at}", help=_READ)
 
 
+def file_cut(name: str, size: int, promised: int) -> Diagnostic:
+    """A file that is shorter than its header says."""
+    return Diagnostic("warning", "log-cut", f"{name} is cut short: it has {size} bytes of {promised}", help=_READ)
+
+
 def damaged(name: str, at: int) -> Diagnostic:
     """Bytes that are no record."""
     return Diagnostic("warning", "log-damaged", f"{name}: there is no whole record at byte {at}", help="what lies before it is read")

@@ -114,12 +114,42 @@ def test_many_damaged_databases(database, tmp_path):
     damaged_databases(database, tmp_path, 20_000)
 
 
+def test_databases_cut_at_many_bytes(database, tmp_path):
+    cut_databases(database, tmp_path, {*range(0, len(database), 1511), *range(4096, len(database), 4096), len(database) - 4095})
+
+
+@pytest.mark.campaign
+def test_databases_cut_at_each_byte(database, tmp_path):
+    cut_databases(database, tmp_path, range(len(database)))
+
+
+def cut_databases(database, tmp_path, sizes):
+    """What is read of a shorter file is in the whole one, and where it is less, that is said."""
+    everything = {(each.time, each.topic, each.message) for each in read(tmp_path / "a.db3", database)[0]}
+    assert everything
+    for size in sizes:
+        try:
+            messages, found = read(tmp_path / "a.db3", database[:size])
+        except LogError:
+            continue
+        assert {(each.time, each.topic, each.message) for each in messages} <= everything
+        assert found or len(messages) == len(everything), size
+
+
 def test_a_cut_folder_of_yarpdatadumper(tmp_path):
-    folder = tmp_path / "bottle_cli"
+    cut_folder(tmp_path / "bottle_cli", 3)
+
+
+@pytest.mark.campaign
+def test_a_folder_of_yarpdatadumper_cut_at_each_byte(tmp_path):
+    cut_folder(tmp_path / "bottle_cli", 1)
+
+
+def cut_folder(folder, step):
     shutil.copytree(DUMPED / "bottle_cli", folder)
     whole, before = (folder / "data.log").read_bytes(), 0
     everything = list(rj.open(folder).messages(raw=True))
-    for size in range(0, len(whole), 3):
+    for size in range(0, len(whole), step):
         (folder / "data.log").write_bytes(whole[:size])
         found = []
         messages = list(rj.open(folder, on_problem=found.append).messages(raw=True))

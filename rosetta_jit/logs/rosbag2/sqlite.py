@@ -6,6 +6,7 @@ The file is opened for reading alone, and asked for tables, never for views: a v
 from __future__ import annotations
 
 import sqlite3
+import struct
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.storage import Storage
 
 MAGIC = b"SQLite format 3\0"
+HEADER_BYTES, MOST_OF_PAGE = 100, 1 << 16
+"""Of the file's header, and the size of a page that it writes as 1: https://www.sqlite.org/fileformat.html, section 1.3."""
+
 ENCODINGS = {"cdr": "cdr", "ros_v1": "ros1"}
 TABLES = {"topics": ("id", "name", "type", "serialization_format"), "messages": ("id", "topic_id", "timestamp", "data")}
 
@@ -41,6 +45,9 @@ class SqliteReader:
         except (sqlite3.Error, ValueError, OverflowError) as error:
             raise LogError((words.unreadable(storage.name, str(error)),)) from error
         self.extent = Extent(first, last) if isinstance(first, int) and isinstance(last, int) else None
+        promised = _promised(storage.read(0, HEADER_BYTES))
+        if storage.size < promised:
+            tell(words.file_cut(storage.name, storage.size, promised))
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         return blocks_of(self._messages(wanted))
@@ -77,6 +84,12 @@ class SqliteReader:
                 yield topic, time_ns, time_ns, _octets(data)
         except sqlite3.Error as error:
             self._tell(words.stopped(self._name, str(error)))
+
+
+def _promised(header: bytes) -> int:
+    """How many bytes the file has, by its header; 0 where that does not say. SQLite takes what is missing of the last page as zeros."""
+    page, change, pages, said_at = struct.unpack_from(">16xH6xII60xI", header)
+    return pages * (MOST_OF_PAGE if page == 1 else page) if change == said_at else 0
 
 
 def _query(wanted: Wanted) -> tuple[str, list[int]]:
