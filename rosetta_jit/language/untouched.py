@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language import typed
 from rosetta_jit.language.counters import counters_of
 from rosetta_jit.language.places import field_names, places_in, value_inside
-from rosetta_jit.model.types import Optional, Struct, Union
+from rosetta_jit.language.typed import FieldStep
+from rosetta_jit.model.types import Field, Optional, Ref, Struct, Union
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.language.scope import Message
     from rosetta_jit.language.typed import Expr, Place, Rule
-    from rosetta_jit.model.types import Field
 
 Names = tuple[str, ...]
 
@@ -104,8 +104,19 @@ def places_read(value: Expr) -> Iterator[Place]:
     return _in(value)
 
 
+def asks_arrival(value: Expr) -> bool:
+    """Whether an expression asks if a message of a wire has arrived: every other message that is asked for can be absent."""
+    match value:
+        case typed.Has(typed.Place(side="wire", steps=(FieldStep(Field(type=Ref())),))):
+            return True
+        case _:
+            return False
+
+
 def _in(value: Expr) -> Iterator[Place]:
     match value:
+        case typed.Has() if asks_arrival(value):
+            pass  # nothing of a message
         case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place):
             yield place
             yield from _in_indices(place)

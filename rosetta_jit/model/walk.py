@@ -72,6 +72,19 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
             assert_never(expr)
 
 
+def every_rule(rules: tuple[Rule, ...]) -> Iterator[Rule]:
+    """Rules, and those within them."""
+    for rule in rules:
+        yield rule
+        match rule:
+            case mapping.For(body=body):
+                yield from every_rule(body)
+            case mapping.When(then=then, otherwise=otherwise):
+                yield from every_rule((*then, *otherwise))
+            case _:
+                pass
+
+
 def with_expressions(rule: Rule, change: Callable[[Expr], Expr]) -> Rule:
     """A rule with the expressions changed that it has itself; the rules within it are as they were."""
     match rule:

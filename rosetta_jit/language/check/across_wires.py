@@ -2,25 +2,26 @@
 
 At a message of one wire the bytes of the others' are gone. A rule runs there if all that it reads of the others are numbers and bools that
 are known without the message at hand: `.odom.x` and `len(.scan.ranges)`, but no text, and no element that a loop chooses. Each of them is
-computed when its own message comes, and kept as state. Such a rule waits until every wire that it reads has sent a message.
+computed when its own message comes, and kept as state. Such a rule waits until every wire that it reads has sent a message, but for
+those of which it asks whether one has: what it reads of them is 0 until then.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.language import typed
 from rosetta_jit.language.algebra.normal_form import rebuilt
-from rosetta_jit.language.typed import FieldStep
-from rosetta_jit.language.untouched import places_read
+from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, IndexStep, Reject, SetLength, SetState, When
+from rosetta_jit.language.untouched import asks_arrival, places_read
 from rosetta_jit.model.types import Bool, Float, Int
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from rosetta_jit.language.typed import Expr, Place
+    from rosetta_jit.language.typed import Expr, Place, Rule
 
 Wires = frozenset[str]
 """Some of the wires of a mapping, by their names."""
@@ -46,6 +47,36 @@ def wire_of(place: Place) -> Wires:
 def wires_read(exprs: Iterable[Expr]) -> Wires:
     """The wires that expressions read."""
     return frozenset[str]().union(*(wire_of(place) for expr in exprs for place in places_read(expr)))
+
+
+def asked_for(exprs: Iterable[Expr]) -> Wires:
+    """The wires of which expressions ask whether a message has arrived: what reads them does not wait for one."""
+    found = frozenset[str]()
+    for expr in exprs:
+        if isinstance(expr, typed.Has) and asks_arrival(expr):
+            found |= wire_of(expr.place)
+        found |= asked_for(_parts(expr))
+    return found
+
+
+def own_expressions(rule: Rule) -> tuple[Expr, ...]:
+    """The expressions that a rule computes itself."""
+    match rule:
+        case Assign(place, value) | SetLength(place, value):
+            return (value, *(step.index for step in place.steps if isinstance(step, IndexStep)))
+        case For(_, start, stop, _, kept=kept):
+            filtered = () if kept is None else (kept.condition, *(() if kept.count is None else (kept.count,)))
+            return (start, stop, *filtered)
+        case When(condition):
+            return (condition,)
+        case Reject(pieces=pieces):
+            return pieces
+        case SetState(_, value):
+            return (value,)
+        case Default() | Ignore():
+            return ()
+        case _:
+            assert_never(rule)
 
 
 def runs_at(exprs: Iterable[Expr], wires: Wires) -> Wires:
@@ -125,8 +156,10 @@ def _is_kept(expr: Expr) -> bool:
 
 
 def _looks_elsewhere(expr: Expr) -> bool:
-    """Whether an expression reads state, the time, or what a user's function gives."""
+    """Whether an expression reads state, the time, what a user's function gives, or whether a message has arrived."""
     match expr:
+        case typed.Has() if asks_arrival(expr):
+            return True
         case typed.StateVariable() | typed.HostCall() | typed.Call(arguments=()):
             return True
         case _:
