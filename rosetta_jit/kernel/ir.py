@@ -10,7 +10,7 @@ r"""The kernel: one small typed function from a message to a holder, or back. Th
            | Switch(value, {int: Stmt*}, Stmt*) | Return(position, {register: value})
            | Call(routine, arguments, results) | HostCall(function, arguments, inputs, target, result)
     Routine = name, parameters, results, Stmt*, requires, ensures, Site*
-    Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane) | Told(what)
+    Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane) | HostValue(what)
            | Register(number) | Unary | Binary | Compare | Fits | Convert | Bits | Select
            | IsText(address, size) | Nearest(address, size, exponent) | Digits(value) | Scale(value) | Lookup(values, index)
     Place  = lane, row, offset                            a typed field of a row of a lane
@@ -31,7 +31,7 @@ space.
 until the end of the block that binds it.
 
 **Routines** are statements that many places share. A routine sees `begin`, `end` and its parameters; its results are locals of its
-body, read at the end of it. It holds no Return, Reserve, Advance, HostCall, Used, Told or Register, and calls only routines before it.
+body, read at the end of it. It holds no Return, Reserve, Advance, HostCall, Used, HostValue or Register, and calls only routines before it.
 Calling it demands what it `requires` of its parameters, and gives what it `ensures` of them and its results. Where it fails, the body of
 the caller fails, at the site that the call names for the routine's own, and with the call's indices.
 
@@ -158,8 +158,8 @@ class Capacity:
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """What the host tells of this message (i64)."""
+class HostValue:
+    """What the host says of this message (i64): when it is made, or how many were made before."""
 
     what: Literal["now", "number"]
 
@@ -281,7 +281,7 @@ class Lookup:
 
 
 Decimal = Nearest | Digits | Scale
-Known = Used | Capacity | Told | Register
+Known = Used | Capacity | HostValue | Register
 Expr = Const | Local | Load | Get | Known | Unary | Binary | Compare | Fits | Convert | Bits | Select | IsText | Decimal | Lookup
 
 # --- statements --------------------------------------------------------------------------------------------------------

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.constants import Constants
     from rosetta_jit.language.typed import Expr, StateVariable, Step
-    from rosetta_jit.language.uses import Others, Signature
+    from rosetta_jit.language.uses import Signature, UsableMappings
     from rosetta_jit.model.expr import Expr as Untyped
     from rosetta_jit.model.expr import Path, Side
     from rosetta_jit.model.types import Field, Schema, Type
@@ -60,7 +60,7 @@ class Scope:
     problems: list[Diagnostic]
     named: set[str]
     functions: Mapping[str, Signature]
-    others: Others
+    others: UsableMappings
     bases: Mapping[Side, Place] = field(default_factory=dict["Side", "Place"])
     suffix: str = ""
     values: Mapping[str, Type] = field(default_factory=dict["str", "Type"])

@@ -20,7 +20,7 @@ from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError
-from rosetta_jit.kernel.shape import is_told, our_functions
+from rosetta_jit.kernel.shape import asks_host, our_functions
 from rosetta_jit.language.check.mapping import Checked, check
 from rosetta_jit.language.function import files_of_offered
 from rosetta_jit.language.imports.search import Reading, SearchPath
@@ -230,7 +230,7 @@ class Build:
             "manners": self.manners,
             "entry": self.entry,
             "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
-            "told": is_told(self.kernels),
+            "told": asks_host(self.kernels),
             "state": kept_of(self.kernels, {"": self.types.state}),
             "host": our_functions(self.kernels),
             "limit": self.limit,

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-import json
-import os
-import signal
 import socket
 import struct
-import subprocess
-import sys
 import threading
 import time
 import urllib.request
@@ -25,7 +20,7 @@ from rosetta_jit.bridge.metrics import MetricsServer, text
 from rosetta_jit.bridge.running import Running
 from rosetta_jit.bridge.table import rows
 from rosetta_jit.bridge.translating import Bridged, Unchanged
-from tests.transports.free import answers, free_port, until
+from tests.transports.free import free_port, until
 from tests.transports.name_server import NameServer
 from tests.transports.ros_master import Master
 
@@ -609,46 +604,3 @@ def is_answered(port):
             return answer.read().startswith(b"# HELP")
     except OSError:
         return False
-
-
-def test_messages_on_standard_output_are_alone_there(tmp_path):
-    (tmp_path / "in").write_bytes(b"\3\0\0\0abc\3\0\0\0def")
-    (tmp_path / "bridge.toml").write_text(f'[[route]]\nname = "a"\nsource = "pipe:{tmp_path}/in"\ntarget = "pipe:-"\n')
-    command = [sys.executable, "-m", "rosetta_jit", "bridge", str(tmp_path / "bridge.toml"), "--json", "--seconds", "0.2"]
-    found = subprocess.run(command, capture_output=True, check=True, timeout=20)
-    assert found.stdout == b"\3\0\0\0abc\3\0\0\0def"
-    assert json.loads(found.stderr.splitlines()[-1])["routes"][0]["sent"] == 2
-
-
-def test_the_command(tmp_path):
-    """From start to stop, as people run it: a file, another one, an end."""
-    source, target = free_port(), free_port()
-    path = tmp_path / "bridge.toml"
-    path.write_text("[bridge]\ninterval = 0.2\n" + route(source, target, 'name = "a"'))
-    command = [sys.executable, "-m", "rosetta_jit", "bridge", str(path), "--json"]
-    with (
-        rj.subscribe(f"tcp:{target}") as there,
-        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as program,
-    ):
-        try:
-            with rj.publish(f"tcp:{source}") as robot:
-                robot.send(b"1")
-                assert there.take(20).data == b"1"
-            assert json.loads(program.stdout.readline())["routes"][0]["route"] == "a"
-            path.write_text(path.read_text().replace("source", "suorce"))
-            os.kill(program.pid, signal.SIGHUP)
-            said = program.stderr.readline()
-            while "all goes on as before" not in said:
-                said = program.stderr.readline()
-            metrics = free_port()
-            path.write_text(path.read_text().replace("suorce", "source").replace("[bridge]", f'[bridge]\nmetrics = "{metrics}"'))
-            os.kill(program.pid, signal.SIGHUP)
-            until(lambda: answers(metrics))  # where the new file says
-            with urllib.request.urlopen(f"http://127.0.0.1:{metrics}/metrics") as answer:
-                assert b'messages_sent_total{route="a"} 1' in answer.read()
-            threading.Timer(0.3, program.send_signal, (signal.SIGTERM,)).start()
-            out, _ = program.communicate(timeout=20)
-            assert json.loads(out.splitlines()[-1])["routes"][0]["sent"] == 1
-            assert program.returncode == 0
-        finally:
-            program.kill()

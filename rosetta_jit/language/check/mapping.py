@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.resolve.rules import TypedRules
     from rosetta_jit.language.scope import Message
     from rosetta_jit.language.typed import Rule, StateVariable
-    from rosetta_jit.language.uses import Others, Signature, Use
+    from rosetta_jit.language.uses import Signature, UsableMappings, Use
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.types import Schema
@@ -125,7 +125,7 @@ class _Texts:
 
     written: Mapping
     mapping: Mapping
-    others: Others
+    others: UsableMappings
     imports: Imports
     imported: list[Imported]
     schema: Schema
@@ -191,7 +191,7 @@ def _errors(problems: list[Diagnostic]) -> list[Diagnostic]:
     return [problem for problem in problems if problem.severity == "error"]
 
 
-def _without_handed_on(problems: list[Diagnostic], mapping: Mapping, others: Others) -> list[Diagnostic]:
+def _without_handed_on(problems: list[Diagnostic], mapping: Mapping, others: UsableMappings) -> list[Diagnostic]:
     """Without the warnings about parameters that no rule uses, but a mapping that is used."""
     declared = {each.name for other in others.mappings() for each in other.parameters}
     spans = [each.span for each in mapping.parameters if each.name in declared]

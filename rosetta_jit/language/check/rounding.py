@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
-from rosetta_jit.language.algebra.normal_form import rebuilt
 from rosetta_jit.language.conversions import describe, is_single, rounded_constant, same, widens
-from rosetta_jit.language.typed import Assign, Binary, Const, Convert, For, HostCall, Rescale, SetLength, When
+from rosetta_jit.language.typed import Assign, Binary, Const, Convert, For, Rescale, SetLength, When
 from rosetta_jit.language.units.wholes import inserted
+from rosetta_jit.language.walk import within
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,12 +36,9 @@ def rounded(rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
 
 
 def _constants(expr: Expr) -> Iterator[Diagnostic]:
-    if isinstance(expr, Const) and (single := rounded_constant(expr)) is not None:
-        yield words.rounded(expr.span, float(expr.value), single)
-    below: list[Expr] = [*expr.arguments] if isinstance(expr, HostCall) else []
-    rebuilt(expr, lambda part: below.append(part) or part)
-    for part in below:
-        yield from _constants(part)
+    for part in within(expr):
+        if isinstance(part, Const) and (single := rounded_constant(part)) is not None:
+            yield words.rounded(part.span, float(part.value), single)
 
 
 def _by_unit(rule: Assignment | SetLength[Place, Expr]) -> Iterator[Diagnostic]:

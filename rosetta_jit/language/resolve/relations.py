@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.uses import Others
+    from rosetta_jit.language.uses import UsableMappings
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Mapping, Rule
     from rosetta_jit.model.types import Schema, Type
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 FIRST = Literal(0)
 
 
-def derived(mapping: Mapping, schema: Schema, others: Others, problems: list[Diagnostic]) -> Mapping:
+def derived(mapping: Mapping, schema: Schema, others: UsableMappings, problems: list[Diagnostic]) -> Mapping:
     """The mapping with all rules of each direction in the block of that direction.
 
     Expressions whose names are wrong have no type; that is reported when the rules are typed.
@@ -64,7 +64,7 @@ def _arrivals(mapping: Mapping) -> Iterator[Call]:
                         pass
 
 
-def _scope(mapping: Mapping, schema: Schema, others: Others) -> Scope | None:
+def _scope(mapping: Mapping, schema: Schema, others: UsableMappings) -> Scope | None:
     """What rules that unpack can name, in all loops; None where a side has no message."""
     holder, wire = (message_named(schema, name) for name in (mapping.holder_type, mapping.wire_type))
     if holder is None or wire is None:

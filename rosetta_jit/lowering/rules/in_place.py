@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import rules_within
 from rosetta_jit.language.resolve.defaults import has_array
+from rosetta_jit.language.walk import expressions_of, parts, rules_in
 from rosetta_jit.lowering.codec.wire_fields import EACH
 from rosetta_jit.lowering.rules.bound_fields import BoundFields, Obstacle
 from rosetta_jit.lowering.rules.filters import filtered_arrays
@@ -58,25 +59,9 @@ def _obstacles(attempt: Codec, rules: tuple[typed.Rule, ...], direction: Directi
 
 
 def _of_reading(rule: typed.Rule, bound: BoundFields) -> Iterator[Obstacle]:
-    match rule:
-        case typed.Assign(place, value) | typed.SetLength(place, value):
-            yield from _of_expressions((value, *_indices(place)), bound)
-        case typed.Default(place):
-            yield from _of_expressions(_indices(place), bound)
-        case typed.SetState(_, value):
-            yield from _of_expressions((value,), bound)
-        case typed.For(_, start, stop, body, kept=kept):
-            yield from _of_expressions((start, stop, *(() if kept is None else (kept.condition,))), bound)
-            for each in body:
-                yield from _of_reading(each, bound)
-        case typed.When(condition, then, otherwise):
-            yield from _of_expressions((condition,), bound)
-            for each in (*then, *otherwise):
-                yield from _of_reading(each, bound)
-        case typed.Reject(pieces=pieces):
-            yield from _of_expressions(pieces, bound)
-        case _:
-            pass
+    yield from _of_expressions(expressions_of(rule), bound)
+    for each in rules_in(rule):
+        yield from _of_reading(each, bound)
 
 
 def _of_expressions(values: tuple[typed.Expr, ...], bound: BoundFields) -> Iterator[Obstacle]:
@@ -92,30 +77,7 @@ def _of_expressions(values: tuple[typed.Expr, ...], bound: BoundFields) -> Itera
                 yield Obstacle(wire_key(place)[0], "whether it is there is known only where the walk stands")
             case _:
                 pass
-        yield from _of_expressions(typed_parts(value), bound)
-
-
-def typed_parts(value: typed.Expr) -> tuple[typed.Expr, ...]:
-    """The parts of an expression, those in indices of places included."""
-    match value:
-        case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place):
-            return _indices(place)
-        case typed.Search(place, _, condition):
-            return (*_indices(place), condition)
-        case typed.Reduce(_, _, count, inner, _, refused):
-            return (count, inner, *(condition for condition, _ in refused))
-        case typed.Unary(_, operand) | typed.Convert(operand):
-            return (operand,)
-        case typed.Binary(_, left, right) | typed.Nearest(left, check=right):
-            return (left, right)
-        case typed.Call(_, arguments) | typed.HostCall(_, arguments) | typed.Given(_, arguments):
-            return arguments
-        case typed.Choice(cases, otherwise, pieces=pieces):
-            return (*(part for case in cases for part in case), *(() if otherwise is None else (otherwise,)), *pieces)
-        case typed.Listed(items, index):
-            return (*items, index)
-        case typed.Const() | typed.Local() | typed.StateVariable():
-            return ()
+        yield from _of_expressions(parts(value), bound)
 
 
 def _of_value(place: typed.Place, type_: Type, bound: BoundFields) -> Iterator[Obstacle]:
@@ -162,10 +124,6 @@ def _of_elements(key: Path, element: Type, bound: BoundFields) -> Iterator[Obsta
         yield Obstacle(key, NESTED)
     elif key.count(EACH) or (*key, EACH) not in bound.regions:
         yield Obstacle((*key, EACH), UNKNOWN)
-
-
-def _indices(place: typed.Place) -> tuple[typed.Expr, ...]:
-    return tuple(step.index for step in place.steps if isinstance(step, typed.IndexStep))
 
 
 # --- rules that write the wire -----------------------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.functions.texts import is_textual
+from rosetta_jit.language.walk import parts
 from rosetta_jit.lowering.rules.values import constant, scalar_type
 from rosetta_jit.lowering.rules.wire_side import wire_key
 from rosetta_jit.lowering.writer import Where, block
@@ -192,23 +193,17 @@ def _read_by(expr: typed.Expr) -> list[typed.Place]:
     match expr:
         case typed.IsText(place):
             return [place, *_indexed(place)]
-        case typed.Choice(cases, otherwise):
-            return _read(*(part for case in cases for part in case), *(() if otherwise is None else (otherwise,)))
-        case typed.Listed(items, at):
-            return _read(*items, at)
         case typed.LenOf(place):
             return [place]
         case typed.Access(place) | typed.Has(place):
             return _indexed(place)
-        case typed.Unary(_, operand) | typed.Convert(operand, _, _) | typed.Search(_, _, operand):
-            return _read(operand)
-        case typed.Binary(_, left, right) | typed.Nearest(left, check=right) | typed.Reduce(_, _, left, right):
-            return _read(left, right)
+        case typed.Search(_, _, condition):
+            return _read(condition)
         case typed.Call(_, arguments) | typed.HostCall(_, arguments):
             texts = [each.place for each in arguments if isinstance(each, typed.Access) and is_textual(each.type)]
             return texts + _read(*arguments)
         case _:
-            return []
+            return _read(*parts(expr))
 
 
 def _indexed(place: typed.Place) -> list[typed.Place]:

@@ -168,7 +168,7 @@ class Family:
         """Let compiled code make the holders that the class makes without arguments, if they are all alike: as this first one."""
         if not self._begins_alike:
             return
-        prototype = self.holder()
+        prototype = type.__call__(self.holder)
         first = begun_as(prototype.lanes_)
         if first is not None and prototype.lanes_.plan is self.plan:
             self._offered = recipe(self.plan, self.array_type, self.root, first)
