@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
-from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANES, NOW, NUMBER, REGISTERS, USED, lane_word
+from rosetta_jit.backends.llvm.alike import NOTHING
+from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANE_WORDS, LANES, NOW, NUMBER, REGISTERS, USED, lane_word
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
+    from rosetta_jit.backends.llvm.alike import Found
     from rosetta_jit.kernel.ir import Call, Routine, Scalar
 
 I1, I8, I16, I32, I64 = (ir.IntType(bits) for bits in (1, 8, 16, 32, 64))
@@ -111,12 +113,22 @@ class Exit:
         return bool(self.phis[0].incomings)
 
 
+@dataclass(frozen=True, slots=True)
+class Given:
+    """The numbers of one stretch of a series, by those of the last one. A site is looked up where something has failed."""
+
+    lanes: Mapping[int, ir.Value]
+    offsets: Mapping[tuple[int, int], ir.Value]
+    site: Callable[[ir.IRBuilder, int], ir.Value]
+
+
 @dataclass(slots=True)
 class Frame:
     """One body being printed. ``entry`` prints into the function's entry block, ``builder`` where the body has got to.
 
     A routine that is printed where it is called has a frame with locals of its own, which knows its ``caller``. ``is_rare`` says that LLVM
-    will take no time for the body's speed. ``indices`` are the locals that grow with the rounds of a loop.
+    will take no time for the body's speed. ``indices`` are the locals that grow with the rounds of a loop. Of a body with series (`alike`),
+    ``rows`` is an array of the used lengths of the holder's lanes, and ``given`` has the numbers of the stretch that is being printed.
     """
 
     module: ir.Module
@@ -132,6 +144,9 @@ class Frame:
     routines: Mapping[str, ir.Function | Routine]
     caller: tuple[Frame, Call] | None = None
     is_rare: bool = False
+    alike: Found = NOTHING
+    given: Given | None = None
+    rows: ir.Value | None = None
     locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
     used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
     indices: set[str] = field(default_factory=set[str])
@@ -169,8 +184,14 @@ class Frame:
         registers = builder.load(state_word(builder, self.parameters.state, REGISTERS), typ=POINTER, align=8, name="registers")
         return state_word(builder, registers, number)
 
+    def lane_number(self, lane: int) -> ir.Value:
+        """The lane's number while the kernel runs: in a series it is another one for each stretch."""
+        return constant(lane) if self.given is None else self.given.lanes.get(lane, constant(lane))
+
     def used_slot(self, lane: int) -> ir.Value:
         """The stack slot of the lane's used length."""
+        if self.rows is not None and not self.is_hidden(lane):
+            return state_word(self.builder, self.rows, self.lane_number(lane))
         if lane not in self.used:
             start = constant(0) if self.is_hidden(lane) else self._used_before(self.entry, lane)
             self.used[lane] = self.entry.alloca(I64, name=f"rows{lane}")
@@ -181,6 +202,8 @@ class Frame:
 
     def used_in_the_end(self, builder: ir.IRBuilder, lane: int) -> ir.Value:
         """The used length of a lane of the holder, loaded where the builder is, for those that the body had nothing to do with."""
+        if self.rows is not None:
+            return builder.load(state_word(builder, self.rows, lane), typ=I64)
         return builder.load(self.used[lane], typ=I64) if lane in self.used else self._used_before(builder, lane)
 
     def _used_before(self, builder: ir.IRBuilder, lane: int) -> ir.Value:
@@ -208,6 +231,10 @@ class Frame:
         return self.builder.append_basic_block(name)
 
     def _word(self, lane: int, word: int, type_: ir.Type, name: str) -> ir.Value:
+        if self.given is not None and lane in self.given.lanes:
+            first = self.builder.mul(self.given.lanes[lane], constant(LANE_WORDS))
+            word_of_lane = self.builder.add(first, constant(lane_word(0, word)))
+            return self.builder.load(state_word(self.builder, self.parameters.state, word_of_lane), typ=type_, align=8, name="word")
         if self.is_crowded:
             return self._load(self.builder, lane, word, type_, name)
         key = (lane, word)
@@ -223,9 +250,10 @@ class Frame:
         return builder.load(state_word(builder, self.parameters.state, lane_word(lane, word)), typ=type_, align=8, name=name)
 
 
-def state_word(builder: ir.IRBuilder, state: ir.Value, word: int) -> ir.Value:
+def state_word(builder: ir.IRBuilder, state: ir.Value, word: int | ir.Value) -> ir.Value:
     """The address of a word of the holder's state."""
-    return builder.gep(state, [constant(word)], inbounds=True, source_etype=I64)
+    number = constant(word) if isinstance(word, int) else word
+    return builder.gep(state, [number], inbounds=True, source_etype=I64)
 
 
 def intrinsic(module: ir.Module, name: str, result: ir.Type, parameters: Sequence[ir.Type]) -> ir.Function:

@@ -17,9 +17,11 @@ from rosetta_jit.backends.base import counted_lanes, emptied_lanes, statements
 from rosetta_jit.backends.llvm import checks as llvm_checks
 from rosetta_jit.backends.llvm import definitions
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
+from rosetta_jit.backends.llvm.alike import found
 from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, constant, state_word
 from rosetta_jit.backends.llvm.lines import Lines
+from rosetta_jit.backends.llvm.series import begin_rows, end_rows
 from rosetta_jit.kernel.ir import Block, Call, Expect, For, HostCall, Kernel, Require, While
 from rosetta_jit.kernel.state import (
     ERROR_INDICES,
@@ -181,6 +183,9 @@ def _attempt(
     frame = Frame(function.module, entry, entry.beside(first), parameters, *lanes, {}, done, failed, emptied, routines)
     frame.is_rare = len(bodies) <= kernel.rare
     frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
+    frame.alike = found(kernel, bodies[0])
+    if frame.alike:
+        begin_rows(frame, kernel.direction)
     llvm_checks.body(frame, bodies[0])
     if not frame.builder.block.is_terminated:
         frame.builder.unreachable()  # verified: every path that gets here has ended in a Return before
@@ -245,6 +250,9 @@ def _finish(frame: Frame, lanes: Sequence[int]) -> None:
         _drop(frame.done)
         return
     builder = ir.IRBuilder(frame.done.block)
+    if frame.rows is not None:
+        end_rows(frame, lanes)
+        return
     for lane in lanes:
         word = state_word(builder, frame.parameters.state, lane_word(lane, USED))
         builder.store(frame.used_in_the_end(builder, lane), word, align=8)

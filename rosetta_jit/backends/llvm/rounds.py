@@ -15,6 +15,7 @@ from llvmlite import ir
 from rosetta_jit.backends.base import statements
 from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.frame import I64, Variable, forgotten
+from rosetta_jit.backends.llvm.series import print_cases
 from rosetta_jit.kernel.ir import Assign, Const, Expect, If, Local, Switch
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -87,16 +88,24 @@ def print_switch(frame: Frame, rounds: Rounds, end: ir.Block, over: ir.Block, bl
     other, ways = frame.block("default"), Ways({number: frame.block(f"case{number}") for number, _ in rounds.switch.cases}, end, over)
     value = builder.load(_variable(frame, rounds.case).slot, typ=I64)
     switch = builder.switch(value, other)
+    alike = print_cases(frame, rounds.switch, switch, lambda body: _body(frame, rounds, body, ways, block), ways.cases)
     for number, body in rounds.switch.cases:
+        if number in alike:
+            continue
         switch.add_case(ir.Constant(value.type, number), ways.cases[number])
         builder.position_at_end(ways.cases[number])
-        block(frame, body)
-        if not builder.block.is_terminated:
-            _leave(frame, rounds, body, ways, block)
+        _body(frame, rounds, body, ways, block)
     builder.position_at_end(other)
     block(frame, rounds.switch.default)
     if not builder.block.is_terminated:
         builder.branch(end)
+
+
+def _body(frame: Frame, rounds: Rounds, body: Block, ways: Ways, block: Printer) -> None:
+    """A case, and how it goes on behind it."""
+    block(frame, body)
+    if not frame.builder.block.is_terminated:
+        _leave(frame, rounds, body, ways, block)
 
 
 def _leave(frame: Frame, rounds: Rounds, body: Block, ways: Ways, block: Printer) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from llvmlite import ir
 
+from rosetta_jit.backends.llvm.alike import NOTHING, Series
 from rosetta_jit.backends.llvm.expr import (
     copy_memory,
     expression,
@@ -26,6 +27,7 @@ from rosetta_jit.backends.llvm.expr import (
 from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Variable, constant, forgotten, state_word
 from rosetta_jit.backends.llvm.host import host_called
 from rosetta_jit.backends.llvm.rounds import print_switch, rounds_of
+from rosetta_jit.backends.llvm.series import print_cases, print_series
 from rosetta_jit.backends.llvm.swap import swapped
 from rosetta_jit.kernel.ir import (
     Advance,
@@ -68,10 +70,13 @@ GOLDEN = 0x9E3779B1
 
 def block(frame: Frame, statements: Block) -> None:
     """Print statements until one ends the block; what follows a Return is never reached."""
-    for statement in statements:
+    for part in frame.alike.parts(statements):
         if frame.builder.block.is_terminated:
             return
-        _statement(frame, statement)
+        if isinstance(part, Series):
+            print_series(frame, part, block)
+        else:
+            _statement(frame, part)
 
 
 def _statement(frame: Frame, statement: Stmt) -> None:
@@ -151,8 +156,8 @@ def _nested(frame: Frame, statement: For | While | If | Switch) -> None:
             _while(frame, statement)
         case If(condition, then, otherwise):
             _if(frame, expression(frame, condition), then, otherwise)
-        case Switch(value, cases, default):
-            _switch(frame, expression(frame, value), cases, default)
+        case Switch():
+            _switch(frame, statement)
 
 
 def _require(frame: Frame, at: Expr, size: Expr, failure: Failure) -> None:
@@ -194,7 +199,7 @@ def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Val
     while frame.caller is not None:
         frame, call = frame.caller
         sites, indices = tuple(call.sites[each - 1] for each in sites), call.indices
-    values = [_site(frame.builder, number, sites), offset, *(expression(frame, each) for each in indices)]
+    values = [_site(frame, number, sites), offset, *(expression(frame, each) for each in indices)]
     frame.failed.enter(frame.builder, [*values, *[constant(0)] * (len(frame.failed.phis) - len(values))])
 
 
@@ -218,7 +223,7 @@ def _inline(frame: Frame, call: Call, routine: Routine) -> None:
     """The routine's statements instead of a call."""
     names = {name: frame.locals[name] for name in (BEGIN.name, END.name)}
     given = {each.name: expression(frame, value) for each, value in zip(routine.parameters, call.arguments, strict=True)}
-    inside = replace(frame, locals=names | given, caller=(frame, call))
+    inside = replace(frame, locals=names | given, caller=(frame, call), given=None, alike=NOTHING)
     block(inside, routine.body)
     for here, there in zip(call.results, routine.results, strict=True):
         frame.locals[here.name] = expression(inside, there)
@@ -232,16 +237,18 @@ def _host_call(frame: Frame, call: HostCall) -> None:
     frame.locals[call.result.name] = load(frame, result, call.result.type, alignment=1)
 
 
-def _site(builder: ir.IRBuilder, number: ir.Value, sites: tuple[int, ...]) -> ir.Value:
+def _site(frame: Frame, number: ir.Value, sites: tuple[int, ...]) -> ir.Value:
     """The caller's site for a routine's failure: mostly they follow one another as the routine's own do."""
+    builder = frame.builder
+    first = constant(0) if not sites else constant(sites[0]) if frame.given is None else frame.given.site(builder, sites[0])
     if len(sites) < 2:
-        return constant(sites[0] if sites else 0)
-    runs = [(own, site - own) for own, site in enumerate(sites, 1)]
+        return first
+    runs = [(own, site - own - sites[0]) for own, site in enumerate(sites, 1)]
     runs = [runs[0], *(run for before, run in pairwise(runs) if run[1] != before[1])]
     further: ir.Value = constant(runs[0][1])
     for own, distance in runs[1:]:
         further = builder.select(builder.icmp_signed(">=", number, constant(own)), constant(distance), further)
-    return builder.add(number, further)
+    return builder.add(first, builder.add(number, further))
 
 
 def _assign(frame: Frame, name: str, value: Expr) -> None:
@@ -260,7 +267,7 @@ def _reserve(frame: Frame, lane: int, count: ir.Value) -> None:
     builder.cbranch(builder.icmp_unsigned("<=", count, free), enough, small).set_weights(COLD)
     builder.position_at_end(small)
     state = frame.parameters.state
-    builder.store(constant(lane), state_word(builder, state, GROW_LANE), align=8)
+    builder.store(frame.lane_number(lane), state_word(builder, state, GROW_LANE), align=8)
     missing = builder.sub(count, free)
     if frame.is_hidden(lane):
         missing = builder.mul(missing, constant(frame.strides[lane]))
@@ -317,17 +324,18 @@ def _if(frame: Frame, condition: ir.Value, then: Block, otherwise: Block) -> Non
     builder.position_at_end(behind)
 
 
-def _switch(frame: Frame, value: ir.Value, cases: tuple[tuple[int, Block], ...], default: Block) -> None:
-    builder = frame.builder
+def _switch(frame: Frame, statement: Switch) -> None:
+    builder, value = frame.builder, expression(frame, statement.value)
     other, behind = frame.block("default"), frame.block("after")
     switch = builder.switch(value, other)
-    for number, body in _shuffled(cases):
+    alike = print_cases(frame, statement, switch, lambda body: _branch(frame, body, behind))
+    for number, body in _shuffled(tuple(case for case in statement.cases if case[0] not in alike)):
         case = frame.block(f"case{number}")
         switch.add_case(ir.Constant(value.type, number), case)
         builder.position_at_end(case)
         _branch(frame, body, behind)
     builder.position_at_end(other)
-    _branch(frame, default, behind)
+    _branch(frame, statement.default, behind)
     builder.position_at_end(behind)
 
 

@@ -19,7 +19,7 @@ from rosetta_jit.generate.lisp.texts import comment, literal
 from rosetta_jit.generate.lisp.words import package_of, runtime_text
 from rosetta_jit.generate.shares import changed_lanes
 from rosetta_jit.generate.unit import wire_of
-from rosetta_jit.kernel.shape import is_told
+from rosetta_jit.kernel.shape import asks_host
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -154,7 +154,7 @@ class _Source:
     def _functions_of_the_header(self) -> Iterator[str]:
         """Those that a program calls."""
         sections = dict(part.split("\n", 1) for part in API.read_text("utf-8").split(";; == ")[1:])
-        told = is_told(self.unit.kernels.values())
+        told = asks_host(self.unit.kernels.values())
         given = {
             "type": self.structures.types[self.unit.type],
             "codec": "*codec*" if self.unit.state else "(make-codec)",

@@ -21,7 +21,7 @@ from rosetta_jit.generate.python.statements import Objects
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
 from rosetta_jit.generate.unit import wire_of
 from rosetta_jit.kernel.ir import Advance, Const, Return
-from rosetta_jit.kernel.shape import is_told, statements
+from rosetta_jit.kernel.shape import asks_host, statements
 from rosetta_jit.model.types import Ref
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ class _Module:
         lines += [f'{name} = Struct("{code}").pack_into' for code, name in self.structs.items()]
         if self.guesses:
             lines += ["_room = [256]", '"""The room that messages took."""']
-        if any(is_told([kernel]) for kernel in self.unit.kernels.values()):
+        if any(asks_host([kernel]) for kernel in self.unit.kernels.values()):
             lines.append("_numbers = _count()")
         if self.unit.state:
             words = "".join(f"    {word},  # {name}\n" for name, word in self.unit.state)

@@ -16,15 +16,17 @@ from rosetta_jit.language import typed
 from rosetta_jit.language.check.across_wires import (
     NOTHING_KEPT,
     Wires,
+    asked_for,
     remembered,
     runs_at,
     values_of_others,
     wire_of,
     wires_read,
-    with_parts,
 )
 from rosetta_jit.language.places import places_in, shown_names, shown_place
-from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, IndexStep, Reject, SetLength, SetState, When
+from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, SetState, When
+from rosetta_jit.language.untouched import asks_arrival
+from rosetta_jit.language.walk import expressions_of, placed, rebuilt
 from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Enum, Field, Float, Int, Ref, Schema, Struct, same_name
 from rosetta_jit.startup.dataclass import dataclass
@@ -81,37 +83,59 @@ def message_of_wires(mapping: model.Mapping, schema: Schema) -> Schema:
 
 
 @dataclass(frozen=True, slots=True)
-class _Told:
+class _Nested:
     """What a rule says, with the blocks around it.
 
     Attributes
     ----------
-    wires
-        Those that it reads; of a rule to pack, the one that it sets.
+    read
+        The wires that it reads; of a rule to pack, the one that it sets.
     exprs
         What it computes.
+    others
+        All wires, of a rule that asks what has arrived: it runs at messages of any.
     """
 
-    wires: Wires = NO_WIRE
+    read: Wires = NO_WIRE
     exprs: tuple[Expr, ...] = ()
+    others: Wires = NO_WIRE
 
-    def within(self, rule: Rule, target: Side) -> _Told:
+    def within(self, rule: Rule, target: Side) -> _Nested:
         """The same with one more rule."""
         places = [rule.place] if isinstance(rule, Assign | SetLength | Default | Ignore) else []
         exprs = _own(rule) if target == "holder" else ()
         set_ = () if target == "wire" and isinstance(rule, Ignore) else tuple(map(wire_of, places))
-        return _Told(self.wires.union(wires_read(exprs), *set_), (*self.exprs, *exprs))
+        return _Nested(self.read.union(wires_read(exprs), *set_), (*self.exprs, *exprs))
+
+    @property
+    def wires(self) -> Wires:
+        """The wires on whose messages it depends."""
+        return self.read | self.others
 
     @property
     def runs_at(self) -> Wires:
         """The wires at whose messages the rule runs; none of one that runs at all of them, or at none."""
         return self.wires if len(self.wires) < 2 else runs_at(self.exprs, self.wires)
 
+    @property
+    def waits_for(self) -> Wires:
+        """The wires that must have sent a message before the rule runs."""
+        return self.read - asked_for(self.exprs)
 
-NOTHING_AROUND = _Told()
+
+NOTHING_AROUND = _Nested()
 
 
-def _told(rules: tuple[Rule, ...], target: Side, around: _Told = NOTHING_AROUND, *, chosen: bool = False) -> Iterator[tuple[Rule, _Told]]:
+def _told(rules: tuple[Rule, ...], target: Side) -> list[tuple[Rule, _Nested]]:
+    """Each rule that is no block, of all of a direction, with what it reads."""
+    found = list(_walked(rules, target))
+    every = NO_WIRE.union(*(told.read for _, told in found))
+    return [(rule, replace(told, others=every) if asked_for(told.exprs) else told) for rule, told in found]
+
+
+def _walked(
+    rules: tuple[Rule, ...], target: Side, around: _Nested = NOTHING_AROUND, *, chosen: bool = False
+) -> Iterator[tuple[Rule, _Nested]]:
     """Each rule that is no block, with what it reads; the conditions and bounds of the blocks around it count.
 
     Rules of one place that conditions choose among, ``chosen`` ones, are as one: each of them reads what all of them read.
@@ -120,43 +144,29 @@ def _told(rules: tuple[Rule, ...], target: Side, around: _Told = NOTHING_AROUND,
         within = around.within(rule, target)
         match rule:
             case For(body=body):
-                yield from _told(body, target, within, chosen=chosen)
+                yield from _walked(body, target, within, chosen=chosen)
             case When(then=then, otherwise=otherwise):
-                inner = _told((*then, *otherwise), target, within, chosen=True)
+                inner = _walked((*then, *otherwise), target, within, chosen=True)
                 yield from inner if chosen else _as_one(list(inner))
             case _:
                 yield rule, within
 
 
-def _as_one(chosen: list[tuple[Rule, _Told]]) -> Iterator[tuple[Rule, _Told]]:
+def _as_one(chosen: list[tuple[Rule, _Nested]]) -> Iterator[tuple[Rule, _Nested]]:
     together: dict[str, tuple[Wires, dict[int, Expr]]] = {}
     for rule, told in chosen:
         for place in places_in((rule,)):
             wires, exprs = together.get(shown_place(place.steps), (NO_WIRE, dict[int, "Expr"]()))
-            together[shown_place(place.steps)] = wires | told.wires, exprs | {id(each): each for each in told.exprs}
+            together[shown_place(place.steps)] = wires | told.read, exprs | {id(each): each for each in told.exprs}
     for rule, told in chosen:
         found = [together[shown_place(place.steps)] for place in places_in((rule,))]
-        yield rule, _Told(found[0][0], tuple(found[0][1].values())) if found else told
+        yield rule, _Nested(found[0][0], tuple(found[0][1].values())) if found else told
 
 
 def _own(rule: Rule) -> tuple[Expr, ...]:
-    """The expressions that a rule computes itself."""
-    match rule:
-        case Assign(place, value) | SetLength(place, value):
-            return (value, *(step.index for step in place.steps if isinstance(step, IndexStep)))
-        case For(_, start, stop, _, kept=kept):
-            filtered = () if kept is None else (kept.condition, *(() if kept.count is None else (kept.count,)))
-            return (start, stop, *filtered)
-        case When(condition):
-            return (condition,)
-        case Reject(pieces=pieces):
-            return pieces
-        case SetState(_, value):
-            return (value,)
-        case Default() | Ignore():
-            return ()
-        case _:
-            assert_never(rule)
+    """The expressions that a rule computes itself, and how many rounds of a loop are kept."""
+    count = rule.kept.count if isinstance(rule, For) and rule.kept is not None else None
+    return (*expressions_of(rule), *(() if count is None else (count,)))
 
 
 def kept_values(rules: tuple[Rule, ...]) -> list[tuple[str, Expr]]:
@@ -193,13 +203,14 @@ class _Chosen:
     cut: Callable[[Place], Names]
     owners: dict[Names, frozenset[Wires]]
     waits: dict[Names, Wires]
-    told: dict[int, _Told]
+    told: dict[int, _Nested]
 
-    def of(self, rules: tuple[Rule, ...], around: _Told, come: Wires) -> Iterator[Rule]:
+    def of(self, rules: tuple[Rule, ...], around: _Nested, come: Wires) -> Iterator[Rule]:
         """Those of some rules that run, where the wires that have ``come`` are known to have sent a message."""
         for rule in rules:
             told, own = around.within(rule, self.target), of_wire(rule, self.wire, self.memory)
-            others = (self.needed(rule, around) | wires_read(_own(rule))) - come if self.memory.arrived else NO_WIRE
+            read = wires_read(_own(rule)) - asked_for(told.exprs)
+            others = (self.needed(rule, around) | read) - come if self.memory.arrived else NO_WIRE
             match own:
                 case For(body=body):
                     inner = tuple(self.of(body, told, come | others))
@@ -213,14 +224,14 @@ class _Chosen:
                 found = (When(self.memory.arrived[each], found, (), rule.span),)
             yield from found
 
-    def is_run(self, rule: Rule, told: _Told) -> bool:
+    def is_run(self, rule: Rule, told: _Nested) -> bool:
         """Whether a rule that is no block runs."""
         if told.wires:
             return self.wire in told.runs_at
         set_ = [self.owners.get(self.cut(place), frozenset[Wires]()) for place in places_in((rule,))]
         return all(len(groups) != 1 or all(self.wire in each for each in groups) for groups in set_)
 
-    def needed(self, rule: Rule, around: _Told) -> Wires:
+    def needed(self, rule: Rule, around: _Nested) -> Wires:
         """The wires without a message of which nothing in a rule runs."""
         told = around.within(rule, self.target)
         match rule:
@@ -229,7 +240,7 @@ class _Chosen:
             case When(then=then, otherwise=otherwise):
                 inner = (*then, *otherwise)
             case _:
-                return told.wires.union(*(self.waits.get(self.cut(place), NO_WIRE) for place in places_in((rule,))))
+                return told.waits_for.union(*(self.waits.get(self.cut(place), NO_WIRE) for place in places_in((rule,))))
         first, *rest = [self.needed(each, told) for each in inner] or [NO_WIRE]
         return first.intersection(*rest)
 
@@ -244,7 +255,7 @@ def _waits(rules: tuple[Rule, ...], owners: dict[Names, frozenset[Wires]], cut: 
         for place in places_in((rule,)):
             names = cut(place)
             if len(owners.get(names, ())) == 1:
-                found[names] = found.get(names, NO_WIRE) | told.wires
+                found[names] = found.get(names, NO_WIRE) | told.waits_for
     return found
 
 
@@ -256,8 +267,7 @@ def of_wire(rule: Rule, wire: str, memory: Memory = NOTHING_KEPT) -> Rule:
 
     match rule:
         case Assign(place, value) | SetLength(place, value):
-            steps = tuple(replace(step, index=seen(step.index)) if isinstance(step, IndexStep) else step for step in place.steps)
-            return replace(rule, place=_without_wire(replace(place, steps=steps)), value=seen(value))
+            return replace(rule, place=_without_wire(placed(place, seen)), value=seen(value))
         case Default(place) | Ignore(place):
             return replace(rule, place=_without_wire(place))
         case For(_, start, stop, _, kept=kept):
@@ -279,7 +289,10 @@ def value_of_wire(expr: Expr, wire: str, memory: Memory = NOTHING_KEPT) -> Expr:
     known = remembered(expr, wire, memory)
     if known is not None:
         return known
-    found = with_parts(expr, lambda part: value_of_wire(part, wire, memory))
+    if isinstance(expr, typed.Has) and asks_arrival(expr):
+        (asked,) = wire_of(expr.place)
+        return typed.Const(True, typed.BOOL, expr.span) if asked == wire else memory.arrived.get(asked, expr)
+    found = rebuilt(expr, lambda part: value_of_wire(part, wire, memory))
     match found:
         case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place) | typed.Search(place):
             return replace(found, place=_without_wire(place))
@@ -342,12 +355,12 @@ def _cutter(holder: Message) -> Callable[[Place], Names]:
 
 def wrong_wires(rules: tuple[Rule, ...], target: Side, holder: Message) -> list[Diagnostic]:
     """Reports of rules that need several wires at once, and, of rules to unpack, of fields that several wires set."""
-    every = list(_told(rules, target))
+    every = _told(rules, target)
     problems = [words.apart(rule.span, sorted(told.wires)) for rule, told in every if told.wires and not told.runs_at]
     return problems or (_overlaps(rules, every, holder) if target == "holder" else [])
 
 
-def _overlaps(rules: tuple[Rule, ...], every: list[tuple[Rule, _Told]], holder: Message) -> list[Diagnostic]:
+def _overlaps(rules: tuple[Rule, ...], every: list[tuple[Rule, _Nested]], holder: Message) -> list[Diagnostic]:
     problems: list[Diagnostic] = []
     cut = _cutter(holder)
     shared = [names for names, groups in _owners(rules, cut).items() if len(groups) > 1]

@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.catalogue import fields
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language.arrays.parts import is_reduction
 from rosetta_jit.language.constants import constant_of
@@ -30,6 +31,7 @@ from rosetta_jit.language.scope import Broken, Sought, members_of, resolve_path
 from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, FieldStep, Has, IndexStep, Local, Search, Unary
 from rosetta_jit.language.units.conversion import check_agree
 from rosetta_jit.model import expr as model
+from rosetta_jit.model.mapping import OF_WIRES
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, Optional, String, Union
 
 if TYPE_CHECKING:
@@ -109,7 +111,7 @@ def type_index(expr: model.Expr | Sought, scope: Scope) -> Expr | None:
 
 def _name(expr: model.Name, scope: Scope) -> Expr | None:
     if expr.name in scope.locals:
-        return Local(expr.name + scope.suffix, INT64, expr.span)
+        return Local(expr.name + scope.suffix, INT64, expr.span, counts=expr.name in scope.counting)
     if expr.name in scope.values:
         return Local(expr.name, scope.values[expr.name], expr.span)
     if expr.name in scope.state:
@@ -130,8 +132,9 @@ def _unnamed(expr: model.Name, several: list[str], scope: Scope) -> Diagnostic:
         return words.ambiguous_name(expr.span, expr.name, several)
     origin = scope.messages[scope.origin]
     if expr.name in members_of(origin.root, origin.schema):
-        return words.undotted_field(expr.span, expr.name)
-    return words.unknown_name(expr.span, expr.name, {*scope.locals, *scope.state, *CONSTANTS, *scope.constants.full})
+        return fields.undotted_field(expr.span, expr.name)
+    known = {*scope.locals, *scope.state, *CONSTANTS, *scope.constants.full}
+    return words.unknown_name(expr.span, expr.name, known, members_of(origin.root, origin.schema))
 
 
 def _length(expr: model.Len, scope: Scope) -> Expr | None:
@@ -144,7 +147,7 @@ def _length(expr: model.Len, scope: Scope) -> Expr | None:
         case Array() | Bytes() | String() | Map():
             return length_there(place, expr.span)
         case other:
-            scope.problems.append(words.no_length(expr.path.span, describe(other)))
+            scope.problems.append(fields.no_length(expr.path.span, describe(other)))
             return None
 
 
@@ -153,12 +156,14 @@ def _presence(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
     if isinstance(place, Broken):
         return None
     message = scope.messages[place.side]
+    if place.side == "wire" and len(place.steps) == 1 and message.root.name.startswith(OF_WIRES):
+        return Has(place, span=span)
     schema, asked = message.schema, is_found(place, message)
     if any(isinstance(step, FieldStep) and isinstance(schema.resolve(step.field.type), Optional | Union) for step in place.steps):
         asked.append(Has(place, span=span))
     if asked:
         return reduce(lambda left, right: Binary("and", left, right, BOOL, span), asked)
-    scope.problems.append(words.always_there(span, describe(place.type)))
+    scope.problems.append(fields.always_there(span, describe(place.type)))
     return None
 
 

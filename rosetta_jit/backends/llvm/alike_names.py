@@ -1,0 +1,64 @@
+"""Names in stretches that are alike: those that each binds, those that it takes over from the one before it, and those that all share."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rosetta_jit.backends.llvm.outline import Slot
+    from rosetta_jit.kernel.ir import Scalar
+
+    Rows = Sequence[Sequence[Slot]]
+
+
+@dataclass(frozen=True, slots=True)
+class Carried:
+    """A name of the last stretch whose value comes from the stretch before it, where it is what ``last`` is here.
+
+    In the first stretch it is what ``first`` is in front of the series.
+    """
+
+    name: str
+    type: Scalar
+    first: str
+    last: str
+
+
+def carried_names(rows: Rows) -> tuple[Carried, ...] | None:
+    """What stretches take over; None if their names do not correspond to one another."""
+    bound = {slot.name: at for at, slot in enumerate(rows[-1]) if slot.kind == "bound"}
+    bound_before = {slot.name: at for at, slot in enumerate(rows[-2]) if slot.kind == "bound"}
+    meanings = dict[str, Carried | None]()
+    for at, slot in enumerate(rows[-1]):
+        if not slot.is_use:
+            continue
+        names = [row[at].name for row in rows]
+        if slot.name in bound:
+            if names != [row[bound[slot.name]].name for row in rows]:
+                return None
+            continue
+        meaning = None
+        if any(each != slot.name for each in names):
+            source = bound_before.get(slot.name)
+            if source is None or slot.kind == "assigned" or names[1:] != [row[source].name for row in rows[:-1]]:
+                return None
+            meaning = Carried(slot.name, slot.type, names[0], rows[-1][source].name)
+        if meanings.setdefault(slot.name, meaning) != meaning:
+            return None
+    return tuple(each for each in meanings.values() if each is not None)
+
+
+def stay_inside(rows: Rows, uses: Counter[str]) -> bool:
+    """Whether nobody but a stretch itself and the next one uses what it binds, of all ``uses``; the last one's names are everybody's."""
+    counted = [Counter([slot.name for slot in row if slot.is_use]) for row in rows]
+    return all(
+        uses[slot.name] == here[slot.name] + after[slot.name]
+        for row, here, after in zip(rows[:-1], counted[:-1], counted[1:], strict=True)
+        for slot in row
+        if slot.kind == "bound"
+    )

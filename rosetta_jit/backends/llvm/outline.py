@@ -1,0 +1,215 @@
+"""What a statement looks like without its numbers and names, and these in the order in which they stand there.
+
+Two statements with the same *shape* differ in nothing but what stands in their *slots*.
+"""
+
+from __future__ import annotations
+
+from math import gcd
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+from rosetta_jit.kernel.ir import (
+    Advance,
+    Assign,
+    Binary,
+    Bits,
+    Call,
+    Capacity,
+    Compare,
+    Const,
+    Convert,
+    Copy,
+    Digits,
+    Expect,
+    Fill,
+    Fits,
+    For,
+    Get,
+    HostCall,
+    HostValue,
+    IsText,
+    Let,
+    Load,
+    Local,
+    Lookup,
+    Nearest,
+    Place,
+    Register,
+    Require,
+    Reserve,
+    Return,
+    SetField,
+    Store,
+    Switch,
+    Unary,
+    Used,
+    Var,
+)
+from rosetta_jit.kernel.shape import blocks_of, expressions_of, operands
+from rosetta_jit.kernel.terms import BEGIN, END, ROW
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable, Sequence
+
+    from rosetta_jit.kernel.ir import Address, Expr, Scalar, Stmt
+
+FIXED = frozenset((BEGIN.name, END.name, ROW.name))
+"""Names that mean the same in all statements."""
+
+WIDEST = 8
+"""The largest width of a scalar."""
+
+Kind = Literal["number", "lane", "offset", "site", "read", "assigned", "bound"]
+
+
+class Slot(NamedTuple):
+    """A number or a name. An offset has its lane; a site the distances of those that are named together with it; what is read its type."""
+
+    kind: Kind
+    name: str = ""
+    number: int = 0
+    lane: int = 0
+    others: tuple[int, ...] = (0,)
+    type: Scalar = "i64"
+
+    @property
+    def is_use(self) -> bool:
+        return self.kind in ("read", "assigned")
+
+
+class Outline:
+    """The shape of a statement and its slots: those of its expressions from left to right, then those of its blocks."""
+
+    def __init__(self, stmt: Stmt, strides: Sequence[int], own_lanes: int) -> None:
+        self.strides, self.own_lanes = strides, own_lanes
+        self._shape = list["Hashable"]()
+        self.slots = list[Slot]()
+        self._statement(stmt)
+        self.shape: Hashable = tuple(self._shape)
+
+    # --- statements ------------------------------------------------------------------------------------------------------
+
+    def _statement(self, stmt: Stmt) -> None:
+        self._shape.append(type(stmt))
+        self._own(stmt)
+        for expr in expressions_of(stmt):
+            self._expression(expr)
+        for block in blocks_of(stmt):
+            self._shape.append(len(block))
+            for each in block:
+                self._statement(each)
+
+    def _own(self, stmt: Stmt) -> None:
+        """What is a statement's own, besides its expressions and blocks."""
+        match stmt:
+            case Require(_, _, failure) | Expect(_, failure):
+                self._shape.append(len(failure.indices))
+                self._sites((failure.site,))
+            case Let(name, _) | Var(name, _) | For(name, _, _):
+                self.slots.append(Slot("bound", name))
+            case Assign(name, _):
+                self.slots.append(Slot("assigned", name))
+            case Reserve(lane, _) | Advance(lane, _):
+                self._lane(lane)
+            case Switch(_, cases, _):
+                self._shape.append(tuple(number for number, _ in cases))
+            case Call(routine, _, results, sites, indices):
+                self._shape += [routine, len(indices)]
+                self.slots += [Slot("bound", each.name) for each in results]
+                self._sites(sites)
+            case HostCall() | Return():
+                self._shape.append(object())  # which is like no other
+            case Store() | SetField() | Copy() | Fill():
+                self._effect(stmt)
+            case _:
+                pass
+
+    def _effect(self, stmt: Store | SetField | Copy | Fill) -> None:
+        match stmt:
+            case Store(_, _, order):
+                self._shape.append(order)
+            case SetField(place, _):
+                self._place(place)
+            case Copy(target, source, _):
+                self._address(target)
+                self._address(source)
+            case Fill(target, _, byte):
+                self._address(target)
+                self._shape.append(byte)
+
+    def _sites(self, sites: tuple[int, ...]) -> None:
+        distances = tuple([each - sites[0] for each in sites])
+        self._shape.append(distances)
+        if sites:
+            self.slots.append(Slot("site", number=sites[0], others=distances))
+
+    # --- places ----------------------------------------------------------------------------------------------------------
+
+    def _address(self, address: Address) -> None:
+        self._shape.append(type(address))
+        if isinstance(address, Place):
+            self._place(address)
+
+    def _place(self, place: Place) -> None:
+        lane, offset = place.lane, place.offset
+        self._lane(lane)
+        self._shape.append(gcd(WIDEST, self.strides[lane], offset))  # how far it is aligned
+        self.slots.append(Slot("offset", number=offset, lane=lane))
+
+    def _lane(self, lane: int) -> None:
+        is_own = lane < self.own_lanes
+        self._shape += [is_own, self.strides[lane] if is_own else lane]
+        if is_own:
+            self.slots.append(Slot("lane", number=lane))
+
+    # --- expressions -----------------------------------------------------------------------------------------------------
+
+    def _expression(self, expr: Expr) -> None:
+        self._shape.append(type(expr))
+        match expr:
+            case Local(type_, name):
+                self._shape += [type_, name if name in FIXED else ""]
+                if name not in FIXED:
+                    self.slots.append(Slot("read", name, type=type_))
+            case Const(type_, value):
+                is_integer = is_number(expr)
+                self._shape += [type_, "" if is_integer else repr(value)]
+                if is_integer:
+                    self.slots.append(Slot("number", number=int(value)))
+            case Used(lane) | Capacity(lane):
+                self._lane(lane)
+            case _:
+                self._parts(expr)
+
+    def _parts(self, expr: Expr) -> None:
+        match expr:
+            case Get(_, place):
+                self._place(place)
+            case IsText(address, _) | Nearest(address, _, _):
+                self._address(address)
+            case _:
+                pass
+        literal = _LITERALS.get(type(expr))
+        if literal is not None:
+            self._shape.append(literal(expr))
+        for each in operands(expr):
+            self._expression(each)
+
+
+_LITERALS: dict[type[Expr], Callable[[Any], Hashable]] = {
+    **dict.fromkeys((Binary, Compare, Fits), attrgetter("op")),
+    **dict.fromkeys((Convert, Bits, Get), attrgetter("type")),
+    Load: attrgetter("type", "order"),
+    Unary: attrgetter("function"),
+    Digits: attrgetter("places"),
+    Lookup: attrgetter("type", "values"),
+    HostValue: attrgetter("what"),
+    Register: attrgetter("number"),
+}
+"""What is an expression's own, besides its operands."""
+
+
+def is_number(expr: Const) -> bool:
+    """Whether a constant is an integer."""
+    return expr.type not in ("bool", "f32", "f64")

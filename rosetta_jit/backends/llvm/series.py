@@ -1,0 +1,178 @@
+"""Series as LLVM blocks: a loop over the rows of their tables, or a block that many cases of a switch lead to."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from llvmlite import ir
+
+from rosetta_jit.backends.llvm.expr import expression
+from rosetta_jit.backends.llvm.frame import I64, LLVM_TYPES, Given, constant, forgotten, state_word
+from rosetta_jit.kernel.ir import Local
+from rosetta_jit.kernel.state import LANE_WORDS, USED, lane_word
+from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.sha import sha256
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Container, Sequence
+
+    from rosetta_jit.backends.llvm.alike import Number, Series
+    from rosetta_jit.backends.llvm.frame import Frame
+    from rosetta_jit.kernel.ir import Block, Direction, Switch
+
+    Printer = Callable[[Frame, Block], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """The row of a series' table at an index. Numbers that grow by the same from row to row are computed, others loaded."""
+
+    series: Series
+    index: ir.Value
+    module: ir.Module
+
+    def number(self, builder: ir.IRBuilder, number: Number) -> ir.Value:
+        """A number of the row, where a builder stands."""
+        column = [row[number.column] for row in self.series.rows]
+        step = column[1] - column[0]
+        if all(after - before == step for before, after in pairwise(column)):
+            return builder.add(builder.mul(self.index, _constant(step)), _constant(column[0] + number.further))
+        start = builder.mul(self.index, constant(len(self.series.rows[0])))
+        place = builder.add(start, constant(number.column))
+        value = builder.load(state_word(builder, _table(self.module, self.series), place), typ=I64, align=8)
+        return builder.add(value, constant(number.further)) if number.further else value
+
+
+def print_series(frame: Frame, series: Series, block: Printer) -> None:
+    """A loop over the stretches."""
+    builder = frame.builder
+    before, head, behind = builder.block, frame.block("stretch"), frame.block("after")
+    firsts = [expression(frame, Local(each.type, each.first)) for each in series.carried]
+    builder.branch(head)
+    builder.position_at_end(head)
+    index, values = builder.phi(I64), [builder.phi(LLVM_TYPES[each.type]) for each in series.carried]
+    for each, value in zip(series.carried, values, strict=True):
+        frame.locals[each.name] = forgotten(builder, value) if value.type == I64 else value
+    _stretch(frame, series, index, lambda body: block(frame, body))
+    lasts = [expression(frame, Local(each.type, each.last)) for each in series.carried]
+    following = builder.add(index, constant(1), flags=("nsw",))
+    starts, rounds = (constant(0), *firsts), (following, *lasts)
+    for phi, start, again in zip((index, *values), starts, rounds, strict=True):
+        phi.add_incoming(start, before)
+        phi.add_incoming(again, builder.block)
+    builder.cbranch(builder.icmp_signed("<", following, constant(len(series.rows))), head, behind)
+    builder.position_at_end(behind)
+
+
+def print_cases(
+    frame: Frame, switch: Switch, printed: ir.SwitchInstr, body: Callable[[Block], None], blocks: dict[int, ir.Block] | None = None
+) -> Container[int]:
+    """The cases of a switch that are alike, each series once; which these are. They begin in blocks of their own, or in ``blocks``."""
+    builder, known = frame.builder, set[int]()
+    if frame.given is not None:
+        return known
+    for cases in frame.alike.switches.get(id(switch), ()):
+        shared = frame.block("alike")
+        builder.position_at_end(shared)
+        index = builder.phi(I64)
+        for number, each in enumerate(cases.numbers):
+            case = frame.block(f"case{each}") if blocks is None else blocks[each]
+            printed.add_case(ir.Constant(LLVM_TYPES[type_of(switch.value)], each), case)
+            index.add_incoming(constant(number), case)
+            ir.IRBuilder(case).branch(shared)
+        _stretch(frame, cases.series, index, body)
+        known |= set(cases.numbers)
+    return known
+
+
+def _stretch(frame: Frame, series: Series, index: ir.Value, body: Callable[[Block], None]) -> None:
+    """A stretch with the numbers of a row of its table."""
+    builder = frame.builder
+    row = Row(series, index, frame.module)
+    for name, (type_, number) in series.constants.items():
+        frame.locals[name] = builder.trunc(row.number(builder, number), LLVM_TYPES[type_])
+    lanes = {lane: row.number(builder, number) for lane, number in series.lanes.items()}
+    offsets = {place: row.number(builder, number) for place, number in series.offsets.items()}
+
+    def site(where: ir.IRBuilder, number: int) -> ir.Value:
+        found = series.sites.get(number)
+        return constant(number) if found is None else row.number(where, found)
+
+    frame.given = Given(lanes, offsets, site)
+    body(series.body)
+    frame.given = None
+
+
+def _table(module: ir.Module, series: Series) -> ir.Value:
+    """The table of a series as a constant of the module; equal ones are one."""
+    name = f"rosetta_series_{sha256(repr(series.rows).encode()).hexdigest()[:16]}"
+    table = module.globals.get(name)
+    if table is None:
+        numbers = [_signed(each) for row in series.rows for each in row]
+        array = ir.ArrayType(I64, len(numbers))
+        table = ir.GlobalVariable(module, array, name)
+        table.linkage, table.global_constant, table.initializer = "internal", True, ir.Constant(array, numbers)
+    return table
+
+
+def _constant(number: int) -> ir.Constant:
+    return constant(_signed(number))
+
+
+def _signed(number: int) -> int:
+    """An integer of 64 bits, with or without a sign, as one with a sign."""
+    return (number + 2**63) % 2**64 - 2**63
+
+
+# --- used lengths --------------------------------------------------------------------------------------------------------
+
+
+def begin_rows(frame: Frame, direction: Direction) -> None:
+    """An array of the used lengths of the holder's lanes, as the body begins with them."""
+    array = ir.ArrayType(I64, frame.own_lanes)
+    frame.rows = rows = frame.entry.alloca(array, name="rows")
+    builder, row = frame.builder, frame.parameters.row
+    first = builder.icmp_signed("==", row, constant(0))
+
+    def start(lane: ir.Value) -> None:
+        used = builder.load(_used_word(frame, builder, lane), typ=I64, align=8)
+        if direction == "decode":
+            is_emptied = builder.and_(first, builder.icmp_signed(">", lane, constant(0)))
+            used = builder.select(is_emptied, constant(0), used)
+        builder.store(used, state_word(builder, rows, lane))
+
+    _each(builder, frame.own_lanes, start)
+
+
+def end_rows(frame: Frame, lanes: Sequence[int]) -> None:
+    """The array in the state, where the body has succeeded; ``lanes`` are those that may have changed."""
+    rows = frame.rows
+    assert rows is not None
+    builder = ir.IRBuilder(frame.done.block)
+    if lanes:
+        _each(builder, frame.own_lanes, lambda lane: _keep(frame, builder, rows, lane))
+    builder.ret(frame.done.phis[0])
+
+
+def _keep(frame: Frame, builder: ir.IRBuilder, rows: ir.Value, lane: ir.Value) -> None:
+    builder.store(builder.load(state_word(builder, rows, lane), typ=I64), _used_word(frame, builder, lane), align=8)
+
+
+def _each(builder: ir.IRBuilder, count: int, body: Callable[[ir.Value], None]) -> None:
+    before, head, behind = builder.block, builder.append_basic_block("lane"), builder.append_basic_block("after")
+    builder.branch(head)
+    builder.position_at_end(head)
+    index = builder.phi(I64)
+    body(index)
+    following = builder.add(index, constant(1), flags=("nsw",))
+    index.add_incoming(constant(0), before)
+    index.add_incoming(following, builder.block)
+    builder.cbranch(builder.icmp_signed("<", following, constant(count)), head, behind)
+    builder.position_at_end(behind)
+
+
+def _used_word(frame: Frame, builder: ir.IRBuilder, lane: ir.Value) -> ir.Value:
+    word = builder.add(builder.mul(lane, constant(LANE_WORDS)), constant(lane_word(0, USED)))
+    return state_word(builder, frame.parameters.state, word)

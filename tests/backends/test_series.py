@@ -1,0 +1,140 @@
+"""Large messages of fields that are alike: printed for LLVM once, and meaning the same as if each were printed by itself."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.backends.llvm.alike import Series, found
+from rosetta_jit.kernel.ir import Advance, Compare, Const, Expect, Let, Load, Local, Place, Require, Reserve, Return, SetField
+from rosetta_jit.kernel.terms import BEGIN, END, ROW, add
+from rosetta_jit.pipeline.build import Build
+from rosetta_jit.pipeline.request import Request
+from tests.backends.kernels import failure, kernel
+
+
+def ros1(count):
+    """Strings, then numbers, strings and arrays by turns."""
+    strings = [f"string text{number}" for number in range(count)]
+    mixed = [f"string name{number}\nint64 number{number}\nuint32[] places{number}" for number in range(count)]
+    return {"encoding": "ros1", "schema": {"a/msg/All.msg": "\n".join((*strings, *mixed))}, "framework": "ros1"}
+
+
+def protobuf(count):
+    numbers = [f"  int64 number{number} = {number + 1};" for number in range(count)]
+    texts = [f"  string text{number} = {number + 1 + count};" for number in range(count)]
+    fields = "\n".join((*numbers, *texts))
+    return {"encoding": "protobuf", "schema": {"a.proto": f'syntax = "proto3"; package a;\nmessage All {{\n{fields}\n}}'}}
+
+
+COUNTS = {"ros1": 20, "protobuf": 32}
+TYPES = {"ros1": ("a/All", ros1(COUNTS["ros1"])), "protobuf": ("a.All", protobuf(COUNTS["protobuf"]))}
+
+
+def filled(holder, step):
+    """A holder whose every field is set, or each of a ``step``."""
+    for number in range(0, COUNTS["ros1" if hasattr(holder, "name0") else "protobuf"], step):
+        setattr(holder, f"text{number}", f"text {number} é" * (number % 3))
+        if hasattr(holder, "name0"):
+            setattr(holder, f"name{number}", f"name {number}")
+            setattr(holder, f"places{number}", range(number % 5))
+        setattr(holder, f"number{number}", (1 << 3 * number % 60) + number if step > 1 else number + 1)
+    return holder
+
+
+@pytest.fixture(scope="module", params=TYPES)
+def programs(request):
+    """Decoder and encoder as they are compiled, and as the interpreter runs them."""
+    type_, options = TYPES[request.param]
+    return [
+        (rj.Decoder.of(type_, **options, backend=backend), rj.Encoder.of(type_, **options, backend=backend))
+        for backend in ("llvm", "interpreter")
+    ]
+
+
+@pytest.mark.parametrize("step", [1, 3, 20])
+def test_messages_mean_the_same(programs, step):
+    (decode, encode), (reference, written) = programs
+    message = bytes(encode(filled(encode.new(), step)))
+    assert message == bytes(written(filled(written.new(), step)))
+    assert decode(message) == reference(message)
+    assert bytes(encode(decode(message))) == message
+
+
+def test_what_is_broken_is_told_in_the_same_words(programs):
+    (decode, encode), (reference, _) = programs
+    whole = bytes(encode(filled(encode.new(), 1)))
+    broken = [whole[:size] for size in range(1, len(whole), 37)] + [whole.replace("é".encode(), b"\xff\xff", 1)]
+    for message in broken:
+        told = []
+        for each in (decode, reference):
+            try:
+                told.append(each(message))
+            except rj.DecodeError as error:
+                told.append(str(error))
+        assert told[0] == told[1]
+
+
+def test_many_messages_at_once(programs):
+    (decode, encode), _ = programs
+    messages = [bytes(encode(filled(encode.new(), step))) for step in (1, 2, 5)]
+    batch = decode.many(messages)
+    for row, message in zip(batch, messages, strict=True):
+        assert row == decode(message)
+
+
+def kernel_of(name):
+    type_, options = TYPES[name]
+    files = tuple(options["schema"].items())
+    request = Request("decode", type=type_, files=files, encoding=options["encoding"], framework=options.get("framework"))
+    return Build(request).kernels[0]
+
+
+def test_stretches_of_a_block_are_found():
+    made = kernel_of("ros1")
+    (body,) = made.bodies
+    parts = found(made, body).parts(body)
+    series = [each for each in parts if isinstance(each, Series)]
+    assert len(series) == 2
+    assert all(len(each.rows) >= COUNTS["ros1"] - 1 for each in series)  # the first string has another place
+    assert len(parts) < 60
+    assert all(len(each.carried) == 1 for each in series)
+
+
+def test_cases_of_a_switch_are_found():
+    made = kernel_of("protobuf")
+    series = found(made, made.bodies[0])
+    ((numbers, texts),) = series.switches.values()
+    assert len(numbers.numbers) == COUNTS["protobuf"]
+    assert len(texts.numbers) == COUNTS["protobuf"]
+
+
+def repeated(*, last):
+    """A kernel that reads forty numbers in as many stretches; in the end it uses the name of one of them again."""
+    one = Const("i64", 1)
+    body = [Require(BEGIN, Const("i64", 8 * 40), failure(1))]
+    for number in range(40):
+        read, place = Local("i64", f"read{number}"), Place(1, Const("i64", number))
+        body += [Reserve(1, one), Let(read.name, Load("i64", add(BEGIN, 8 * number))), Expect(Compare("ge", read, one), failure(2))]
+        body += [*[SetField(place, read)] * 12, Advance(1, one)]
+    body += [SetField(Place(0, ROW), Local("i64", f"read{last}")), Return(END)]
+    return kernel(tuple(body), strides=(8, 8), name="repeated")
+
+
+@pytest.mark.parametrize(("last", "count"), [(39, 1), (7, 0)])
+def test_names_that_others_use_belong_to_no_series(last, count):
+    made = repeated(last=last)
+    assert sum(isinstance(each, Series) for each in found(made, made.bodies[0]).parts(made.bodies[0])) == count
+
+
+def test_a_message_of_many_strings_takes_time_in_proportion():
+    def took(count):
+        started = time.process_time()
+        text = "\n".join(f"string field{number}" for number in range(count))
+        rj.Decoder.of("a/Many", encoding="ros1", framework="ros1", schema={"a/msg/Many.msg": text})
+        return time.process_time() - started
+
+    few, many = (took(count) for count in (60, 240))
+    assert many < 6 * few
