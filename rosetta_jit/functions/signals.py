@@ -1,4 +1,4 @@
-"""Signals within the bytes of a frame, as of a CAN bus: read, and put together. `rosetta_jit.language.signal_bits` says where their bits lie.
+"""Signals within the bytes of a frame, as of a CAN bus: read, and put together. Where their bits lie, `language.signal_bits` says.
 
 signal (bytes, "start|length@order sign")                       the number
 signal_bytes (size, "start|length@order sign", number, ...)     the frame; bits of no signal are 0
