@@ -23,6 +23,20 @@ def unknown_encoding(name: str, framework: str, known: Sequence[str], frameworks
     return Diagnostic("error", "unknown-encoding", message, help=f"choose one of {', '.join(known)}")
 
 
+def no_encoding(name: str, known: Sequence[str]) -> Diagnostic:
+    """An encoding that no framework has."""
+    return Diagnostic("error", "unknown-encoding", f"there is no encoding `{name}`", help=f"choose one of {', '.join(known)}")
+
+
+def other_framework(mapping: str, framework: str) -> Diagnostic:
+    """A mapping with mistakes, and without them if its files are those of another framework."""
+    message = f"{mapping} has no mistakes where the files that it imports are read as those of {framework}"
+    help_ = (
+        f"`--framework {framework}` checks it so; decoders take `framework=` or `encoding=`, and logs know the encoding of their messages"
+    )
+    return Diagnostic("note", "other-framework", message, help=help_)
+
+
 def ambiguous_encoding(name: str, known: Sequence[str]) -> Diagnostic:
     """An encoding that stands for several, where one must be written."""
     return Diagnostic(
