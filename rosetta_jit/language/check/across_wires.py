@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language import typed
 from rosetta_jit.language.typed import FieldStep
 from rosetta_jit.language.untouched import places_read
-from rosetta_jit.language.walk import parts, within
+from rosetta_jit.language.walk import operands, parts
 from rosetta_jit.model.types import Bool, Float, Int
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -92,7 +92,7 @@ def _can_be_known(expr: Expr, wire: str, found: list[Expr]) -> bool:
         return True
     if isinstance(expr, typed.Access | typed.LenOf | typed.IsText | typed.Has | typed.Search) and wire not in wire_of(expr.place):
         return False
-    return all(_can_be_known(part, wire, found) for part in parts(expr))
+    return all(_can_be_known(part, wire, found) for part in operands(expr))
 
 
 def _is_kept(expr: Expr) -> bool:
@@ -108,14 +108,14 @@ def _is_kept(expr: Expr) -> bool:
         case typed.Choice() | typed.Listed() | typed.Binary("and" | "or"):
             return True
         case _:
-            return any(type_name(part) is None for part in parts(expr))
+            return any(type_name(part) is None for part in operands(expr))
 
 
 def _looks_elsewhere(expr: Expr) -> bool:
     """Whether an expression reads state, the time, or what a user's function gives."""
     return any(
         isinstance(each, typed.StateVariable | typed.HostCall) or (isinstance(each, typed.Call) and not each.arguments)
-        for each in within(expr)
+        for each in parts(expr)
     )
 
 
@@ -123,5 +123,5 @@ def _free(expr: Expr) -> set[str]:
     """The loop variables that an expression does not choose itself."""
     if isinstance(expr, typed.Local):
         return {expr.name}
-    inner = set[str]().union(*map(_free, parts(expr)))
+    inner = set[str]().union(*map(_free, operands(expr)))
     return inner - {expr.variable.name} if isinstance(expr, typed.Reduce | typed.Search | typed.Nearest) else inner
