@@ -68,8 +68,12 @@ def plant() -> None:
         return {name: in_source(name, text) for name, text in generated(*asked, **options).items()}
 
     llvm.emit = emit_planted
-    assembled: Callable[[str, tuple[str, ...]], bytes] = assembler.assembled
-    assembler.assembled = lambda text, exported: assembled(in_functions(text, exported), exported)
+    assembled: Callable[..., bytes] = assembler.assembled
+
+    def assembled_planted(text: str, exported: Sequence[str], **options: Any) -> bytes:
+        return assembled(in_functions(text, exported), exported, **options)
+
+    assembler.assembled = assembled_planted
     generated: Callable[..., dict[str, str]] = build.generated
     build.generated = generated_planted
 

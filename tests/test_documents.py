@@ -79,13 +79,16 @@ def test_the_example_in_python_runs(tmp_path, monkeypatch):
     from rosetta_jit.cli import main
 
     text = (ROOT / "docs" / "python.md").read_text()
-    (generate, _, again), (source, arrays), (said, shown) = (
+    (generate, _, wires, again), (source, joined, arrays), (said, sole, shown) = (
         re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("sh", "py", "text")
     )
     monkeypatch.chdir(tmp_path)
     assert main(generate.split()[1:]) == 0
     Path("main.py").write_text(source)
     assert subprocess.run([sys.executable, "-S", "main.py"], capture_output=True, text=True, check=True).stdout == said
+    for line in wires.splitlines():
+        assert main(line.split()[1:]) == 0
+    assert subprocess.run([sys.executable, "-S", "-c", joined], capture_output=True, text=True, check=True).stdout == sole
     assert main(again.split()[1:]) == 0
     assert subprocess.run([sys.executable, "-c", arrays], capture_output=True, text=True, check=True).stdout == shown
 

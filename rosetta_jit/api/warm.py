@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.api.programs import program_of
 from rosetta_jit.errors import ReportError
 from rosetta_jit.pipeline.request import Request, plain_parameters
+from rosetta_jit.runtime.attributes.code import make_ready
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ def warm(programs: Iterable[Request], jobs: int | None = None) -> Iterator[tuple
 
     That is nothing where the mapping has no rules for the direction, and several programs where the encoding stands for several dialects,
     of which a writer must choose one. Many programs are compiled in processes of their own, because LLVM works for one thread of a process
-    at a time; the first one here, and with it, into the cache, what all of them need.
+    at a time; the first one here, and with it, into the cache, what all of them need, and all accessors of messages.
 
     Raises
     ------
@@ -84,6 +85,7 @@ def warm(programs: Iterable[Request], jobs: int | None = None) -> Iterator[tuple
     processes = min(jobs or os.cpu_count() or 1, len(wanted) // LEAST)
     alone = wanted[:1] if processes > 1 else wanted
     yield from map(_made, alone)
+    make_ready()
     if processes > 1:
         with ProcessPoolExecutor(processes, get_context("spawn")) as pool:
             for done in as_completed([pool.submit(_made, each) for each in wanted[1:]]):

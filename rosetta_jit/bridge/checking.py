@@ -17,10 +17,13 @@ from rosetta_jit.transports.installed import installed
 from rosetta_jit.transports.opening import COMMON
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rosetta_jit.bridge.configuration import Configuration, Route, Rpc, Translation
     from rosetta_jit.bridge.translating import Translator
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
+    from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Transport
 
 
@@ -42,32 +45,33 @@ def checked(path: str) -> Configuration:
 def mistakes(configuration: Configuration) -> list[Diagnostic]:
     """What is wrong with addresses and mappings. Nothing is opened; mappings are compiled, or found in the cache."""
     found: list[Diagnostic] = []
-    places = configuration.places
+    spans = configuration.spans
     for route in configuration.routes:
         here = ("route", route.number)
-        source = places.of(*here, "sources" if route.sources else "source")
+        source = spans.of(*here, "sources" if route.sources else "source")
         addresses = [address for _, address in route.sources] or [route.source]
-        for transport in [_checked(address, "subscribe", source, found) for address in addresses]:
+        for transport in [_checked(each, "subscribe", source, found, is_open=is_pattern(each)) for each in addresses]:
             if transport is not None and is_pattern(route.source) and not transport.names:
                 found.append(words.cannot_list(source, transport.name))
             if transport is not None and route.full == "block" and "pipe" not in transport.schemes:
-                found.append(words.cannot_wait(places.of(*here, "full"), transport.name))
+                found.append(words.cannot_wait(spans.of(*here, "full"), transport.name))
         key = "call" if route.calls else "target"
-        target = _checked(route.target, "call" if route.calls else "publish", places.of(*here, key), found)
+        direction = "call" if route.calls else "publish"
+        target = _checked(route.target, direction, spans.of(*here, key), found, is_open=is_pattern(route.source))
         translate = _compiled(route, route.translation, configuration, here, found)
         if target is not None and not route.calls and _lacks_type(route.target, target) and not announced(route.target, translate):
-            found.append(words.no_type(places.of(*here, key), target.name, target.options["type"].meaning))
+            found.append(words.no_type(spans.of(*here, key), target.name, target.options["type"].meaning))
     for rpc in configuration.rpcs:
         here = ("rpc", rpc.number)
-        _checked(rpc.serve, "serve", places.of(*here, "serve"), found)
-        _checked(rpc.call, "call", places.of(*here, "call"), found)
+        _checked(rpc.serve, "serve", spans.of(*here, "serve"), found)
+        _checked(rpc.call, "call", spans.of(*here, "call"), found)
         _compiled(None, rpc.request, configuration, (*here, "request"), found)
         _compiled(None, rpc.reply, configuration, (*here, "reply"), found)
     return found
 
 
-def _checked(text: str, direction: str, span: Span, found: list[Diagnostic]) -> Transport | None:
-    """The transport of an address; None and a report where it has none that can do that."""
+def _checked(text: str, direction: str, span: Span, found: list[Diagnostic], *, is_open: bool = False) -> Transport | None:
+    """The transport of an address, which ``is_open`` where a pattern completes it; None and a report where it has none that can do that."""
     known = installed()
     try:
         address = parse(text, known)
@@ -83,7 +87,18 @@ def _checked(text: str, direction: str, span: Span, found: list[Diagnostic]) -> 
         )
     elif module and find_spec(module) is None:
         found.append(words.bad_address(span, text, f"{transport.name} takes a package", f"pip install 'rosetta-jit[{extra}]'"))
+    elif transport.check and not is_open:
+        found += _misplaced(address, transport, span)
     return transport
+
+
+def _misplaced(address: Address, transport: Transport, span: Span) -> Iterator[Diagnostic]:
+    """The mistake in what an address names, where there is one."""
+    try:
+        transport.function("check")(address)
+    except AddressError as error:
+        for each in error.diagnostics:
+            yield words.bad_address(span, address.text, each.message, each.help)
 
 
 def _lacks_type(text: str, transport: Transport) -> bool:
@@ -106,7 +121,7 @@ def _compiled(
         given: dict[str, Any] = json.loads(translation.text)
         keys = [key for key in ("decode_mapping", "encode_mapping", "decode_type", "encode_type", "between") if key in given]
         path = (*here, "mapping") if keys[:1] == ["decode_mapping"] else (*here, *keys[:1])
-        found.append(words.bad_mapping(configuration.places.of(*path), str(error)))
+        found.append(words.bad_mapping(configuration.spans.of(*path), str(error)))
         return Unchanged()
 
 

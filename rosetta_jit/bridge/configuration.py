@@ -10,11 +10,13 @@ options, or `between` for messages that describe themselves. Without one, bytes 
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, cast
 
-from rosetta_jit.bridge.places import Places, place_of_syntax
+from rosetta_jit.bridge.limits import MAX_QUEUE
+from rosetta_jit.bridge.toml_spans import TomlSpans, place_of_syntax
 from rosetta_jit.catalogue import bridge as words
 from rosetta_jit.errors import BridgeError
 from rosetta_jit.source import Source
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+
+LEAST, MOST = 1e-6, 1e9
 
 Full = Literal["oldest", "newest", "block"]
 FULL: tuple[Full, ...] = ("oldest", "newest", "block")
@@ -38,9 +42,9 @@ KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
     "target": (str, "the address of a channel"),
     "call": (str, "the address of a service"),
     "serve": (str, "the address of a service"),
-    "rate": ((int, float), "a number of messages a second, more than 0"),
-    "queue": (int, "a number of messages, 1 at least"),
-    "timeout": ((int, float), "a number of seconds, more than 0"),
+    "rate": ((int, float), f"a number of messages a second, from {LEAST:g} to {MOST:g}"),
+    "queue": (int, f"a number of messages, from 1 to {MAX_QUEUE}"),
+    "timeout": ((int, float), f"a number of seconds, from {LEAST:g} to {MOST:g}"),
     "full": (str, '"oldest", "newest" or "block"'),
     "mapping": (str, "the name of a mapping"),
     "decode_mapping": (str, "the name of a mapping"),
@@ -52,13 +56,16 @@ KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
     "between": (list, 'two encodings: ["yarp3", "yarp4"]'),
     "request": (dict, "the mapping of requests"),
     "reply": ((dict, str), "the mapping of replies"),
-    "metrics": (str, '"host:port"'),
-    "interval": ((int, float), "a number of seconds, more than 0"),
+    "metrics": (str, 'a place such as "127.0.0.1:9464"'),
+    "interval": ((int, float), f"a number of seconds, from {LEAST:g} to {MOST:g}"),
     "search_path": (list, "a list of folders"),
 }
 """What values may be, by key."""
 
-POSITIVE = ("rate", "queue", "timeout", "interval")
+RANGES = {"rate": (LEAST, MOST), "timeout": (LEAST, MOST), "interval": (LEAST, MOST), "queue": (1, MAX_QUEUE)}
+"""The least and the most that numbers may be; infinity and what is no number are not between."""
+
+PLACE = re.compile(r"(?:[^\s:/]*:|\[[0-9A-Fa-f:.]+\]:)?(\d{1,5})")
 ROUTE = ("name", "source", "sources", "on", "target", "call", "timeout", "rate", "queue", "full", *TRANSLATION)
 RPC = ("name", "serve", "call", "timeout", "request", "reply")
 
@@ -115,7 +122,7 @@ class Configuration:
     metrics: str | None
     interval_s: float
     search_path: tuple[str, ...]
-    places: Places
+    spans: TomlSpans
 
 
 def read(path: str) -> Configuration:
@@ -133,7 +140,7 @@ def read(path: str) -> Configuration:
         plain = tomllib.loads(source.text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise BridgeError((words.no_toml(place_of_syntax(source, str(error)), str(error)),)) from None
-    reading = _Reading(Places(source), [])
+    reading = _Reading(TomlSpans(source), [])
     configuration = reading.configuration(path, plain)
     if reading.problems:
         raise BridgeError(tuple(reading.problems))
@@ -142,7 +149,7 @@ def read(path: str) -> Configuration:
 
 @dataclass(slots=True)
 class _Reading:
-    places: Places
+    spans: TomlSpans
     problems: list[Diagnostic]
 
     def configuration(self, path: str, plain: Mapping[str, Any]) -> Configuration:
@@ -152,26 +159,30 @@ class _Reading:
         routes = [self.route(each, number) for number, each in enumerate(self.tables(plain, "route"))]
         rpcs = [self.rpc(each, number) for number, each in enumerate(self.tables(plain, "rpc"))]
         if not routes and not rpcs and not self.problems:
-            self.problems.append(words.no_routes(self.places.of()))
+            self.problems.append(words.no_routes(self.spans.of()))
         seen: set[str] = set()
         for kind, each in (*(("route", each) for each in routes), *(("rpc", each) for each in rpcs)):
             if each.name in seen:
-                self.problems.append(words.name_twice(self.places.of(kind, each.number, "name"), each.name))
+                self.problems.append(words.name_twice(self.spans.of(kind, each.number, "name"), each.name))
             seen.add(each.name)
-        folders = (str(Path(path).resolve().parent), *(str(each) for each in settings.get("search_path", ())))
-        interval = float(settings.get("interval", 1.0)) if isinstance(settings.get("interval", 1.0), int | float) else 1.0
-        return Configuration(path, tuple(routes), tuple(rpcs), settings.get("metrics"), interval, folders, self.places)
+        folders, interval = self.sound(settings, "search_path", ()), self.sound(settings, "interval", 1.0)
+        search_path = (str(Path(path).resolve().parent), *folders)
+        return Configuration(path, tuple(routes), tuple(rpcs), settings.get("metrics"), float(interval), search_path, self.spans)
+
+    def sound(self, table: Mapping[str, Any], key: str, default: Any) -> Any:
+        """The value of a key; its default where it is wrong, which has been noted."""
+        return table[key] if key in table and _takes(key, table[key]) else default
 
     def tables(self, plain: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
         value = plain.get(key, [])
         if not isinstance(value, list) or not all(isinstance(each, dict) for each in cast("list[Any]", value)):
-            self.problems.append(words.bad_value(self.places.of(key), key, f"written as [[{key}]]"))
+            self.problems.append(words.bad_value(self.spans.of(key), key, f"written as [[{key}]]"))
             return []
         return cast("list[dict[str, Any]]", value)
 
     def table(self, value: object, place: tuple[str | int, ...]) -> dict[str, Any]:
         if not isinstance(value, dict):
-            self.problems.append(words.bad_value(self.places.of(*place), str(place[-1]), f"written as [{place[-1]}]"))
+            self.problems.append(words.bad_value(self.spans.of(*place), str(place[-1]), f"written as [{place[-1]}]"))
             return {}
         return cast("dict[str, Any]", value)
 
@@ -179,12 +190,9 @@ class _Reading:
         """Note keys that mean nothing, and values of another kind."""
         for key, value in table.items():
             if key not in keys:
-                self.problems.append(words.unknown_key(self.places.of(*place, key), key, where, keys))
-            elif key in KINDS:
-                kind, wanted = KINDS[key]
-                is_wrong = not isinstance(value, kind) or isinstance(value, bool) or (key in POSITIVE and value <= 0)
-                if is_wrong or (key == "full" and value not in FULL):
-                    self.problems.append(words.bad_value(self.places.of(*place, key), key, wanted))
+                self.problems.append(words.unknown_key(self.spans.of(*place, key), key, where, keys))
+            elif key in KINDS and not _takes(key, value):
+                self.problems.append(words.bad_value(self.spans.of(*place, key), key, KINDS[key][1]))
 
     def route(self, table: dict[str, Any], number: int) -> Route:
         place = ("route", number)
@@ -192,14 +200,14 @@ class _Reading:
         self.known(table, ROUTE, "a route", place)
         if ("source" in table) == ("sources" in table) or ("target" in table) == ("call" in table):
             needed = "one of `source` and `sources`, or one of `target` and `call`"
-            self.problems.append(words.missing_key(self.places.of(*place), "this route", needed))
+            self.problems.append(words.missing_key(self.spans.of(*place), "this route", needed))
         sources = self.sources(table, place) if len(self.problems) == before else ()
         if len(self.problems) > before:
             return Route(str(table.get("name", number)), "", "", Translation(), number)
         source = " + ".join(address for _, address in sources) or str(table["source"])
         target = str(table.get("target") or table.get("call"))
         if source == target:
-            self.problems.append(words.same_address(self.places.of(*place, "target"), source))
+            self.problems.append(words.same_address(self.spans.of(*place, "target"), source))
         return Route(
             name=str(table.get("name") or f"{source} > {target}"),
             source=source,
@@ -219,11 +227,11 @@ class _Reading:
         """The address of each wire of a route that joins several."""
         given = cast("dict[str, object]", table.get("sources", {}))
         if "sources" in table and (not given or not all(isinstance(each, str) and "*" not in each for each in given.values())):
-            self.problems.append(words.bad_value(self.places.of(*place, "sources"), "sources", KINDS["sources"][1]))
+            self.problems.append(words.bad_value(self.spans.of(*place, "sources"), "sources", KINDS["sources"][1]))
         if given and not ("mapping" in table or "decode_mapping" in table):
-            self.problems.append(words.missing_key(self.places.of(*place, "sources"), "this route", "a `mapping` of several wires"))
+            self.problems.append(words.missing_key(self.spans.of(*place, "sources"), "this route", "a `mapping` of several wires"))
         if "on" in table and table["on"] not in given:
-            self.problems.append(words.bad_value(self.places.of(*place, "on"), "on", "one of the names in `sources`"))
+            self.problems.append(words.bad_value(self.spans.of(*place, "on"), "on", "one of the names in `sources`"))
         return tuple((wire, str(address)) for wire, address in given.items())
 
     def rpc(self, table: dict[str, Any], number: int) -> Rpc:
@@ -231,7 +239,7 @@ class _Reading:
         before = len(self.problems)
         self.known(table, RPC, "an rpc", place)
         if "serve" not in table or "call" not in table:
-            self.problems.append(words.missing_key(self.places.of(*place), "this rpc", "`serve` or `call`"))
+            self.problems.append(words.missing_key(self.spans.of(*place), "this rpc", "`serve` or `call`"))
         if len(self.problems) > before:
             return Rpc(str(table.get("name", number)), "", "", Translation(), Translation(), number)
         serve, call = str(table["serve"]), str(table["call"])
@@ -245,10 +253,33 @@ class _Reading:
         import json
 
         given = {key: table[key] for key in TRANSLATION if key in table}
+        ways = (
+            ("mapping", "decode_mapping", "decode_type"),
+            ("decode_mapping", "decode_type"),
+            ("encode_mapping", "encode_type"),
+            ("between", *(key for key in TRANSLATION if key != "between")),
+        )
+        for one, other in [(one, other) for one, *others in ways for other in others if {one, other} <= given.keys()]:
+            self.problems.append(words.two_ways(self.spans.of(*place, other), one, other))
         if "mapping" in given:
-            if "decode_mapping" in given:
-                self.problems.append(words.bad_value(self.places.of(*place, "mapping"), "mapping", "another word for `decode_mapping`"))
             given["decode_mapping"] = given.pop("mapping")
-        if "between" in given and len(given["between"]) != 2:
-            self.problems.append(words.bad_value(self.places.of(*place, "between"), "between", KINDS["between"][1]))
         return Translation(json.dumps(given, sort_keys=True, default=str) if given else "")
+
+
+def _takes(key: str, value: Any) -> bool:
+    """Whether a key may have a value."""
+    if not isinstance(value, KINDS[key][0]) or isinstance(value, bool):
+        return False
+    match key:
+        case "full":
+            return value in FULL
+        case "between":
+            return len(value) == 2 and all(isinstance(each, str) for each in value)
+        case "search_path":
+            return all(isinstance(each, str) for each in value)
+        case "metrics":
+            found = PLACE.fullmatch(value)
+            return found is not None and int(found[1]) < 65536
+        case _:
+            least, most = RANGES.get(key, (None, None))
+            return least is None or most is None or least <= value <= most

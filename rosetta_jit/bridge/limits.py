@@ -13,6 +13,9 @@ MAX_CLOSING = 64
 MAX_FOUND = 1000
 """routes that one pattern becomes: a hostile name server could name any number of channels"""
 
+MAX_QUEUE = 1_000_000
+"""messages that a route's `queue` may have wait for its target; all of them together have bytes that are bounded, too"""
+
 MAX_CAUSES = 100
 """different causes of errors that a route counts apart"""
 

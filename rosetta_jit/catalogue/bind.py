@@ -41,12 +41,14 @@ def repeated(span: Span | None, name: str) -> Diagnostic:
     )
 
 
-def unknown_type(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
+def unknown_type(span: Span | None, parameter: str, name: str, known: Collection[str]) -> Diagnostic:
     """A type that parameters cannot have."""
     found = CALLED.get(name) or nearest(name, known)
     notes = (f"types: {', '.join(known)}, and `list of` these",)
     help_ = f"did you mean `{found}`?" if found else ""
-    return error("parameter-type", f"a parameter cannot be `{shorten(name)}`", span, notes=notes, help_=help_)
+    return error(
+        "parameter-type", f"the parameter `{shorten(parameter)}` cannot be of type `{shorten(name)}`", span, notes=notes, help_=help_
+    )
 
 
 def shadowed(span: Span | None, name: str) -> Diagnostic:

@@ -36,6 +36,12 @@ def bad_value(span: Span, key: str, wanted: str) -> Diagnostic:
     return Diagnostic("error", "bad-value", f"`{key}` is {wanted}", span, "this is not")
 
 
+def two_ways(span: Span, one: str, other: str) -> Diagnostic:
+    """Two keys of which one alone is taken."""
+    what = f"`{one}` and `{other}` say the same thing in two ways"
+    return Diagnostic("error", "two-ways", what, span, "one too many", help="leave one out")
+
+
 def no_routes(span: Span) -> Diagnostic:
     """A file without routes."""
     return Diagnostic("error", "no-routes", "there is nothing to do", span, help="a [[route]] has a source and a target")

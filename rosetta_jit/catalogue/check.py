@@ -210,3 +210,9 @@ def not_affine(span: Span | None, path: str) -> Diagnostic:
 def too_complex(span: Span | None) -> Diagnostic:
     """An expression whose normal form is beyond the limit."""
     return error("too-complex", "the expression is too large to be checked", span, help_="simplify it")
+
+
+def case_twice(span: Span | None) -> Diagnostic:
+    """A case of a table or a choice that asks what an earlier one asks."""
+    message = "an earlier case asks the same: this one is never chosen"
+    return warning("unreachable", message, span, "again here", help_="remove one of them, or correct it")

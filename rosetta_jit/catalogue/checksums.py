@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.mapping import error
+from rosetta_jit.catalogue.spelling import closest
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -24,4 +25,7 @@ def unknown_code(span: Span | None, found: str | None, known: tuple[str, ...]) -
     """A code that nobody knows, or one that is computed."""
     what = "the code of a checksum is written down" if found is None else f'there is no code "{found}"'
     names = ", ".join(f'"{name}"' for name in known)
-    return error("checksum", what, span, "here", notes=(f"codes: {names}",), help_=EXAMPLE)
+    bare = "".join(filter(str.isalnum, found or "")).upper()
+    meant = next((name for name in known if "".join(filter(str.isalnum, name)) == bare), None) or closest(found or "", known)
+    help_ = f'did you mean "{meant}"?' if meant else EXAMPLE
+    return error("checksum", what, span, "here", notes=(f"codes: {names}",), help_=help_)

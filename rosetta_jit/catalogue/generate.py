@@ -82,5 +82,11 @@ def no_object(language: str) -> Diagnostic:
 
 def not_of_wires(span: Span | None) -> Diagnostic:
     """Decoders of several wires in a language that has none, with bytes left in a message, or in an object file."""
-    help_ = "choose `--language c --directions decode`; encoders are made in every language, by `--directions encode --wire NAME`"
+    help_ = "decoders are made as source, by `--directions decode`; encoders, of one wire each, by `--directions encode --wire NAME`"
     return Diagnostic("error", "not-generated", "such source cannot join messages of several wires", span, help=help_)
+
+
+def wires_around(holder: str, span: Span | None = None) -> Diagnostic:
+    """A class that reads messages of one type around decoders of several wires."""
+    text = f"a class for `--holder {holder}` reads messages of one type, and the mapping has several wires"
+    return Diagnostic("error", "not-generated", text, span, help="choose another `--holder`, as own")

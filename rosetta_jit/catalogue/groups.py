@@ -31,7 +31,10 @@ def other_count(span: Span | None, places: int, values: int, names: Sequence[str
 def no_component(span: Span | None, name: str, names: Sequence[str]) -> Diagnostic:
     """A number that a group has not, or of what is no group."""
     notes = (f"it gives {_listed(names)}",) if names else ("functions of several values give several numbers: `euler(.q).yaw`",)
-    return error("no-component", f"this gives no number `{shorten(name)}`", span, notes=notes)
+    meant = closest(name, names)
+    return error(
+        "no-component", f"this gives no number `{shorten(name)}`", span, notes=notes, help_=f"did you mean `{meant}`?" if meant else ""
+    )
 
 
 def arguments(span: Span | None, function: str, groups: Sequence[tuple[str, Sequence[str]]], found: int) -> Diagnostic:

@@ -7,7 +7,6 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.names import shorten
-from rosetta_jit.catalogue.spelling import closest
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -20,8 +19,10 @@ SIGNS = (
     ("//", "a comment begins with `#`; whole numbers are divided by `floor_divide(a, b)`"),
     ("/*", "a comment begins with `#`, and ends with its line"),
     ("**", "a square is `x * x`"),
+    ("<>", "values are unequal by `!=`"),
+    ("++", "`state n = n + 1` counts messages, `index()` elements"),
 )
-"""Two characters, of which the second is not expected, and what to write instead."""
+"""Two characters, of which the one or the other is not expected, and what to write instead."""
 
 CHARACTERS: Mapping[str, str] = MappingProxyType(
     {
@@ -47,6 +48,34 @@ STATEMENTS = (
 )
 RULES = ("ignore", "default", "reject", "when", "for", "same names", "else", "end")
 BEHIND_VALUES = ("where", "if", "and", "or", "via")
+
+WORDS: Mapping[str, str] = MappingProxyType(
+    {
+        **dict.fromkeys(("elif", "elsif", "elseif"), "write `else when condition`; each `when` needs an `end`, also this one"),
+        **dict.fromkeys(
+            ("var", "let", "const", "def"), "a value that several messages share is `state`; others are written where they are used"
+        ),
+        "map": "a rule begins with the place that it sets: `.a = .b`",
+    }
+)
+"""Words of other languages at the beginning of a rule."""
+
+WORDS_BEHIND_VALUES: Mapping[str, str] = MappingProxyType(
+    {
+        **WORDS,
+        "in": "whether a value is one of several is `x == a or x == b`; whether a text has another, `contains(x, a)`",
+        "is": "values are compared by `==`",
+        "div": "whole numbers are divided by `floor_divide(a, b)`",
+        "mod": "`modulo(a, b)` is what a division leaves",
+        "as": "a number becomes one of another type by its name: `int32(x)`",
+    }
+)
+"""Words of other languages behind a value."""
+
+ITEMS: Mapping[str, str] = MappingProxyType(
+    dict.fromkeys(("default", "else", "other", "_", "others"), 'of all other keys: `otherwise value`, or `otherwise reject "why"`')
+)
+"""What stands in tables of other languages for all other keys."""
 
 FUNCTIONS: Mapping[str, str] = MappingProxyType(
     {
@@ -77,58 +106,6 @@ NAMES: Mapping[str, str] = MappingProxyType(
     }
 )
 """Constants of other languages, and what there is for them."""
-
-
-def instead(span: Span, kind: str, expected: frozenset[str]) -> str:
-    """What to write instead of a token that is not expected; empty where no habit explains it."""
-    text = span.source.text
-    found, pair, ahead = text[span.start : span.end], text[max(0, span.start - 1) : span.start + 1], text[span.start : span.start + 2]
-    sign = next((help_ for each, help_ in SIGNS if each in (pair, ahead)), "")
-    if sign or found[:1] in CHARACTERS:
-        return sign or CHARACTERS[found[:1]]
-    if expected & {"EQUAL", "RELATES"} and kind != "RELATES" and (found == "==" or ahead in ("->", "<-", ":=")):
-        return "a place is related to a value by `<->`" if "RELATES" in expected else "a place is set by `=`"
-    if kind == "EQUAL" and "FOR" in expected:
-        return "values are compared by `==`; a rule sets one place by `=`"
-    if found == "." and text[span.end : span.end + 1].isdigit():
-        return "a digit stands before the point: `0.5`"
-    if found in ("in", "=") and "FROM" in expected:
-        return "a loop counts: `for i from 0 to len(.a)`"
-    return _of_a_line(span, kind, expected)
-
-
-def _of_a_line(span: Span, kind: str, expected: frozenset[str]) -> str:
-    """The same where the line, or the one before, tells."""
-    text = span.source.text
-    start = text.rfind("\n", 0, span.start) + 1
-    before = text[start : span.start].strip()
-    line = before or text[text.rfind("\n", 0, max(0, start - 1)) + 1 : start].strip()
-    if re.match(r"(if|elif|else if)\b", line) and "ELSE" in expected:
-        return "rules that depend on a condition stand in a block: `when condition`, the rules, `end`"
-    if before == "import" and "STRING" in expected and kind != "UNCLOSED":
-        rest = text[span.start :].partition("\n")[0].strip()
-        return f'write `import "{shorten(rest)}"`'
-    if expected == frozenset(("COLON",)) and (word := re.search(r"([\w-]+)\s*$", text[: span.start][-200:])):
-        return f"a colon is missing: `{word[1]}:`"
-    if "RPAR" in expected and not before and kind in ("START", "NAME", "$END"):
-        return "a bracket is not closed: `)` is missing before"
-    return _misspelt(text[span.start : span.start + 40], before, expected) if kind == "NAME" else ""
-
-
-def _misspelt(text: str, before: str, expected: frozenset[str]) -> str:
-    """A word of the language that may be meant."""
-    found = re.match(r"[A-Za-z_][\w-]*(?=(:?))", text)
-    if found is None:
-        return ""
-    if before:
-        known = BEHIND_VALUES if "STAR" in expected else ()
-    else:
-        known = (*(STATEMENTS if "IMPORT" in expected else ()), *(() if "FOR" not in expected or found[1] else RULES))
-    word = found[0].replace("_", "-")
-    near = closest(word, [each.removesuffix(":") for each in known])
-    near = near or next((each.removesuffix(":") for each in known if len(word) > 3 and word in each), None)
-    meant = next((each for each in known if near is not None and each.removesuffix(":") == near), None)
-    return "" if meant is None else f"did you mean `{meant}`?"
 
 
 def for_function(name: str) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error
+from rosetta_jit.catalogue.habits import for_function
+from rosetta_jit.catalogue.mapping import error, shorten
 from rosetta_jit.catalogue.spelling import closest
 
 if TYPE_CHECKING:
@@ -197,9 +198,12 @@ def two_orders(span: Span | None) -> Diagnostic:
     return error("layout-order", "a rule reads one array in rows or planes, and no other besides", span, help_=help_)
 
 
-def no_count(span: Span | None, path: str) -> Diagnostic:
-    """Elements that nothing says the number of."""
-    return error("no-count", f"nothing says how many elements `{path}` has", span, help_=f"set it: `len({path}) = 3`")
+def no_count(span: Span | None, path: str, whole: str = "") -> Diagnostic:
+    """Elements that nothing says the number of; ``whole`` is an array that is assigned to each of them."""
+    help_ = f"set it: `len({path}) = 3`"
+    if whole:
+        help_ = f"`{whole}[]` is each of the elements there: `{path}[] = {whole}[]`"
+    return error("no-count", f"nothing says how many elements `{path}` has", span, help_=help_)
 
 
 def open_end(span: Span | None) -> Diagnostic:
@@ -229,7 +233,11 @@ def same_order(span: Span | None) -> Diagnostic:
 def one_value(span: Span | None, called: str = "", reductions: Sequence[str] = ()) -> Diagnostic:
     """Many elements for a place that holds one value; what is ``called`` with them may be a reduction, misspelt."""
     meant = closest(called, reductions) if called else None
-    help_ = f"did you mean `{meant}`?" if meant else "take one of them, `.n = .a[0]`, or one value of all: `.n = sum(.a[])`"
+    misspelt = f"did you mean `{meant}`?" if meant else for_function(called)
+    if misspelt:
+        notes = (f"reductions: {', '.join(sorted(reductions))}",)
+        return error("many-elements", f"there is no reduction `{shorten(called)}`", span, "no array", notes=notes, help_=misspelt)
+    help_ = "take one of them, `.n = .a[0]`, or one value of all: `.n = sum(.a[])`"
     return error("many-elements", "many elements are assigned to one value", span, "no array", help_=help_)
 
 

@@ -6,18 +6,15 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.habits import instead
 from rosetta_jit.catalogue.names import shorten
 from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.unexpected import instead
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosetta_jit.source import Span
-
-TYPESET = {"\u201c": '"', "\u201d": '"', "\u201e": '"', "\u2013": "-", "\u2014": "-", "\u2212": "-", "\u00d7": "*"}
-"""Characters that a word processor puts where the language has a plain one."""
 
 EXPECTATIONS = (
     ("INTEGER", "a value"),
@@ -31,6 +28,7 @@ EXPECTATIONS = (
     ("RPAR", "`)`"),
     ("LSQB", "`[`"),
     ("RSQB", "`]`"),
+    ("RBRACE", "`}`"),
     ("COMMA", "`,`"),
     ("FROM", "`from`"),
     ("TO", "`to`"),
@@ -47,7 +45,7 @@ WORDS = {
     kind: kind.strip("_").lower()
     for kind in (
         *("IMPORT", "PARAMETER", "STATE", "FUNCTION", "_SAME", "NAMES", "IGNORE", "DEFAULT", "REST", "REJECT", "FOR", "FROM", "TO", "BY"),
-        *("END", "WHEN", "ELSE", "IF", "AND", "OR", "NOT", "VIA", "DEPTH", "WHERE", "WITH", "EXCEPT", "OTHERWISE"),
+        *("END", "WHEN", "ELSE", "IF", "AND", "OR", "NOT", "VIA", "DEPTH", "WHERE", "WITH", "EXCEPT", "OTHERWISE", "LIST", "OF"),
     )
 } | {
     kind: f"{kind.lower().replace('_', '-')}:"
@@ -95,17 +93,18 @@ def _undotted(span: Span, kind: str, expected: frozenset[str]) -> str:
     else:
         found = re.search(BEFORE[kind], text[max(0, span.start - 100) : span.start]) if kind in BEFORE else None
         name = found[1] if found else ""
+    if name and (declared := re.search(rf"(?m)^[ \t]*(state|parameter)[ \t]+{re.escape(name)}\b", text)) is not None:
+        return f"a state variable is set by `state {shorten(name)} = ...`" if declared[1] == "state" else "no rule sets a parameter"
     return f"a field begins with a dot: `.{shorten(name)}`" if name else ""
 
 
 def _expected(kinds: frozenset[str]) -> list[str]:
     implied = (STARTS_VALUE if "INTEGER" in kinds else frozenset[str]()) | (STARTS_RULE if "FOR" in kinds else frozenset[str]())
-    return [name for kind, name in EXPECTATIONS if kind in kinds - implied] or (["`else`"] if "ELSE" in kinds else [])
+    named = [name for kind, name in EXPECTATIONS if kind in kinds - implied]
+    return named or (["`else`"] if "ELSE" in kinds else [f"`{WORDS[kind]}`" for kind in sorted(kinds & WORDS.keys())])
 
 
 def _hint(found: str, kind: str, expected: frozenset[str]) -> str:
-    if found in TYPESET:
-        return f"write the plain character `{TYPESET[found]}`"
     if kind == "UNCLOSED":
         return 'close the text with `"` on the same line'
     if kind == "EQUAL" and "RELATES" in expected:
@@ -116,8 +115,6 @@ def _hint(found: str, kind: str, expected: frozenset[str]) -> str:
         return "a path is written without blanks and begins with a dot: `.a.b[0]`"
     if kind == "END":
         return "every `end` closes one `for` or `when`"
-    if kind == "$END" and "END" in expected:
-        return "every `for` and every `when` needs an `end`"
     if "INTEGER" in expected:
         return "a value is a field (`.a.b[0]`), a number, a text in quotes, a function of those, or a table"
     if "IMPORT" in expected and "FOR" not in expected:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.habits import for_function, for_member, for_name
+from rosetta_jit.catalogue.habits import for_function, for_name
 from rosetta_jit.catalogue.limits import MAX_NAMES, MAX_QUOTED
 from rosetta_jit.catalogue.mapping import error, note, shorten, warning
 from rosetta_jit.catalogue.spelling import closest
@@ -13,7 +14,6 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.expr import Member
     from rosetta_jit.source import Span
 
 
@@ -52,43 +52,6 @@ def not_a_message(span: Span | None, name: str) -> Diagnostic:
     return error("not-a-message", f"`{shorten(name)}` is an enum, not a message", span, help_="name a message type")
 
 
-def unknown_field(step: Member, side: str, owner: str, known: Collection[str], elsewhere: str) -> Diagnostic:
-    """A field that the message does not have."""
-    return error(
-        "unknown-field",
-        f"`{shorten(owner)}` has no field `{shorten(step.name)}`",
-        step.span,
-        f"looked up on the {side} side",
-        notes=there_are("its fields", known),
-        help_=did_you_mean(step.name, known) or elsewhere,
-    )
-
-
-def other_side(name: str, origin: str) -> str:
-    """A hint: the field exists on the side that the rule writes."""
-    return f"`{shorten(name)}` is a field of the target; what a rule reads, indices included, is on the {origin} side"
-
-
-def read_side(name: str, target: str) -> str:
-    """A hint: the field exists on the side that the rule reads."""
-    return f"`{shorten(name)}` is a field of what is read; a rule here sets a field of the {target}: turn it round"
-
-
-def not_a_struct(span: Span | None, name: str, found: str) -> Diagnostic:
-    """A field of something that has none."""
-    hint = "index it first: `[i]`" if found.startswith("an array") else f"leave out `.{shorten(name)}`"
-    if found.startswith("an array") or found in ("text", "bytes"):
-        hint = for_member(name, span) or hint
-    return error("no-fields", f"`.{shorten(name)}` of {found}, which has no fields", span, f"this is {found}", help_=hint)
-
-
-def no_keys(span: Span | None, found: str) -> Diagnostic:
-    """A key of what has no elements with fields."""
-    message = f"{shorten(found)} has no elements that a field tells apart"
-    help_ = 'name an array of messages, a map, or an array of keys beside: `.position[.name[] = "elbow"]`'
-    return error("no-keys", message, span, "here", help_=help_)
-
-
 def key_to_set(span: Span | None) -> Diagnostic:
     """An element that is set by a key that is not known."""
     help_ = "write the key down, or set the elements by their numbers, each with its key"
@@ -113,29 +76,18 @@ def no_number_of(span: Span | None) -> Diagnostic:
     return error("arguments", "`index` takes an element that a key tells", span, "this is none", help_='write `index(.a[.key = "x"])`')
 
 
-def not_indexable(span: Span | None, found: str) -> Diagnostic:
-    """An element of something that has none."""
-    return error("not-indexable", f"{found} cannot be indexed", span, help_="only arrays and bytes have elements")
-
-
-def no_length(span: Span | None, found: str) -> Diagnostic:
-    """`len()` of something that has none."""
-    return error("no-length", f"{found} has no length", span, "here", help_="only arrays, bytes and text have one")
-
-
-def always_there(span: Span | None, found: str) -> Diagnostic:
-    """`has()` of something that cannot be absent."""
-    help_ = "only optional fields and cases of a union can be absent; compare the value instead"
-    return error("always-there", f"{found} is always there", span, "here", help_=help_)
-
-
 def length_not_settable(span: Span | None, found: str) -> Diagnostic:
     """A length that the schema or the type fixes."""
     return error("length-fixed", f"the length of {found} cannot be set", span, "here", help_="assign it as a whole, or remove the rule")
 
 
-def unknown_name(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
-    """A name that is no loop variable and no constant."""
+def unknown_name(span: Span | None, name: str, known: Collection[str], members: Collection[str] = ()) -> Diagnostic:
+    """A name that is no loop variable and no constant; what it ends with may be one of the ``members`` of the message."""
+    last = re.split(r"[./:]", name)[-1]
+    if last in members and last not in known:
+        message = f"there is no loop variable or constant `{shorten(name)}`, but a field `{shorten(last)}`"
+        help_ = f"a path begins at the message itself: `.{shorten(last)}`"
+        return error("unknown-name", message, span, "not known here", help_=help_)
     return error(
         "unknown-name",
         f"there is no loop variable or constant `{shorten(name)}`",
@@ -165,14 +117,11 @@ def ambiguous_name(span: Span | None, name: str, several: Sequence[str]) -> Diag
     return error("ambiguous-name", message, span, "which one?", notes=(f"they are: {shown}",), help_=help_)
 
 
-def undotted_field(span: Span | None, name: str) -> Diagnostic:
-    """The name of a field without the dot before it."""
-    message = f"there is no loop variable or constant `{shorten(name)}`, but a field"
-    return error("unknown-name", message, span, "a dot is missing", help_=f"a field begins with a dot: `.{shorten(name)}`")
-
-
 def unknown_function(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
-    """A call of nothing that is known."""
+    """A call of nothing that is known, or of `index` where there is no element."""
+    if name in known:
+        help_ = "there is one in a rule with `[]`, in a reduction and behind `where`; in a loop it is the loop's variable"
+        return error("unknown-function", f"`{name}()` is the number of an element, and there is none here", span, help_=help_)
     return error(
         "unknown-function",
         f"there is no function `{shorten(name)}`",
@@ -257,6 +206,8 @@ def _of_elements(value: str, source: str, target: str) -> str:
         return f"name one of its elements, `{value}[0]`{f', or make one number of them, `mean({value}[])`' if is_number else ''}"
     if target == f"an array of {source}":
         return f"`[{value}]` is an array of this one element"
+    if source == "bool" and target.startswith("float"):
+        return f"`int8({value})` is its number, 0 or 1"
     return "assign another field, or compute what is meant from it"
 
 
@@ -269,6 +220,7 @@ def constant_range(span: Span | None, value: str, target: str) -> Diagnostic:
 OF_FLOATS = {
     "modulo": "of floats, `x % y` is what remains, with the sign of `x`; with that of `y` it is `x - floor(x / y) * y`",
     "floor_divide": "of floats, it is `floor(x / y)`",
+    "^": "`^` is the exclusive or of bits; a square is `x * x`",
 }
 """What does for floats what a function does for integers alone."""
 
@@ -289,6 +241,9 @@ def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
 def integer_needed(span: Span | None, what: str, found: str) -> Diagnostic:
     """A length, index or loop bound that is not an integer."""
     hint = f"convert it: `int64({written_at(span)})`" if found in {"uint64", "float32", "float64"} else ""
+    if found == "text":
+        key = written_at(span)
+        hint = f"`.a[.key = {key}]` is the element that has this key, `.a[.keys[] = {key}]` one of an array with its keys beside"
     return error("integer-needed", f"{what} is an integer, not {found}", span, f"this is {found}", help_=hint)
 
 
@@ -321,12 +276,6 @@ def shift_range(span: Span | None, bits: int, most: int) -> Diagnostic:
     return error("shift-range", f"a shift by {bits} bits", span, f"0 to {most} can be", help_="correct the number of bits")
 
 
-def index_range(span: Span | None, index: int, length: int | None) -> Diagnostic:
-    """An index that is known to be out of range."""
-    has = "indices count from 0" if length is None else f"there are {length} elements, counted from 0"
-    return error("index-range", f"index {index} is out of range", span, has, help_="correct the index")
-
-
 def loop_range(span: Span | None, start: int, stop: int) -> Diagnostic:
     """A loop that is known to end below its start."""
     return error("loop-range", f"the loop ends at {stop}, below its start {start}", span, help_="`to` is exclusive and not below `from`")
@@ -334,7 +283,10 @@ def loop_range(span: Span | None, start: int, stop: int) -> Diagnostic:
 
 def condition_needed(span: Span | None, found: str) -> Diagnostic:
     """A number or a text where true or false is meant."""
-    hint = "compare it: `" + written_at(span) + (' == "..."`' if found == "text" else " != 0`")
+    value, is_array = written_at(span), found.startswith("an array of ")
+    kind = found.removeprefix("an array of ")
+    with_sign = f"compare it: `{value}{'[]' * is_array}" + (' == "..."`' if kind == "text" else " != 0`")
+    hint = with_sign if kind.startswith(("text", *NUMBERS)) else f"say what is to hold of it, as `len({value}) > 0`"
     return error("condition", f"a condition is true or false, this is {found}", span, f"this is {found}", help_=hint)
 
 
@@ -344,6 +296,8 @@ def not_comparable(span: Span | None, operator: str, left: str, right: str) -> D
     others = {left, right} - {"text"}
     if len(others) == 1 and others.pop().startswith(("int", "uint", "float")):
         hint = "make both of them texts, `text(x)`, or both numbers, `number(x)`"
+    if operator == "==" and left.startswith("an array of") and span is not None and span.source.text[: span.start].rstrip().endswith("["):
+        hint = f"an element is told by its key with one `=`: `[{written_at(span).replace('==', '=', 1)}]`"
     return error("not-comparable", f"`{operator}` does not compare {left} with {right}", span, help_=hint)
 
 

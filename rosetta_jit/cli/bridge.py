@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import gc
 import json
+import os
 import signal
 import sys
 import threading
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TextIO
 
 from rosetta_jit.cli.arguments import Commands, add_command
@@ -37,7 +39,7 @@ def add(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code 1 if the file is wrong, 0 when the bridge has been stopped by SIGINT or SIGTERM."""
+    """Exit code 1 if the file is wrong, or not everything could be printed; else 0 when the bridge has been stopped."""
     from rosetta_jit.bridge.checking import checked
     from rosetta_jit.errors import BridgeError
 
@@ -68,7 +70,52 @@ def _call_all_old() -> None:
     gc.freeze()
 
 
-def _printed_to(configuration: Configuration) -> TextIO:
+class _Output:
+    """A stream for people. Messages go on where it takes nothing: its disk is full, it is closed, or its reader has ended."""
+
+    def __init__(self, stream: TextIO | None) -> None:
+        self.stream = stream
+        self.problem = ""
+
+    def print(self, text: str) -> None:
+        """Print lines, if they can be printed."""
+        if self.stream is None:
+            return
+        try:
+            print(text, file=self.stream, flush=True)
+        except (OSError, ValueError) as error:
+            self.problem = getattr(error, "strerror", None) or str(error)
+
+    def end(self) -> None:
+        """Leave nothing for Python to fail at when it ends."""
+        if self.problem and self.stream is not None:
+            with suppress(OSError, ValueError):
+                os.dup2(os.open(os.devnull, os.O_WRONLY), self.stream.fileno())
+
+
+class _Terminal:
+    """The terminal in which the program was started, if there is one."""
+
+    def __init__(self) -> None:
+        streams = (sys.stdin, sys.stdout, sys.stderr)
+        self._numbers = [each.fileno() for each in streams if each is not None and each.isatty() and _controls(each.fileno())]
+
+    @property
+    def is_gone(self) -> bool:
+        """Whether it has been closed since."""
+        return bool(self._numbers) and not any(map(_controls, self._numbers))
+
+
+def _controls(number: int) -> bool:
+    """Whether a file is the terminal that sends signals to this process."""
+    try:
+        os.tcgetpgrp(number)
+    except OSError:
+        return False
+    return True
+
+
+def _printed_to(configuration: Configuration) -> TextIO | None:
     """Where the table goes: not among the messages of a route whose target is standard output."""
     return sys.stderr if any(each.target.partition("?")[0] == "pipe:-" for each in configuration.routes) else sys.stdout
 
@@ -83,8 +130,9 @@ class _Session:
         self._over = self._changed = False
         self._told = threading.Event()
         self._bridge = Running(configuration, self._say)
-        self._out = _printed_to(configuration)
-        self._draws = self._out.isatty() and not arguments.json and not arguments.quiet
+        self._out, self._errors = _Output(_printed_to(configuration)), _Output(sys.stderr)
+        self._terminal = _Terminal()
+        self._draws = self._out.stream is not None and self._out.stream.isatty() and not arguments.json and not arguments.quiet
         self._said: list[str] = []
         self._line = threading.Lock()
         self._metrics: MetricsServer | None = None
@@ -104,7 +152,16 @@ class _Session:
                 self._metrics.close()
             sys.setswitchinterval(before)
             self._show(self._bridge.snapshot())
-        return 0
+        return self._ended()
+
+    def _ended(self) -> int:
+        """The exit code: 1 where what was asked for could not be printed."""
+        problem = self._out.problem
+        if problem:
+            self._errors.print(f"error: not everything could be printed: {problem}")
+        for each in (self._out, self._errors):
+            each.end()
+        return 1 if problem and not self._terminal.is_gone else 0
 
     def _serve_metrics(self, before: str | None) -> None:
         """Serve metrics where the file says, if that is another place than before."""
@@ -130,6 +187,8 @@ class _Session:
         self._told.set()
 
     def _read_again(self, *_: object) -> None:
+        if self._terminal.is_gone:  # its end is told by the same signal
+            self._over = True
         self._changed = True
         self._told.set()
 
@@ -141,7 +200,7 @@ class _Session:
         while not self._over and monotonic() < end:
             self._told.wait(max(0.0, min(due, end) - monotonic()))  # seldom: this thread holds up those that carry messages
             self._told.clear()
-            if self._changed:
+            if self._changed and not self._over:
                 self._changed = False
                 self._reload()
             if monotonic() >= due:
@@ -163,7 +222,7 @@ class _Session:
         except (RosettaError, OSError) as error:
             self._say(f"the file cannot be used, and all goes on as before:\n{error}")
             return
-        self._configuration, self._out = configuration, _printed_to(configuration)
+        self._configuration, self._out.stream = configuration, _printed_to(configuration)
         _call_all_old()
         self._say("the file was read again")
         try:
@@ -173,13 +232,13 @@ class _Session:
 
     def _show(self, snapshot: list[dict[str, Any]]) -> None:
         if self._arguments.json:
-            print(json.dumps({"routes": snapshot}), flush=True, file=self._out)
+            self._out.print(json.dumps({"routes": snapshot}))
         elif not self._arguments.quiet:
             from rosetta_jit.bridge.table import rows
 
             with self._line:
                 above = [*self._said[-8:], ""] if self._draws and self._said else []
-                print((CLEAR if self._draws else "") + "\n".join([*rows(snapshot), *above]), flush=True, file=self._out)
+                self._out.print((CLEAR if self._draws else "") + "\n".join([*rows(snapshot), *above]))
 
     def _say(self, text: str) -> None:
         from rosetta_jit.terminal import printable
@@ -188,4 +247,4 @@ class _Session:
             lines = [printable(each) for each in text.splitlines()]
             self._said = [*self._said, *lines][-100:]
             if not self._draws:
-                print("\n".join(lines), file=sys.stderr, flush=True)
+                self._errors.print("\n".join(lines))

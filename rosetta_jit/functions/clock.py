@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Told
+from rosetta_jit.kernel.ir import HostValue
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Row
 from rosetta_jit.language.typed import INT64
 
@@ -22,11 +22,11 @@ OF_MESSAGES = Row(
 
 
 def _lower_now(_call: Call, _values: Evaluation) -> Expr:
-    return Told("now")
+    return HostValue("now")
 
 
 def _lower_counter(_call: Call, _values: Evaluation) -> Expr:
-    return Told("number")
+    return HostValue("number")
 
 
 FUNCTIONS = tuple(

@@ -66,16 +66,12 @@ class LowByteFirst(AheadOfTime):
 
 @dataclass(frozen=True, slots=True)
 class Wishes:
-    """What a user wants besides: ``freestanding`` source, a ``holder``, the header to ``include`` for it, arrays of ``numpy``.
-
-    ``wires`` is whether decoders of several wires can be had.
-    """
+    """What a user wants besides: ``freestanding`` source, a ``holder``, the header to ``include`` for it, arrays of ``numpy``."""
 
     freestanding: bool = False
     holder: str = ""
     include: str = ""
     numpy: bool = False
-    wires: bool = False
 
 
 NO_WISHES = Wishes()
@@ -93,10 +89,11 @@ def unit_of(
     """
     if not NAME.fullmatch(name) or name in HEADERS:
         raise SchemaError((words.unusable_name(name),))
-    roles = tuple(each for role in roles for each in _of_wires(request, role, machine, wishes))
     builds: dict[Role, AheadOfTime] = {role: machine(_for(request, role)) for role in roles}
     kernels: dict[Role, Kernel] = {}
     for role, build in builds.items():
+        if build.wires and role in ("decode", "borrow"):
+            raise MappingError((words.not_of_wires(build.checked.mapping.wire_span),))
         kernels[role] = build.kernels[0]
         if role == "encode":
             kernels["size"] = build.kernels[1]
@@ -120,6 +117,7 @@ def unit_of(
         state,
         wishes.numpy,
         arrival_registers([name for name, _ in state], first.wires),
+        {role: share.cleared | share.alone | share.joined for role, build in builds.items() if (share := build.types.share) is not None},
     )
 
 
@@ -128,14 +126,11 @@ def _origins(builds: Mapping[Role, AheadOfTime]) -> dict[Role, tuple[Origin, ...
     return {**found, "size": found["encode"]} if "encode" in found else found
 
 
-def _of_wires(request: Request, role: Role, machine: type[AheadOfTime], wishes: Wishes) -> tuple[Role, ...]:
-    """The role; instead of decoding, decoding the messages of each wire that is wanted, where the mapping has several."""
-    build = machine(_for(request, role))
-    if role == "encode" or not build.wires:
-        return (role,)
-    if role == "borrow" or not wishes.wires:
-        raise MappingError((words.not_of_wires(build.checked.mapping.wire_span),))
-    return tuple(f"decode_{wire}" for wire in ([request.wire] if request.wire else build.wires))
+def _of_wires(request: Request, roles: tuple[Role, ...]) -> tuple[Role, ...]:
+    """The roles; instead of decoding, decoding the messages of each wire that is wanted, where the mapping has several."""
+    wires = AheadOfTime(request).wires if "decode" in roles else []
+    decoders = tuple(f"decode_{wire}" for wire in ([request.wire] if request.wire else wires)) if wires else ("decode",)
+    return tuple(each for role in roles for each in (decoders if role == "decode" else (role,)))
 
 
 def _for(request: Request, role: Role) -> Request:
@@ -241,5 +236,5 @@ def generated(request: Request, language: str, roles: tuple[Role, ...], name: st
         raise SchemaError((words.no_numpy(language, tuple(name for name, each in known.items() if each.numpy)),))
     with within_stack():
         machine = LowByteFirst if known[language].low_byte_first else AheadOfTime
-        wishes = replace(wishes, wires=known[language].wires)
-        return known[language].files(unit_of(request, known[language].roles(roles), name, wishes, machine))
+        wanted = _of_wires(request, roles) if known[language].wires else roles
+        return known[language].files(unit_of(request, known[language].roles(wanted), name, wishes, machine))

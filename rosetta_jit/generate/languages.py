@@ -67,7 +67,13 @@ class Language:
 
 LANGUAGES = (
     Language(
-        "python", "one module of dataclasses", "rosetta_jit.generate.python.language:files", borrows=True, low_byte_first=True, numpy=True
+        "python",
+        "one module of dataclasses",
+        "rosetta_jit.generate.python.language:files",
+        borrows=True,
+        low_byte_first=True,
+        numpy=True,
+        wires=True,
     ),
     Language(
         "c", "C11: NAME.h and NAME.c, without allocation, globals or dependencies", "rosetta_jit.generate.c.language:files", wires=True
@@ -78,6 +84,7 @@ LANGUAGES = (
         "rosetta_jit.generate.cpp.language:files",
         borrows=True,
         low_byte_first=True,
+        wires=True,
     ),
     Language(
         "lisp",
@@ -85,6 +92,7 @@ LANGUAGES = (
         "rosetta_jit.generate.lisp.language:files",
         borrows=True,
         low_byte_first=True,
+        wires=True,
     ),
 )
 

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.generate.origins import Origin
+    from rosetta_jit.generate.shares import Ways
     from rosetta_jit.kernel.ir import Kernel, Scalar
     from rosetta_jit.model.layout import Layout
 
@@ -67,6 +68,8 @@ class Unit:
         Arrays of numbers are numpy's, where the language has them.
     arrivals
         For each of several wires the registers that have the number of the last message of all, and of its own last one.
+    shares
+        For each decoder of one of several wires the fields that its messages fill.
     origins
         Which fields of the holder the rules of the mapping name, for each kernel.
     """
@@ -86,3 +89,4 @@ class Unit:
     state: tuple[tuple[str, int], ...] = ()
     numpy: bool = False
     arrivals: Mapping[str, tuple[int, int]] = field(default_factory=dict[str, "tuple[int, int]"])
+    shares: Mapping[Role, Ways] = field(default_factory=dict["Role", "Ways"])

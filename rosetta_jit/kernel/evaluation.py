@@ -17,6 +17,7 @@ from rosetta_jit.kernel.ir import (
     Digits,
     Fits,
     Get,
+    HostValue,
     IsText,
     Load,
     Local,
@@ -26,7 +27,6 @@ from rosetta_jit.kernel.ir import (
     Register,
     Scale,
     Select,
-    Told,
     Unary,
     Used,
     Wire,
@@ -77,7 +77,7 @@ def value_of(machine: Machine, expr: Expr) -> Value:
             return arithmetic.from_bytes(type_, bytes(bytes_at(machine, Wire(at), WIDTH[type_])), order)
         case Get(type_, place):
             return arithmetic.from_bytes(type_, bytes(field(machine, place, WIDTH[type_])))
-        case Used() | Capacity() | Told() | Register():
+        case Used() | Capacity() | HostValue() | Register():
             return _known(machine, expr)
         case Unary(function, operand):
             return arithmetic.unary(type_of(operand), function, value_of(machine, operand))
@@ -112,7 +112,7 @@ def _known(machine: Machine, expr: Known) -> int:
             return machine.used[lane]
         case Capacity(lane):
             return machine.capacities[lane]
-        case Told(what):
+        case HostValue(what):
             return machine.told[what]
         case Register(number):
             return machine.registers[number]

@@ -10,7 +10,7 @@ r"""The kernel: one small typed function from a message to a holder, or back. Th
            | Switch(value, {int: Stmt*}, Stmt*) | Return(position, {register: value})
            | Call(routine, arguments, results) | HostCall(function, arguments, inputs, target, result)
     Routine = name, parameters, results, Stmt*, requires, ensures, Site*
-    Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane) | Told(what)
+    Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane) | HostValue(what)
            | Register(number) | Unary | Binary | Compare | Fits | Convert | Bits | Select
            | IsText(address, size) | Nearest(address, size, exponent) | Digits(value) | Scale(value) | Lookup(values, index)
     Place  = lane, row, offset                            a typed field of a row of a lane
@@ -20,7 +20,8 @@ r"""The kernel: one small typed function from a message to a holder, or back. Th
 of one holder, each an array of rows of `stride` bytes with a capacity and a used length, both in rows. Nothing else can be
 addressed, nothing is allocated. Used lengths are what the state says, but a kernel that decodes into row 0 starts with all lanes
 behind lane 0 empty, unless it keeps them. The last lanes may be **hidden**: the holder has no fields there, a kernel always starts with
-them empty, and what it leaves there is gone. Scalars in lanes are native and aligned as the layout says; scalars in the message have
+them empty, and what it leaves there is gone, but for what a size kernel leaves: the encoder runs on the same lanes, and finds lengths in
+their rows. Scalars in lanes are native and aligned as the layout says; scalars in the message have
 the byte order that the access names, and no alignment.
 
 **Parameters** are the locals `begin`, `end` and `row`, all i64: where the message begins and ends in the buffer (0 <= begin <=
@@ -31,7 +32,7 @@ space.
 until the end of the block that binds it.
 
 **Routines** are statements that many places share. A routine sees `begin`, `end` and its parameters; its results are locals of its
-body, read at the end of it. It holds no Return, Reserve, Advance, HostCall, Used, Told or Register, and calls only routines before it.
+body, read at the end of it. It holds no Return, Reserve, Advance, HostCall, Used, HostValue or Register, and calls only routines before it.
 Calling it demands what it `requires` of its parameters, and gives what it `ensures` of them and its results. Where it fails, the body of
 the caller fails, at the site that the call names for the routine's own, and with the call's indices.
 
@@ -158,8 +159,8 @@ class Capacity:
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """What the host tells of this message (i64)."""
+class HostValue:
+    """What the host says of this message (i64): when it is made, or how many were made before."""
 
     what: Literal["now", "number"]
 
@@ -281,7 +282,7 @@ class Lookup:
 
 
 Decimal = Nearest | Digits | Scale
-Known = Used | Capacity | Told | Register
+Known = Used | Capacity | HostValue | Register
 Expr = Const | Local | Load | Get | Known | Unary | Binary | Compare | Fits | Convert | Bits | Select | IsText | Decimal | Lookup
 
 # --- statements --------------------------------------------------------------------------------------------------------

@@ -25,6 +25,7 @@ from rosetta_jit.kernel.ir import (
     For,
     Get,
     HostCall,
+    HostValue,
     If,
     IsText,
     Let,
@@ -42,7 +43,6 @@ from rosetta_jit.kernel.ir import (
     SetField,
     Store,
     Switch,
-    Told,
     Unary,
     Used,
     Var,
@@ -124,7 +124,7 @@ def expression_text(expr: Expr) -> str:
             return f"load {type_}{order} [{expression_text(at)}]"
         case Get(type_, place):
             return f"get {type_} {_address(place)}"
-        case Used() | Capacity() | Told() | Register():
+        case Used() | Capacity() | HostValue() | Register():
             return _known(expr)
         case Unary(function, operand):
             return f"{function}({expression_text(operand)})"
@@ -152,7 +152,7 @@ def _known(expr: Known) -> str:
             return f"used({lane})"
         case Capacity(lane):
             return f"capacity({lane})"
-        case Told(what):
+        case HostValue(what):
             return what
         case Register(number):
             return f"register({number})"

@@ -30,6 +30,7 @@ from rosetta_jit.kernel.ir import (
     For,
     Get,
     HostCall,
+    HostValue,
     If,
     IsText,
     Let,
@@ -47,7 +48,6 @@ from rosetta_jit.kernel.ir import (
     SetField,
     Store,
     Switch,
-    Told,
     Unary,
     Used,
     Var,
@@ -79,7 +79,7 @@ def _rebuilt(expr: Expr, parts: list[Expr]) -> Expr:
         return next(given)
 
     match expr:
-        case Const() | Local() | Used() | Capacity() | Told() | Register():
+        case Const() | Local() | Used() | Capacity() | HostValue() | Register():
             return expr
         case Load(type_, at, order):
             return Load(type_, change(at), order)

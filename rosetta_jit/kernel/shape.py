@@ -24,6 +24,7 @@ from rosetta_jit.kernel.ir import (
     For,
     Get,
     HostCall,
+    HostValue,
     If,
     IsText,
     Let,
@@ -42,7 +43,6 @@ from rosetta_jit.kernel.ir import (
     SetField,
     Store,
     Switch,
-    Told,
     Unary,
     Used,
     Var,
@@ -199,7 +199,7 @@ def _none(expr: Expr) -> tuple[Expr, ...]:  # noqa: ARG001 - as for those that h
 
 
 _OPERANDS: dict[type[Expr], Callable[[Any], tuple[Expr, ...]]] = {
-    **dict.fromkeys((Const, Local, Used, Capacity, Told, Register), _none),
+    **dict.fromkeys((Const, Local, Used, Capacity, HostValue, Register), _none),
     **dict.fromkeys((Binary, Compare, Fits), attrgetter("left", "right")),
     **dict.fromkeys((Unary, Convert, Bits), lambda expr: (expr.operand,)),
     **dict.fromkeys((Digits, Scale), lambda expr: (expr.value,)),
@@ -222,10 +222,10 @@ def our_functions(kernels: Iterable[Kernel]) -> list[str]:
     return sorted({call.function for call in calls_to_host(kernels) if "." in call.function})
 
 
-def is_told(kernels: Iterable[Kernel]) -> bool:
-    """Whether kernels ask for what the host tells of a message."""
+def asks_host(kernels: Iterable[Kernel]) -> bool:
+    """Whether kernels ask the host for the time, or for the number of a message."""
     stmts = (stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body))
-    return any(isinstance(part, Told) for stmt in stmts for expr in expressions_of(stmt) for part in subexpressions(expr))
+    return any(isinstance(part, HostValue) for stmt in stmts for expr in expressions_of(stmt) for part in subexpressions(expr))
 
 
 def registers_read(kernel: Kernel) -> set[int]:
@@ -308,7 +308,7 @@ def _routine_error(routine: Routine, before: tuple[Routine, ...]) -> str | None:
 
 def _of_a_body(expr: Expr) -> bool:
     """Whether an expression asks for a used length, for what the host tells, or for a register."""
-    return any(isinstance(part, Used | Told | Register) for part in subexpressions(expr))
+    return any(isinstance(part, Used | HostValue | Register) for part in subexpressions(expr))
 
 
 def _statements_error(inside: Iterable[tuple[Stmt, int]], names: tuple[str, ...], sites: int, routines: tuple[Routine, ...]) -> str | None:

@@ -13,6 +13,7 @@ from rosetta_jit.kernel.ir import (
     Expr,
     Fits,
     Get,
+    HostValue,
     IsText,
     Load,
     Local,
@@ -22,7 +23,6 @@ from rosetta_jit.kernel.ir import (
     Scalar,
     Scale,
     Select,
-    Told,
     Unary,
     Used,
 )
@@ -82,7 +82,7 @@ def type_of(expr: Expr) -> Scalar:
     match expr:
         case Const() | Local() | Load() | Get() | Convert() | Bits() | Lookup():
             return expr.type
-        case Used() | Capacity() | Told() | Register():
+        case Used() | Capacity() | HostValue() | Register():
             return "i64"
         case Unary(_, operand):
             return type_of(operand)

@@ -192,14 +192,18 @@ def other_way(source: Type, target: Type) -> str:
     match source, target:
         case ((Map() | Array()), (Map() | Array())) if Map in (type(source), type(target)):
             return "set the `key` and the `value` of each entry: `.a[].key = .b[].key` and `.a[].value = .b[].value`"
+        case Array(length=int(has)), Array(length=int(needed)) if has != needed:
+            return f"`.a = .b[0 to {needed}]` takes the first {needed} of {has}" if has > needed else "set its elements one by one"
         case Array(one, length), Array(other, wanted) if (
             isinstance(one, Int | Float) and isinstance(other, Int | Float) and None in (length, wanted)
         ):
             return f"convert each element: `.a[] = {describe(other)}(.b[])`, and in `rules:` `.a[] <-> {describe(other)}(.b[])`"
+        case Array(Bool() | Int() | Float() | String() | Bytes() | Enum()), Array():
+            return "convert each element: `.a[] = f(.b[])`"
         case Array(), Array():
-            return "assign its elements in a loop, and convert each"
+            return 'by the rules of another mapping, `.a = .b via "x.mapping"`; or field by field, `.a[].x = .b[].y`'
         case Struct(), Struct():
-            return "assign its fields one by one"
+            return 'by the rules of another mapping, `.a = .b via "x.mapping"`; or field by field, `.a.x = .b.y`'
         case ((Bool() | Int() | Float()), String()):
             return "`text(...)` spells it as a text"
         case String(), Int(bits, signed):

@@ -5,22 +5,24 @@ from __future__ import annotations
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.catalogue import fields as words
 from rosetta_jit.catalogue import layouts
-from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.catalogue.resolve import nearest
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.typed import Const, FieldStep, IndexStep, Place
 from rosetta_jit.model.expr import Each, Index, Keyed, Member, Pick, Slice
 from rosetta_jit.model.layout import map_entry
+from rosetta_jit.model.mapping import OF_WIRES
 from rosetta_jit.model.types import Array, Bytes, Enum, Int, Map, Optional, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Collection, Mapping, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.constants import Constants
     from rosetta_jit.language.typed import Expr, StateVariable, Step
-    from rosetta_jit.language.uses import Others, Signature
+    from rosetta_jit.language.uses import Signature, UsableMappings
     from rosetta_jit.model.expr import Expr as Untyped
     from rosetta_jit.model.expr import Path, Side
     from rosetta_jit.model.types import Field, Schema, Type
@@ -58,7 +60,7 @@ class Scope:
     problems: list[Diagnostic]
     named: set[str]
     functions: Mapping[str, Signature]
-    others: Others
+    others: UsableMappings
     bases: Mapping[Side, Place] = field(default_factory=dict["Side", "Place"])
     suffix: str = ""
     values: Mapping[str, Type] = field(default_factory=dict["str", "Type"])
@@ -106,12 +108,12 @@ def resolve_path(path: Path, scope: Scope, index: Callable[[Untyped | Sought, Sc
     type_: Type = message.root
     steps: list[Step] = [*base.steps]
     outer = Place(base.side, base.steps, message.root, path.span)  # the message that the last field is in
-    for step in path.steps:
+    for number, step in enumerate(path.steps):
         found: tuple[list[Step], Type] | Broken
         match step:
             case Member():
                 outer = Place(base.side, tuple(steps), type_, path.span)
-                found = _member(step, type_, message, scope, path.side)
+                found = _member(step, type_, message, scope, path.side, path.steps[number + 1 :])
             case Index():
                 found = _element(step, type_, scope, index)
             case Keyed():
@@ -128,7 +130,9 @@ def resolve_path(path: Path, scope: Scope, index: Callable[[Untyped | Sought, Sc
     return Place(base.side, tuple(steps), type_, path.span)
 
 
-def _member(step: Member, type_: Type, message: Message, scope: Scope, side: Side) -> tuple[list[Step], Type] | Broken:
+def _member(
+    step: Member, type_: Type, message: Message, scope: Scope, side: Side, behind: Sequence[object] = ()
+) -> tuple[list[Step], Type] | Broken:
     if not isinstance(type_, Struct | Union):
         scope.problems.append(words.not_a_struct(step.span, step.name, describe(type_)))
         return Broken(())
@@ -140,13 +144,32 @@ def _member(step: Member, type_: Type, message: Message, scope: Scope, side: Sid
     if step.name in members:
         fields = members[step.name]
         return [FieldStep(field) for field in fields], fields[-1].type
-    other = scope.messages["wire" if side == "holder" else "holder"]
-    elsewhere = ""
-    if type_ == scope.messages[side].root and step.name in members_of(other.root, other.schema):
-        elsewhere = words.other_side(f".{step.name}", side) if side != scope.target else words.read_side(f".{step.name}", side)
-    scope.problems.append(words.unknown_field(step, side, type_.name, members.keys(), elsewhere))
-    near = words.nearest(step.name, members.keys())
+    scope.problems.append(_unknown(step, type_, members, scope, side, behind))
+    near = nearest(step.name, members.keys())
     return Broken(() if near is None else (near,))  # any field may be meant where none has a name like it
+
+
+def _unknown(
+    step: Member, type_: Struct | Union, members: Collection[str], scope: Scope, side: Side, behind: Sequence[object]
+) -> Diagnostic:
+    """Why there is no such field, and where there may be one."""
+    message, other = scope.messages[side], scope.messages["wire" if side == "holder" else "holder"]
+    is_root, wires = type_ == message.root, message.root.name.startswith(OF_WIRES)
+    having = [wire.name for wire in message.root.fields if wires and step.name in members_of_value(wire.type, message)]
+    if is_root and wires:
+        return words.unknown_wire(step, members, having)
+    elsewhere = words.in_wires(step.name, having) if having else ""
+    if is_root and step.name in members_of(other.root, other.schema):
+        elsewhere = words.other_side(f".{step.name}", side) if side != scope.target else words.read_side(f".{step.name}", side)
+    elif is_root and behind and isinstance(behind[0], Member) and behind[0].name in members:
+        elsewhere = words.in_message(behind[0].name)
+    return words.unknown_field(step, side, type_.name, members, elsewhere)
+
+
+def members_of_value(type_: Type, message: Message) -> Collection[str]:
+    """What can be named in a value of a type: nothing of what is no message."""
+    found = message.value_type(type_)
+    return members_of(found, message.schema) if isinstance(found, Struct | Union) else ()
 
 
 def members_of(type_: Struct | Union, schema: Schema) -> dict[str, tuple[Field, ...]]:

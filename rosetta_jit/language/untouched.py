@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language import typed
 from rosetta_jit.language.counters import counters_of
 from rosetta_jit.language.places import field_names, places_in, value_inside
+from rosetta_jit.language.walk import expressions_of, parts
 from rosetta_jit.model.types import Optional, Struct, Union
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -74,62 +76,15 @@ def _field(struct: Struct | Union, name: str) -> Field:
 
 
 def _read(rules: tuple[Rule, ...]) -> Iterator[Place]:
-    for rule in rules:
-        match rule:
-            case typed.Assign(place, value) | typed.SetLength(place, value):
-                yield from _in_indices(place)
-                yield from _in(value)
-            case typed.For(_, start, stop, body, kept=kept):
-                yield from _in(start)
-                yield from _in(stop)
-                if kept is not None:
-                    yield from _in(kept.condition)
-                yield from _read(body)
-            case typed.When(condition, then, otherwise):
-                yield from _in(condition)
-                yield from _read((*then, *otherwise))
-            case typed.Ignore(place):
-                yield place
-            case typed.Reject(pieces=pieces):
-                for piece in pieces:
-                    yield from _in(piece)
-            case typed.SetState(_, value):
-                yield from _in(value)
-            case typed.Default():
-                pass
+    for rule in every_rule(rules):
+        if isinstance(rule, typed.Ignore):
+            yield rule.place
+        for expr in expressions_of(rule):
+            yield from places_read(expr)
 
 
 def places_read(value: Expr) -> Iterator[Place]:
-    """The places that an expression looks at, those of its indices included."""
-    return _in(value)
-
-
-def _in(value: Expr) -> Iterator[Place]:
-    match value:
-        case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place):
-            yield place
-            yield from _in_indices(place)
-        case typed.Unary(_, operand) | typed.Convert(operand) | typed.Search(_, _, operand):
-            yield from _in(operand)
-        case typed.Binary(_, left, right) | typed.Nearest(left, check=right) | typed.Reduce(_, _, left, right):
-            yield from _in(left)
-            yield from _in(right)
-        case typed.Call(_, arguments) | typed.HostCall(_, arguments) | typed.Given(_, arguments):
-            for argument in arguments:
-                yield from _in(argument)
-        case typed.Choice(cases, otherwise, pieces=pieces):
-            for part in (*(part for case in cases for part in case), *pieces):
-                yield from _in(part)
-            if otherwise is not None:
-                yield from _in(otherwise)
-        case typed.Listed(items, index):
-            for part in (*items, index):
-                yield from _in(part)
-        case typed.Const() | typed.Local() | typed.StateVariable():
-            pass
-
-
-def _in_indices(place: Place) -> Iterator[Place]:
-    for step in place.steps:
-        if isinstance(step, typed.IndexStep):
-            yield from _in(step.index)
+    """The places that an expression looks at, those of its indices included; of a search, what its condition looks at."""
+    for part in parts(value):
+        if isinstance(part, typed.Access | typed.LenOf | typed.IsText | typed.Has):
+            yield part.place

@@ -44,7 +44,7 @@ class Use:
 
 
 @dataclass(frozen=True, slots=True)
-class Others:
+class UsableMappings:
     """The mappings that can be used, by the file that names them and the name there; and what is being used at the moment.
 
     ``using`` are the files of the mappings around, from the outermost on; ``uses`` are all that were made.
@@ -59,7 +59,7 @@ class Others:
         """The mapping of a ``via``; None where it could not be read, which is reported."""
         return self.found.get((self.using[-1], via.mapping))
 
-    def changed(self, change: Callable[[model.Mapping], model.Mapping]) -> Others:
+    def changed(self, change: Callable[[model.Mapping], model.Mapping]) -> UsableMappings:
         """The same with each mapping changed, once."""
         made = {each.source.name: change(each) for each in self.mappings()}
         return replace(self, found={key: made[each.source.name] for key, each in self.found.items()})

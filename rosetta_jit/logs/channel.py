@@ -186,7 +186,7 @@ class Channel:
         on_error: OnError = "raise",
         **form: Any,
     ) -> Iterator[tuple[Part, pa.Table]]:
-        """The same with the messages that each table is of."""
+        """The same with the messages that each table is of, which are not to be written to: the table has taken their large arrays."""
         from rosetta_jit.logs.tables import table_of
 
         names, chosen, given = None if columns is None else list(columns), tuple(clocks), False

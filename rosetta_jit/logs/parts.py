@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 
 from rosetta_jit.errors import DecodeError
-from rosetta_jit.runtime.places import Places
+from rosetta_jit.runtime.message_spans import MessageSpans
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ class Collector:
         self._batch: Batch | None = None
         self._filling: Filling | None = None
         self._rows = np.empty((4, MESSAGES), np.int64)
-        self._places = Places(self._rows[0], self._rows[1])
+        self._spans = MessageSpans(self._rows[0], self._rows[1])
         self._bytes = 0
         self._refused: dict[int, Refused] = {}
 
@@ -139,17 +139,18 @@ class Collector:
         filling = self._filling = self._filling or self._decoder.filling_(self._likely(rows), self._batch, self._on_error)
         self._batch, first = filling.batch, filling.count
         count = first + len(rows)
-        self._rows[:, first:count] = rows.begins, rows.ends, rows.log_ns, rows.publish_ns
+        for own, given in zip(self._rows, (rows.begins, rows.ends, rows.log_ns, rows.publish_ns), strict=True):
+            own[first:count] = given
         try:
             with filling.batch.lanes as lanes:
-                self._decoder.fill_(filling, block.data, self._places, count)
+                self._decoder.fill_(filling, block.data, self._spans, count)
                 lanes.source[0] = block.data.data if self._decoder.borrows_ else None
         except DecodeError as error:
             number, _, path = error.path.removeprefix("[").partition("]")
             raise DecodeError(error.kind, f"[{self._first + int(number)}]{path}", error.detail, error.offset) from None
         for number in filling.batch.errors:
             if number >= first:
-                begin, end = self._places.span(number)
+                begin, end = self._spans.span(number)
                 self._refused[number] = Refused(int(self._rows[2, number]), block.data[begin:end].tobytes())
 
     def _likely(self, rows: Rows) -> int:

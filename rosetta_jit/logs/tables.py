@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rosetta_jit.runtime.handed import Handed
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
@@ -19,9 +21,13 @@ STAMPS = (("secs", "nsecs"), ("sec", "nanosec"), ("sec", "nsec"))
 
 
 def table_of(part: Part, columns: Sequence[str] | None, clocks: Iterable[str], form: Mapping[str, Any]) -> pa.Table:
-    """Messages as a table with columns of times in front; ``form`` is what `Batch.to_arrow` takes besides."""
+    """Messages as a table with columns of times in front; ``form`` is what `Batch.to_arrow` takes besides.
+
+    Arrays that fill their lanes are not copied: they take the lanes' memory.
+    """
     from rosetta_jit.runtime.arrow.stamps import with_times
 
+    part.batch.handed_ = part.batch.handed_ or Handed()
     return with_times(part.batch.to_arrow(columns, **form), {name: _clock(name, part) for name in clocks})
 
 

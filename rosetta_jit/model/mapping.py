@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from rosetta_jit.model.expr import Len, List
     from rosetta_jit.source import Source, Span
 
+OF_WIRES = "wires "
+"""What the name of the struct begins with that has a field for each of several wires. No IDL can give it to a type."""
+
 
 @dataclass(frozen=True, slots=True)
 class Import:

@@ -6,7 +6,7 @@ The depth of an expression is bounded by the parser, so that walks may be recurs
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, TypeVar, assert_never, cast
 
 from rosetta_jit.model import mapping
 from rosetta_jit.model.expr import (
@@ -109,6 +109,27 @@ def expressions_of(rule: Rule) -> list[Expr]:
     found: list[Expr] = []
     with_expressions(rule, lambda expr: found.append(expr) or expr)
     return found
+
+
+RuleT = TypeVar("RuleT")
+"""A rule of a mapping as it is written, or a typed one."""
+
+
+def rules_in(rule: RuleT) -> tuple[RuleT, ...]:
+    """The rules of a block; none of another rule."""
+    if isinstance(rule, mapping.For):
+        return cast("mapping.For[RuleT, object]", rule).body
+    if isinstance(rule, mapping.When):
+        block = cast("mapping.When[RuleT, object]", rule)
+        return (*block.then, *block.otherwise)
+    return ()
+
+
+def every_rule(rules: tuple[RuleT, ...]) -> Iterator[RuleT]:
+    """Rules, and those within their blocks: a block comes before what is in it."""
+    for rule in rules:
+        yield rule
+        yield from every_rule(rules_in(rule))
 
 
 def _with_indices(place: Field | List, change: Callable[[Expr], Expr]) -> Field | List:

@@ -51,11 +51,11 @@ def tables_of(text: str, *, start: str, told: Sequence[str]) -> dict[str, Any]:
 
 def lark_of(text: str, *, start: str, told: Sequence[str]) -> Lark:
     """Lark's own parser of the same language."""
-    postlex = _Told(told)
+    postlex = _KeptTokens(told)
     return Lark(text, start=start, parser="lalr", lexer="basic", postlex=postlex, propagate_positions=True, maybe_placeholders=False)
 
 
-class _Told(PostLex):
+class _KeptTokens(PostLex):
     """Makes lark keep tokens that no rule has."""
 
     def __init__(self, always_accept: Sequence[str]) -> None:

@@ -15,7 +15,7 @@ from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Reserve
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.rewrite import with_registers_behind
-from rosetta_jit.kernel.shape import is_told, our_functions, statements
+from rosetta_jit.kernel.shape import asks_host, our_functions, statements
 from rosetta_jit.lowering.writer import References
 from rosetta_jit.model.same_layout import have_same_fields
 from rosetta_jit.model.serial import to_plain
@@ -124,7 +124,7 @@ class BridgeBuild:
             "entry": "bridge",
             "references": list(self.references),
             "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
-            "told": is_told(self.kernels),
+            "told": asks_host(self.kernels),
             "state": kept_of(self.kernels, dict(zip(("decode.", "encode."), (half.types.state for half in self.halves), strict=True))),
             "host": our_functions(self.kernels),
             "limit": decode.limit,

@@ -9,9 +9,9 @@ import numpy as np
 from rosetta_jit.kernel.state import EPOCH, VALID
 from rosetta_jit.runtime.columns import column, presence_mask
 from rosetta_jit.runtime.holder.family import family_of
-from rosetta_jit.runtime.holder.record import Record
+from rosetta_jit.runtime.holder.paths import entries_to
 from rosetta_jit.runtime.lanes import Lanes, in_use
-from rosetta_jit.runtime.parts import contents, joined, revived
+from rosetta_jit.runtime.parts import contents, errors_of_part, errors_together, joined, revived
 from rosetta_jit.runtime.plan import plan
 
 if TYPE_CHECKING:
@@ -23,9 +23,12 @@ if TYPE_CHECKING:
     from rosetta_jit.errors import DecodeError
     from rosetta_jit.runtime.arrow.arrays import Form, Octets
     from rosetta_jit.runtime.arrow.times import Unit
+    from rosetta_jit.runtime.handed import Handed
     from rosetta_jit.runtime.holder import Holder, Manners
     from rosetta_jit.runtime.holder.classes import HolderFamily
-    from rosetta_jit.runtime.holder.record import Entry
+
+_INTERNAL = frozenset({"lanes", "room", "reset"})
+"""What batches have for other modules, besides names that end with an underscore."""
 
 
 class Batch:
@@ -41,18 +44,19 @@ class Batch:
         Message i is row i of lane 0.
     errors : dict of DecodeError
         Those of the last ``many(…, on_error="skip")`` or ``"mask"`` into the batch, by the number of the message among all that were
-        given. A part of a batch has none.
+        given: of a part of a batch with ``"skip"`` those of the whole, with ``"mask"`` those of its rows, by their new numbers.
     kept : ndarray of int64, shape (n,)
         Which of the messages that were given each row is.
     """
 
-    __slots__ = ("errors", "family_", "kept_", "lanes")
+    __slots__ = ("errors", "family_", "handed_", "kept_", "lanes")
 
     def __init__(self, family: HolderFamily, lanes: Lanes) -> None:
         self.family_ = family
         self.lanes = lanes
         self.errors: dict[int, DecodeError] = {}
         self.kept_: NDArray[np.int64] | None = None
+        self.handed_: Handed | None = None
 
     @classmethod
     def new(cls, holder_class: type[Holder], count: int) -> Batch:
@@ -99,6 +103,8 @@ class Batch:
     def reset(self, count: int) -> None:
         """So many empty messages, in the memory that is there."""
         with self.lanes:
+            if self.handed_ is not None:
+                self.handed_.renew(self.lanes)
             self.lanes.reset(count)
             self.errors, self.kept_ = {}, None
 
@@ -120,7 +126,9 @@ class Batch:
             case int() | np.integer():
                 return self._row(int(index))
             case _:
-                return Batch(self.family_, joined([(self.lanes, index)]))
+                part = Batch(self.family_, joined([(self.lanes, index)]))
+                part.errors, part.kept_ = errors_of_part(self.errors, self.kept_, index, len(self))
+                return part
 
     def _row(self, index: int) -> Any:
         epoch = self.lanes.words[EPOCH]
@@ -144,13 +152,18 @@ class Batch:
             If they are of different types.
         """
         parts = list(batches)
+        strange = next((each for each in parts if not isinstance(each, Batch)), None)  # pyright: ignore[reportUnnecessaryIsInstance]
+        if strange is not None:
+            raise TypeError(f"batches are needed, not {type(strange).__name__}")
         if not parts:
             raise ValueError("there is no batch, whose type would be that of the whole")
         family = parts[0].family_
         if any(each.family_ is not family for each in parts):
             names = ", ".join(sorted({each.family_.struct.name for each in parts}))
             raise TypeError(f"batches of one type are needed, not of {names}")
-        return cls(family, joined([(each.lanes, slice(None)) for each in parts]))
+        whole = cls(family, joined([(each.lanes, slice(None)) for each in parts]))
+        whole.errors, whole.kept_ = errors_together((each.errors, each.kept_, len(each)) for each in parts)
+        return whole
 
     def __iter__(self) -> Iterator[Any]:
         return (self.family_.row(self.lanes, row) for row in range(len(self)))
@@ -164,7 +177,12 @@ class Batch:
             raise AttributeError(f"this batch was never made: it has no {name!r}")
         if name in self.family_.tree.root.entries:
             return self.column(name)
-        raise AttributeError(name)
+        raise AttributeError(f"{self!r} has no field {name!r}", name=name, obj=self)
+
+    def __dir__(self) -> list[str]:
+        """The fields, and what users call."""
+        own = [name for name in super().__dir__() if name not in _INTERNAL and (name.startswith("__") or not name.endswith("_"))]
+        return [*own, *self.family_.tree.root.entries]
 
     def __repr__(self) -> str:
         return f"<Batch of {len(self)} {self.family_.struct.name}>"
@@ -205,12 +223,20 @@ class Batch:
 
     def _column(self, name: str) -> Any:
         self._check()
+        entries_to(self.family_.tree.root, name)
         return column(self.family_.tree.root, self.lanes, len(self), name.split("."))
 
     def mask(self, name: str | None = None) -> NDArray[np.bool_]:
         """Which messages have a field, shape (n,): all, where it cannot be absent. A nested field needs those around it.
 
         Without a name, which messages could be decoded: all, unless ``many(…, on_error="mask")`` has left some empty.
+
+        Raises
+        ------
+        KeyError
+            If there is no such field, or it is one of the elements of an array.
+        InvalidHolder
+            If the last decode into the batch failed.
         """
         return self.lanes.consistent(self._mask, name)
 
@@ -218,13 +244,9 @@ class Batch:
         self._check()
         if name is None:
             return ~np.isin(self.kept, list(self.errors))
-        record: Record = self.family_.tree.root
         present = presence_mask(None, self.lanes, len(self))
-        for each in name.split("."):
-            entry: Entry = record.entries[each]
+        for entry in entries_to(self.family_.tree.root, name, through_arrays=False):
             present &= presence_mask(entry.presence, self.lanes, len(self))
-            if isinstance(entry.node, Record):
-                record = entry.node
         return present
 
     def to_arrow(
@@ -251,7 +273,7 @@ class Batch:
             Whether the table has all memory of its own. Otherwise arrays of numbers and bytes that lie together in the lanes are shown
             there: they change with the next decode into the batch.
         times
-            Fields that are moments, and become timestamps: structs of seconds and a part of one in ns, integers in ns or in the unit
+            Fields that are moments, and become timestamps: structs of seconds and a part of one, and integers; in ns, or in the unit
             that a mapping gives, ``{"utime": "us"}``.
         errors
             The name of a further column, which says why a message could not be decoded, and is null where it could.
@@ -263,15 +285,18 @@ class Batch:
         KeyError
             If there is no such field.
         TypeError
-            If messages contain each other: leave that field out. If a field that is to be a moment is none.
+            If messages contain each other: leave that field out. If a field that is to be a moment is none. If one name is given
+            instead of several.
+        ValueError
+            If an option has no such value, or ``errors`` is the name of a column.
         EncodeError
-            If a string is no text that UTF-8 can carry, or a moment too far for a timestamp.
+            If a string is no text that UTF-8 can carry, or a moment too far for a timestamp, or between two.
         InvalidHolder
             If the last decode into the batch failed.
         """
         from rosetta_jit.runtime.arrow import arrays, tables
 
-        table = tables.table(self._record_batch(columns, arrays.Form(octets, copy, arrays.units_of(times))))
+        table = tables.table(self._record_batch(columns, arrays.Form.of(octets, copy, times, self.handed_)))
         table = tables.flat(table) if flatten else table
         return table if errors is None else tables.with_errors(table, errors, self.errors, self.kept.tolist())
 
@@ -289,6 +314,8 @@ class Batch:
         return self.to_arrow(columns, flatten=flatten, octets=octets, times=times, errors=errors).to_pandas(**options)
 
     def _record_batch(self, columns: Sequence[str] | None, form: Form) -> pa.RecordBatch:
+        if isinstance(columns, str):
+            raise TypeError(f"columns is a list of names: columns=[{columns!r}]")
         names = list(self.family_.tree.root.entries) if columns is None else list(columns)
         return self.lanes.consistent(lambda taken: self._taken(taken, form), names)
 

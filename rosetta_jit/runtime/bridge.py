@@ -17,8 +17,8 @@ from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import Context, bind_call
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_SPARES
-from rosetta_jit.runtime.places import laid_out
-from rosetta_jit.runtime.program import Told, entry_of
+from rosetta_jit.runtime.message_spans import laid_out
+from rosetta_jit.runtime.program import ProgramBase, entry_of
 from rosetta_jit.runtime.registers import NOTHING_KEPT, Kept, address_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.model.layout import Layout
     from rosetta_jit.runtime.code.native import Library
-    from rosetta_jit.runtime.places import Places
+    from rosetta_jit.runtime.message_spans import MessageSpans
 
 _NOTHING = np.empty(0, np.uint8)
 
@@ -73,7 +73,7 @@ class LoadedBridge:
     state: Kept = NOTHING_KEPT
 
 
-class BridgeBase(Told):
+class BridgeBase(ProgramBase):
     """Turns messages of one wire into messages of another."""
 
     _arguments = "message", {"buffer": None}
@@ -151,45 +151,45 @@ class BridgeBase(Told):
         ValueError
             The offsets are not int64, have another shape, fall, or leave the buffer.
         """
-        source, places = laid_out(cast("Any", messages), offsets)
-        data, count = run.readable(source), len(places)
+        source, spans = laid_out(cast("Any", messages), offsets)
+        data, count = run.readable(source), len(spans)
         ends = np.zeros(count + 1, np.int64)
         target = np.empty(max(2 * data.size, 64), np.uint8)
         with self._free() as lanes, self._keeping(lanes):
             self._tell(lanes, count)
-            done = self._many(data, places, 0, lanes, target, ends)
+            done = self._many(data, spans, 0, lanes, target, ends)
             while done < count:
                 if run.result_of(lanes) == FULL:
                     target = _copied(target, int(ends[done]), 2 * target.size)
                 else:
                     with self._as_before():
-                        target = self._unstuck(data, places, done, lanes, target, ends)
+                        target = self._unstuck(data, spans, done, lanes, target, ends)
                     done += 1
-                done = self._many(data, places, done, lanes, target, ends)
+                done = self._many(data, spans, done, lanes, target, ends)
         return target[: ends[-1]], ends
 
     def _many(
         self,
         data: NDArray[np.uint8],
-        places: Places,
+        spans: MessageSpans,
         first: int,
         lanes: Lanes,
         target: NDArray[np.uint8],
         ends: NDArray[np.int64],
     ) -> int:
         """Go on from one message; the first that could not be done."""
-        count = len(places)
+        count = len(spans)
         if self._loaded.library is None:
-            run.note(lanes, 0 if first == count or not places.are_in(first, data.size) else run.GROW)
+            run.note(lanes, 0 if first == count or not spans.are_in(first, data.size) else run.GROW)
             return first
         many = _MANY(self._loaded.library["many"])
-        buffers = data.ctypes.data, data.size, *places.addresses, first, count
+        buffers = data.ctypes.data, data.size, *spans.addresses, first, count
         return many(*buffers, lanes.address, target.ctypes.data, target.size, ends.ctypes.data)
 
     def _unstuck(
         self,
         data: NDArray[np.uint8],
-        places: Places,
+        spans: MessageSpans,
         number: int,
         lanes: Lanes,
         target: NDArray[np.uint8],
@@ -197,8 +197,8 @@ class BridgeBase(Told):
     ) -> NDArray[np.uint8]:
         """Do one message for which lanes must grow, or say what is wrong with it; gives the target, with room for it."""
         if run.result_of(lanes) == 0:
-            raise places.broken(number, data.size)
-        begin, end = places.span(number)
+            raise spans.broken(number, data.size)
+        begin, end = spans.span(number)
         place = int(ends[number])
         try:
             size = self._taken(lanes, data, begin, end)

@@ -14,7 +14,10 @@ from rosetta_jit.model.types import String
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder import coerce
 from rosetta_jit.runtime.holder.message import place
+from rosetta_jit.runtime.holder.paths import entries_to
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Cell, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.limits import MAX_TEXT_ITEMS
+from rosetta_jit.runtime.parts import chosen_rows
 from rosetta_jit.runtime.rows import elements
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -54,7 +57,18 @@ class Ragged:
     def __len__(self) -> int:
         return len(self.starts)
 
-    def __getitem__(self, index: int) -> Any:
+    def __repr__(self) -> str:
+        from rosetta_jit.runtime.looks.brief import brief
+
+        what = {"array": "arrays", "text": "texts", "bytes": "byte strings"}[self.kind]
+        shown = ", ".join(brief(self[row]) for row in range(min(len(self), MAX_TEXT_ITEMS)))
+        return f"<Ragged of {len(self)} {what}: {shown}{', …' if len(self) > MAX_TEXT_ITEMS else ''}>"
+
+    def __getitem__(self, index: Any) -> Any:
+        """One row: an array, a str or bytes. Of a slice, a mask or an array of numbers, the column of those rows."""
+        if not isinstance(index, int | np.integer):
+            rows = chosen_rows(index, len(self)).at
+            return Ragged(self.values, self.starts[rows], self.counts[rows], self.kind, self.source)
         start, count = int(self.starts[index]), int(self.counts[index])
         if count < 0 and self.source is not None:
             data: Any = self.source[start : start + ~count]
@@ -209,6 +223,7 @@ def column(node: Node, lanes: Lanes, rows: int, path: list[str]) -> Any:
 def column_of(message: Message, path: str) -> Any:
     """The column of an array of structs, or whatever else a path names, of one message."""
     lanes, row = place(message)
+    entries_to(message.access_.record, path)
     first, *rest = path.split(".")
     return _at(column(message.access_.record.entries[first].node, lanes, row + 1, rest), row)
 

@@ -12,12 +12,10 @@ from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.attributes.methods import turning
 from rosetta_jit.runtime.callable import FAILED, THREAD
 from rosetta_jit.runtime.filling import Filling
-from rosetta_jit.runtime.joining import NOT_WHOLE, broken_wires, joining
 from rosetta_jit.runtime.limits import MAX_CLASSES
-from rosetta_jit.runtime.places import laid_out, source_of
+from rosetta_jit.runtime.message_spans import laid_out, source_of
 from rosetta_jit.runtime.program import Loaded, Program, is_foreign
 from rosetta_jit.runtime.room import roomier
-from rosetta_jit.runtime.whole_objects import decoding, decoding_whole
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
@@ -32,7 +30,7 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.holder.objects.giving import Givers
     from rosetta_jit.runtime.lanes import Lanes
-    from rosetta_jit.runtime.places import Places
+    from rosetta_jit.runtime.message_spans import MessageSpans
 
 _Object = TypeVar("_Object")
 
@@ -111,6 +109,8 @@ class DecoderBase(Program):
         self._refuse_part("to a new object")
         family = self._loaded.holder_type.family_
         if types is None and not self._loaded.borrow and len(self._quick) < MAX_CLASSES:
+            from rosetta_jit.runtime.whole_objects import decoding, decoding_whole
+
             whole = family.wholes[object_type]
             if whole is None:
                 self._quick[object_type] = decoding(self.builtin, self.new, family.givers.maker(object_type))
@@ -169,13 +169,13 @@ class DecoderBase(Program):
         InUse
             Another thread is filling, changing or encoding the batch.
         """
-        source, places = laid_out(cast("Any", messages), offsets)
+        source, spans = laid_out(cast("Any", messages), offsets)
         data = run.readable(source)
-        filling = self.filling_(len(places), into, on_error)
+        filling = self.filling_(len(spans), into, on_error)
         lanes = filling.batch.lanes
         before = lanes.source[0]
         with lanes:
-            self.fill_(filling, data, places, len(places))
+            self.fill_(filling, data, spans, len(spans))
             lanes.source[0] = source if self._loaded.borrow else None
             batch = filling.end()
         del before  # outside: what ends with it may run any code
@@ -203,7 +203,7 @@ class DecoderBase(Program):
         self._lanes_of(batch)
         return Filling(self._loaded, batch, on_error, count, self._compiled_many)
 
-    def fill_(self, filling: Filling, data: NDArray[np.uint8], places: Places, count: int) -> None:
+    def fill_(self, filling: Filling, data: NDArray[np.uint8], spans: MessageSpans, count: int) -> None:
         """One step, inside ``with lanes:``. Message ``i`` of all steps lies at place ``i``; there are ``count`` behind this step."""
         lanes, first = filling.batch.lanes, filling.count
         with self._keeping(lanes):
@@ -212,7 +212,7 @@ class DecoderBase(Program):
             self._tell(lanes, count - first)
             if first and self._asks:
                 lanes.words[NUMBER] -= first  # kernels add the row
-            filling.add(data, places, count)
+            filling.add(data, spans, count)
 
     def _batch(self, count: int) -> Batch:
         from rosetta_jit.runtime.batch import Batch
@@ -252,6 +252,8 @@ class DecoderBase(Program):
 
     def _join(self, data: NDArray[np.uint8], holder: Holder, wire: int) -> None:
         """One message into its part of a holder."""
+        from rosetta_jit.runtime.joining import broken_wires, joining
+
         words = self._context[1]
         has_failed, words[FAILED] = bool(words[FAILED]), 0
         broken = broken_wires(self._owners.setdefault("broken", WeakKeyDictionary()), holder)
@@ -271,6 +273,8 @@ class DecoderBase(Program):
     def _refuse_part(self, how: str) -> None:
         """Where a message has to fill a whole holder."""
         if self._loaded.wire is not None:
+            from rosetta_jit.runtime.joining import NOT_WHOLE
+
             raise ValueError(NOT_WHOLE.format(how))
 
     def _becomes_mine(self) -> bool:

@@ -15,9 +15,8 @@ from rosetta_jit.runtime.callable import OTHERS
 from rosetta_jit.runtime.holder.classes import settle_lanes
 from rosetta_jit.runtime.holder.message import Message, place
 from rosetta_jit.runtime.limits import MAX_CLASSES
-from rosetta_jit.runtime.places import Places
+from rosetta_jit.runtime.message_spans import MessageSpans
 from rosetta_jit.runtime.program import Loaded, Program, is_foreign, one_by_one
-from rosetta_jit.runtime.whole_objects import encoding, encoding_by_steps
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
@@ -187,10 +186,10 @@ class EncoderBase(Program):
         return count
 
     def _written(self, lanes: Lanes, buffer: NDArray[np.uint8], offsets: NDArray[np.int64], first: int, count: int) -> int:
-        places = Places.of(offsets)
+        spans = MessageSpans.of(offsets)
         if self._compiled_many is not None:
-            return self._compiled_many(buffer.ctypes.data, buffer.size, *places.addresses, first, count, lanes.address)
-        return one_by_one(self._loaded.kernel, buffer, places, first, count, lanes, self._loaded.size)
+            return self._compiled_many(buffer.ctypes.data, buffer.size, *spans.addresses, first, count, lanes.address)
+        return one_by_one(self._loaded.kernel, buffer, spans, first, count, lanes, self._loaded.size)
 
     def _make_usable(self, holder: Holder) -> None:
         """Bring a valid holder, whose lanes are one's own, into the form that kernels read."""
@@ -234,6 +233,8 @@ class EncoderBase(Program):
         if isinstance(value, Message):
             is_row = value.access_ is self._loaded.holder_type.family_.root and value.parent_ is None
             return self._of_row(value, *more) if is_row else self._of_foreign(value, self, *more)
+        from rosetta_jit.runtime.whole_objects import encoding, encoding_by_steps
+
         whole = self._loaded.holder_type.family_.wholes[type(value)]
         steps = self._loaded.holder_type.family_.takers.steps(value) if whole is None else None
         if whole is not None:

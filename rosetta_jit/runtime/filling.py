@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.lanes import Lanes
-    from rosetta_jit.runtime.places import Places
+    from rosetta_jit.runtime.message_spans import MessageSpans
     from rosetta_jit.runtime.program import Loaded
 
 OnError = Literal["raise", "skip", "mask"]
@@ -46,12 +46,14 @@ class Filling:
         """Forget what the batch holds."""
         batch, lanes = self.batch, self.batch.lanes
         batch.errors, batch.kept_, self.count = {}, None, 0
+        if batch.handed_ is not None:
+            batch.handed_.renew(lanes)
         lanes.begin_filling()
         for lane in range(len(lanes.buffers)):
             lanes.words[lane_word(lane, USED)] = 0
         lanes.rows = 0
 
-    def add(self, data: NDArray[np.uint8], places: Places, count: int) -> None:
+    def add(self, data: NDArray[np.uint8], spans: MessageSpans, count: int) -> None:
         """Decode messages, so that there are ``count``: message ``i`` of all lies at place ``i``. Room is made on the way.
 
         Raises
@@ -64,9 +66,9 @@ class Filling:
         lanes, errors = self.batch.lanes, self.batch.errors
         first, self.count = self.count, count
         _make_rows(lanes, count)
-        done = self._many(data, places, first, lanes)
+        done = self._many(data, spans, first, lanes)
         while done < count:
-            error = self._unstuck(lanes, data, places, done)
+            error = self._unstuck(lanes, data, spans, done)
             if isinstance(error, DecodeError) and self._on_error != "raise":
                 errors[done] = error
                 lanes.row_words(0, done, 1)[:] = 0
@@ -74,7 +76,7 @@ class Filling:
                 done += 1
             elif error is not None:
                 raise error
-            done = self._many(data, places, done, lanes)
+            done = self._many(data, spans, done, lanes)
 
     def end(self) -> Batch:
         """The batch, which can be read now."""
@@ -84,39 +86,39 @@ class Filling:
         lanes.words[VALID] = CLEAN
         return batch
 
-    def _unstuck(self, lanes: Lanes, data: NDArray[np.uint8], places: Places, done: int) -> Exception | None:
+    def _unstuck(self, lanes: Lanes, data: NDArray[np.uint8], spans: MessageSpans, done: int) -> Exception | None:
         """Make the room that was missing, if it was that; otherwise what is wrong with the message."""
         result = run.result_of(lanes)
         if result != run.GROW:
-            return self._error(result, data, places, done)
+            return self._error(result, data, spans, done)
         try:
             with run.decoding():
-                self._limit(lanes, places, done)
+                self._limit(lanes, spans, done)
                 _grow_for_all(lanes, done, max(self.count, self.expected))
         except DecodeError as error:
             return error
         return None
 
-    def _limit(self, lanes: Lanes, places: Places, done: int) -> None:
+    def _limit(self, lanes: Lanes, spans: MessageSpans, done: int) -> None:
         """As `run.limit`, of the message behind those that the lanes hold."""
         lane, _ = run.missing(lanes)
         used = lanes.words[lane_word(lane, USED)] if lane < len(lanes.buffers) else 0
-        begin, end = places.span(done)
+        begin, end = spans.span(done)
         try:
             run.limit(lanes, end - begin, self._loaded.limit, used)
         except DecodeError as error:
             raise DecodeError(error.kind, f"[{done}]{error.path}", error.detail, error.offset) from None
 
-    def _many(self, data: NDArray[np.uint8], places: Places, first: int, lanes: Lanes) -> int:
+    def _many(self, data: NDArray[np.uint8], spans: MessageSpans, first: int, lanes: Lanes) -> int:
         """Decode from one message on; the first that could not be."""
         if self._compiled is not None:
-            return self._compiled(data.ctypes.data, data.size, *places.addresses, first, self.count, lanes.address)
-        return one_by_one(self._loaded.kernel, data, places, first, self.count, lanes)
+            return self._compiled(data.ctypes.data, data.size, *spans.addresses, first, self.count, lanes.address)
+        return one_by_one(self._loaded.kernel, data, spans, first, self.count, lanes)
 
-    def _error(self, result: int, data: NDArray[np.uint8], places: Places, done: int) -> Exception:
+    def _error(self, result: int, data: NDArray[np.uint8], spans: MessageSpans, done: int) -> Exception:
         if result == 0:
-            return places.broken(done, data.size)
-        error = run.decode_error(self._loaded.sites[-1 - result], self.batch.lanes, *places.span(done))
+            return spans.broken(done, data.size)
+        error = run.decode_error(self._loaded.sites[-1 - result], self.batch.lanes, *spans.span(done))
         return DecodeError(error.kind, f"[{done}]{error.path}", error.detail, error.offset)
 
 

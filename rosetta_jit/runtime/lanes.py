@@ -225,6 +225,11 @@ class Lanes:
         self.words[lane_word(lane, CAPACITY)] = capacity
         self.cells, self.arrays = _MADE["cells"](self), _MADE["arrays"](self)
 
+    def move(self, lane: int, buffer: NDArray[np.uint8], rows: int) -> None:
+        """Other memory for a lane, with room for so many rows; nothing of the old one is copied."""
+        self.give_back(lane, 0)
+        self._place(lane, buffer, rows)
+
     def take(self, lane: int, rows: int) -> int:
         """Take so many rows at the lane's end into use, zeroed; the number of the first."""
         start = self.used(lane)

@@ -19,15 +19,17 @@ from rosetta_jit.runtime.rows import Rows, elements, lent, offsets, picked
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from typing import TypeAlias
 
     from numpy.typing import ArrayLike, NDArray
 
+    from rosetta_jit.errors import DecodeError
     from rosetta_jit.model.initial_values import InitialValue
     from rosetta_jit.model.layout import Layout, Slot
 
     Index: TypeAlias = slice | ArrayLike
+    Errors: TypeAlias = dict[int, DecodeError]
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +103,28 @@ def chosen_rows(index: Index, count: int) -> Rows:
     if len(wrong):
         raise IndexError(f"message {wrong[0]} of {count}")
     return Rows(np.where(numbers < 0, numbers + count, numbers), len(numbers))
+
+
+def errors_of_part(errors: Errors, kept: NDArray[np.int64] | None, index: Index, count: int) -> tuple[Errors, NDArray[np.int64] | None]:
+    """What `Batch.errors` and `Batch.kept_` become of messages that are chosen out of so many."""
+    if kept is None and not errors:
+        return {}, None
+    rows = np.arange(count)[chosen_rows(index, count).at]
+    if kept is not None:
+        return dict(errors), kept[rows]
+    return {new: errors[old] for new, old in enumerate(rows.tolist()) if old in errors}, None
+
+
+def errors_together(parts: Iterable[tuple[Errors, NDArray[np.int64] | None, int]]) -> tuple[Errors, NDArray[np.int64] | None]:
+    """The same of batches, one behind the other: their errors, the messages that they kept, and how many those are."""
+    errors, kept, is_whole, first = dict[int, "DecodeError"](), list["NDArray[np.int64]"](), True, 0
+    for refused, numbers, count in parts:
+        is_whole = is_whole and numbers is None
+        given = np.arange(count) if numbers is None else numbers
+        errors.update((first + number, error) for number, error in refused.items())
+        kept.append(first + given)
+        first += 1 + max(int(given.max(initial=-1)), max(refused, default=-1))
+    return errors, None if is_whole else np.concatenate(kept)
 
 
 def contents(lanes: Lanes) -> list[NDArray[np.uint8]]:

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.code.native import Library
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.lanes import Lanes
-    from rosetta_jit.runtime.places import Places
+    from rosetta_jit.runtime.message_spans import MessageSpans
     from rosetta_jit.runtime.plan import Plan
     from rosetta_jit.runtime.registers import Registers
 
@@ -99,7 +99,7 @@ INTERNAL = frozenset({"__annotations__", "__signature__", "__vectorcalloffset__"
 class CallSignature:
     """``__signature__`` of programs: that of their compiled call. Their classes have that of ``__init__``."""
 
-    def __get__(self, program: Told | None, owner: Any) -> Any:
+    def __get__(self, program: ProgramBase | None, owner: Any) -> Any:
         if program is None:
             return None
         from inspect import Parameter, Signature
@@ -109,8 +109,8 @@ class CallSignature:
         return Signature([first, *(Parameter(name, Parameter.POSITIONAL_ONLY, default=each) for name, each in optional.items())])
 
 
-class Told:
-    """A program whose kernels may ask for the time, or for the number of a message.
+class ProgramBase:
+    """What decoders, encoders and bridges share: their kernels may ask for the time, or the number of a message, and keep state.
 
     ``_arguments`` are what a call takes: one argument, and others with their defaults.
     """
@@ -183,7 +183,7 @@ class Told:
         return builtin_of(self, "builtin", "What calling its __self__ does.")
 
 
-class Program(Told):
+class Program(ProgramBase):
     """What decoders and encoders share."""
 
     _loaded: Loaded
@@ -197,7 +197,8 @@ class Program(Told):
             raise TypeError(f"this {type(self).__name__} is made already: its code may be running")
         self._loaded, self._asks = loaded, loaded.told
         if beside is None:
-            self._registers, self._holder, self._owners = loaded.state.registers(), loaded.holder_type(), {}
+            made = type.__call__(loaded.holder_type)  # one holder is not worth the time to compile how classes are called
+            self._registers, self._holder, self._owners = loaded.state.registers(), made, {}
         else:
             self._registers, self._holder, self._owners = beside.shared_()
         self._plan = loaded.holder_type.family_.plan
@@ -287,8 +288,8 @@ class Program(Told):
     def _lanes_of(self, batch: Batch) -> Lanes:
         """The lanes of a batch of this program's holders."""
         expected = self._loaded.holder_type
-        lanes = batch.lanes
-        if batch.family_ is not expected.family_ or lanes.plan.layout is not expected.family_.layout:
+        lanes: Lanes | None = getattr(batch, "lanes", None)
+        if lanes is None or batch.family_ is not expected.family_ or lanes.plan.layout is not expected.family_.layout:
             raise TypeError(f"a batch of {expected.__qualname__} is needed")
         return lanes
 
@@ -299,12 +300,12 @@ def is_foreign(value: object) -> bool:
 
 
 def one_by_one(
-    kernel: run.Run, data: NDArray[np.uint8], places: Places, first: int, count: int, lanes: Lanes, size: run.Run | None = None
+    kernel: run.Run, data: NDArray[np.uint8], spans: MessageSpans, first: int, count: int, lanes: Lanes, size: run.Run | None = None
 ) -> int:
     """What the compiled `many` does, in Python."""
     for number in range(first, count):
-        begin, end = places.span(number)
-        result = 0 if places.are_in(number, data.size) else None
+        begin, end = spans.span(number)
+        result = 0 if spans.are_in(number, data.size) else None
         if result is not None and size is not None:
             result = min(size(None, 0, run.ANY_SIZE, lanes, number), 0)
         if result == 0:

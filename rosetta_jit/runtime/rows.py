@@ -37,6 +37,11 @@ def numpys(words: int) -> Indices:
     return np.empty(words, np.int64)
 
 
+def room_for(size: int, dtype: np.dtype[Any], room: Room) -> NDArray[Any]:
+    """Room for so many values."""
+    return room(-(-size * dtype.itemsize // 8)).view(dtype)[:size]
+
+
 LONG = 256
 """Elements a span from which it is quicker to copy span by span than element by element."""
 
@@ -205,8 +210,8 @@ def lent(lanes: Lanes, lane: int, starts: Indices, counts: Indices) -> tuple[NDA
     return np.concatenate([source, own]), np.where(borrowed, starts, starts + len(source)), sizes
 
 
-def picked(values: NDArray[Any], starts: Indices, counts: Indices) -> NDArray[Any]:
-    """The values of spans, one after the other; not copied if they already lie so.
+def picked(values: NDArray[Any], starts: Indices, counts: Indices, room: Room = numpys) -> NDArray[Any]:
+    """The values of spans, one after the other; not copied if they already lie so. Long spans are copied to ``room``.
 
     Raises
     ------
@@ -216,8 +221,10 @@ def picked(values: NDArray[Any], starts: Indices, counts: Indices) -> NDArray[An
     whole = together(starts, counts, len(values))
     if whole is not None:
         return values[whole]
-    if int(counts.sum()) >= LONG * counts.size:
-        return np.concatenate([values[start : start + count] for start, count in zip(starts.tolist(), counts.tolist(), strict=True)])
+    total = int(counts.sum())
+    if total >= LONG * counts.size:
+        pieces = [values[start : start + count] for start, count in zip(starts.tolist(), counts.tolist(), strict=True)]
+        return np.concatenate(pieces, out=room_for(total, values.dtype, room))
     return values[elements(starts, counts, len(values)).at]
 
 

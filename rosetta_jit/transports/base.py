@@ -350,6 +350,8 @@ class Transport:
         ``(address, server, options) -> None``, as ``subscribe``.
     names
         ``(address, options) -> list of (channel, type or None)``: which channels there are, for patterns in configurations.
+    check
+        ``(address) -> object``: raises AddressError where the address names no channel, and opens nothing.
     options
         By name; `COMMON` are added.
     types
@@ -368,13 +370,14 @@ class Transport:
     call: str = ""
     serve: str = ""
     names: str = ""
+    check: str = ""
     options: Mapping[str, Option] = field(default_factory=dict[str, "Option"])
     types: Mapping[str, str] = field(default_factory=dict[str, str])
     asks: tuple[str, ...] = ()
     extra: tuple[str, str] = ("", "")
 
     def function(self, direction: str) -> Callable[..., Any]:
-        """The function for a direction, `subscribe` and so on; the caller has seen that there is one."""
+        """The function for a direction, `subscribe` and so on, or `check`; the caller has seen that there is one."""
         module, _, name = cast("str", getattr(self, direction)).partition(":")
         return cast("Callable[..., Any]", getattr(imported(module), name))
 

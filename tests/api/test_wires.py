@@ -491,7 +491,7 @@ def test_the_command_line(tmp_path, capsysbinary):
     assert main(["compile", mapping, "--direction", "decode"]) == 0
     assert main(["dump", mapping, "--wire", "right"]) == 0
     assert b"keeps lanes [0" in capsysbinary.readouterr().out
-    assert main(["generate", mapping, "--wire", "left", "--language", "python", "-o", str(tmp_path)]) == 1
+    assert main(["generate", mapping, "--wire", "left", "--directions", "borrow", "-o", str(tmp_path)]) == 1
     assert b"such source cannot join" in capsysbinary.readouterr().err
     assert main(["generate", mapping, "--wire", "left", "--directions", "encode", "-o", str(tmp_path)]) == 0
 

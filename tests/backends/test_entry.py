@@ -16,7 +16,7 @@ from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.state import EPOCH, LANES, RESULT, USED, VALID, lane_word
 from rosetta_jit.runtime.callable import THREAD, Context, bind_call, bind_state, callable_class, is_native, message_base
 from rosetta_jit.runtime.code import native
-from rosetta_jit.runtime.places import Places
+from rosetta_jit.runtime.message_spans import MessageSpans
 from rosetta_jit.runtime.program import MANY
 from tests.backends import kernels
 from tests.backends.engines import outcome
@@ -235,8 +235,8 @@ def test_encoding_into_what_does_not_take_it():
 
 
 def many(made, buffer, offsets, count, first=0):
-    places = Places.of(offsets).addresses
-    return MANY(made.library["many"])(buffer.ctypes.data, buffer.size, *places, first, count, made.rows.state.ctypes.data)
+    spans = MessageSpans.of(offsets).addresses
+    return MANY(made.library["many"])(buffer.ctypes.data, buffer.size, *spans, first, count, made.rows.state.ctypes.data)
 
 
 def test_decodes_many():

@@ -82,8 +82,9 @@ def kernel(
     sites: tuple[Site, ...] = SITES,
     direction: str = "decode",
     registers: int = 0,
+    hidden: int = 0,
 ) -> Kernel:
-    return Kernel("test", direction, strides, bodies, sites, registers=registers)
+    return Kernel("test", direction, strides, bodies, sites, registers=registers, hidden=hidden)
 
 
 def tagged_doubles(count: int) -> Kernel:

@@ -36,7 +36,7 @@ PROOF = (
     "record",
     "meetings",
 )
-PASSES = ("affine", "bulk", "drop", "fold", "hoist", "join", "merge", "reuse", "simplify", "sink", "unroll", "widen", "order")
+PASSES = ("affine", "bulk", "drop", "fold", "forget", "hoist", "join", "merge", "reuse", "simplify", "sink", "unroll", "widen", "order")
 MODULES = tuple(
     f"rosetta_jit.kernel.{name}" for name in ("shape", *(f"proof.{name}" for name in PROOF), *(f"passes.{name}" for name in PASSES))
 )
@@ -51,7 +51,7 @@ NO_PROOF = {
     "is_short_and_straight",
     "calls_to_host",
     "our_functions",
-    "is_told",
+    "asks_host",
 }
 """Functions of `shape` that tell backends and passes how large kernels are, and whom they call."""
 DEMANDS = {"oblige", "certify", "demand"}

@@ -19,9 +19,11 @@ from rosetta_jit.kernel.ir import (
     For,
     Get,
     If,
+    IsText,
     Let,
     Load,
     Local,
+    Nearest,
     Place,
     Require,
     Reserve,
@@ -330,6 +332,37 @@ PASSED = {
             ),
             Return(BEGIN),
         )
+    ),
+    "bytes and a field that are left and never read": kernel(
+        (
+            *(ROW_EXISTS, need(BEGIN, 16)),
+            *(*_rows(1, 1), *_rows(2, 16)),
+            Fill(Place(1, i64("start_1")), index(24)),
+            Copy(Place(2, i64("start_2")), Wire(BEGIN), index(16)),
+            SetField(Place(1, i64("start_1")), i64("start_2")),
+            SetField(Place(1, i64("start_1"), 8), Load("i64", BEGIN)),
+            SetField(Place(0, ROW), Get("i64", Place(1, i64("start_1"), 8))),
+            Return(BEGIN),
+        ),
+        strides=(64, 24, 1),
+        hidden=2,
+    ),
+    "the same in lanes of the holder": kernel(
+        (ROW_EXISTS, need(BEGIN, 16), *_rows(1, 16), Copy(Place(1, i64("start_1")), Wire(BEGIN), index(16)), Return(BEGIN)),
+        strides=(64, 1),
+    ),
+    "bytes that are looked at as a text, as a number, and copied": kernel(
+        (
+            *(ROW_EXISTS, need(BEGIN, 24)),
+            *(*_rows(1, 8), *_rows(2, 8), *_rows(3, 8)),
+            *(Copy(Place(lane, i64(f"start_{lane}")), Wire(add(BEGIN, 8 * (lane - 1))), index(8)) for lane in (1, 2, 3)),
+            expect(IsText(Place(1, i64("start_1")), index(8)), 3),
+            SetField(Place(0, ROW), Nearest(Place(2, i64("start_2")), index(8), index(0))),
+            Copy(Place(0, ROW, 8), Place(3, i64("start_3")), index(8)),
+            Return(BEGIN),
+        ),
+        strides=(64, 1, 1, 1),
+        hidden=3,
     ),
 }
 """What a pass does, or must not do."""

@@ -17,6 +17,7 @@ from rosetta_jit.kernel.ir import (
     Extent,
     Failure,
     HostCall,
+    HostValue,
     Kernel,
     Let,
     Local,
@@ -25,7 +26,6 @@ from rosetta_jit.kernel.ir import (
     Return,
     SetField,
     Site,
-    Told,
     Used,
     Wire,
 )
@@ -51,9 +51,9 @@ REVERSED = kernel(
     Reserve(1, MESSAGE.size),
     Let("start", Used(1)),
     Advance(1, MESSAGE.size),
-    HostCall("reverse", (index(3), Told("number")), FOUND, FAILED, (MESSAGE,), Extent(Place(1, Local("i64", "start")), MESSAGE.size)),
+    HostCall("reverse", (index(3), HostValue("number")), FOUND, FAILED, (MESSAGE,), Extent(Place(1, Local("i64", "start")), MESSAGE.size)),
     SetField(Place(0, ROW), Binary("max", FOUND, index(0))),
-    SetField(Place(0, ROW, 8), Told("now")),
+    SetField(Place(0, ROW, 8), HostValue("now")),
 )
 
 
@@ -112,6 +112,6 @@ def test_nothing_is_known_of_a_result():
         verify(kernel(call, SetField(Place(1, FOUND), index(0))))
     with pytest.raises(VerificationError, match="wrap"):
         verify(kernel(call, Let("more", Binary("add", FOUND, index(1)))))
-    verify(kernel(Let("none", Binary("sub", Told("now"), Told("now")))))
+    verify(kernel(Let("none", Binary("sub", HostValue("now"), HostValue("now")))))
     assert shape_error(kernel(call, call)) == "found is bound twice"
     assert shape_error(kernel(HostCall("f", (), FOUND, Failure(9, BEGIN)))) == "no site 9"

@@ -3,14 +3,37 @@
 from __future__ import annotations
 
 import struct
+from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rosetta_jit.kernel.ir import Copy, Expect, Fill, For, Get, If, Let, Load, Local, Place, Require, Return, SetField, Store, Wire
+from rosetta_jit.kernel.ir import (
+    Advance,
+    Copy,
+    Expect,
+    Fill,
+    For,
+    Get,
+    If,
+    IsText,
+    Let,
+    Load,
+    Local,
+    Place,
+    Require,
+    Reserve,
+    Return,
+    Routine,
+    SetField,
+    Store,
+    Used,
+    Wire,
+)
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.passes.drop import drop
+from rosetta_jit.kernel.passes.forget import forget
 from rosetta_jit.kernel.passes.hoist import hoist
 from rosetta_jit.kernel.passes.join import join
 from rosetta_jit.kernel.passes.merge import merge
@@ -22,8 +45,8 @@ from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.terms import BEGIN, ROW, add, index, mul
 from tests.golden import GOLDEN, check_golden
 from tests.kernel import kernels
-from tests.kernel.kernels import ROW_EXISTS, compare, i64, kernel, need
-from tests.kernel.random_kernels import random_kernel
+from tests.kernel.kernels import ROW_EXISTS, compare, expect, i64, kernel, need
+from tests.kernel.random_kernels import PASSED, random_kernel
 
 
 def stages(original):
@@ -180,6 +203,34 @@ def test_fields_are_written_by_one_move():
     verify(joined)
 
 
+def test_what_hidden_lanes_hold_and_nobody_reads_is_forgotten():
+    left = forget(PASSED["bytes and a field that are left and never read"])
+    assert not checks(left, Copy)
+    assert [stmt.place for stmt in checks(left, SetField)] == [Place(1, Local("i64", "start_1"), 8), Place(0, ROW)]
+    assert [stmt.lane for stmt in checks(left, Reserve)] == [1, 2], "start_2 asks for how many rows there are"
+    again = forget(simplify(left))
+    assert [stmt.lane for stmt in checks(again, Reserve)] == [1]
+    verify(again)
+
+
+@pytest.mark.parametrize("name", ["the same in lanes of the holder", "bytes that are looked at as a text, as a number, and copied"])
+def test_what_is_the_holders_or_is_read_stays(name):
+    assert forget(PASSED[name]) is PASSED[name]
+
+
+def test_what_a_report_shows_stays():
+    kernel = PASSED["bytes and a field that are left and never read"]
+    shown = replace(kernel.sites[3], detail_lane=2)
+    assert checks(forget(replace(kernel, sites=(*kernel.sites[:3], shown, *kernel.sites[4:]))), Copy)
+
+
+def test_what_a_routine_reads_stays():
+    kernel = PASSED["bytes and a field that are left and never read"]
+    body = (expect(IsText(Place(2, BEGIN), index(1)), 1),)
+    reader = Routine("reader", (), (), body, (), (), (kernel.sites[0], kernel.sites[1]))
+    assert checks(forget(replace(kernel, routines=(reader,))), Copy)
+
+
 def test_a_row_is_emptied_where_it_is_read_before_it_is_set():
     body = (
         *(ROW_EXISTS, need(BEGIN, 24), Fill(Place(0, ROW), index(24))),
@@ -196,3 +247,12 @@ def test_a_long_run_is_cut_for_processors_and_a_vast_one_is_one_loop():
 
     assert [int(size.value) for _, _, size in copies(join(run(37)))] == [128, 128, 40]
     assert [int(size.value) for _, _, size in copies(join(run(1000)))] == [8000]
+
+
+def test_what_a_size_kernel_leaves_is_not_forgotten():
+    """The encoder runs on the same lanes, and reads the lengths there."""
+    taken = (ROW_EXISTS, Reserve(2, index(1)), Let("first", Used(2)), Advance(2, index(1)))
+    body = (*taken, SetField(Place(2, i64("first")), index(5)), Return(BEGIN))
+    sizes, encoder = (replace(kernel(body, strides=(64, 8, 16), direction=direction), hidden=1) for direction in ("size", "encode"))
+    assert forget(sizes) is sizes
+    assert not any(isinstance(stmt, SetField) for stmt in forget(encoder).bodies[0])

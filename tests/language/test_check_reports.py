@@ -12,6 +12,7 @@ from rosetta_jit.catalogue import bind as bind_words
 from rosetta_jit.catalogue import check as check_words
 from rosetta_jit.catalogue import checksums as checksums_words
 from rosetta_jit.catalogue import derive as derive_words
+from rosetta_jit.catalogue import fields as fields_words
 from rosetta_jit.catalogue import functions as functions_words
 from rosetta_jit.catalogue import groups as groups_words
 from rosetta_jit.catalogue import images as images_words
@@ -53,6 +54,7 @@ FILES = {path.name: path.read_text() for path in (*SCHEMAS, *(FOLDER / "used").i
 CATALOGUE = (
     mapping_words,
     resolve_words,
+    fields_words,
     rest_words,
     check_words,
     derive_words,

@@ -231,16 +231,19 @@ def test_without_copies_arrays_show_the_lanes():
 @pytest.mark.parametrize("all_of_them", [True, False])
 def test_borrowed_bytes(copy, all_of_them):
     batch = Batch.new(all_kinds(), 3)
-    node = batch.family_.tree.root.entries["data"].node
-    for row, message in enumerate(batch):
-        message.data = b"own"
-        words = batch.lanes.cells[node.span.key]
-        at = row * node.span.step + node.span.index
-        if all_of_them or row != 1:
-            words[at], words[at + 1] = 2 - row, ~(row + 1)
+    for name in ("data", "octets"):
+        node = batch.family_.tree.root.entries[name].node
+        for row, message in enumerate(batch):
+            setattr(message, name, b"own")
+            words = batch.lanes.cells[node.span.key]
+            at = row * node.span.step + node.span.index
+            if all_of_them or row != 1:
+                words[at], words[at + 1] = 2 - row, ~(row + 1)
     batch.lanes.source[0] = bytearray(b"wxyz")
     table = batch.to_arrow(copy=copy)
-    assert table["data"].to_pylist() == [message.data for message in batch] == [b"y", b"xy" if all_of_them else b"own", b"wxy"]
+    found = [b"y", b"xy" if all_of_them else b"own", b"wxy"]
+    assert table["data"].to_pylist() == [message.data for message in batch] == found
+    assert table["octets"].to_pylist() == [str(each, "utf-8") for each in found]
 
 
 def test_long_arrays_that_lie_apart():

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rosetta_jit.errors import ValuesError
+from rosetta_jit.errors import EncodeError, ValuesError
 from rosetta_jit.model.types import Array, Bool, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct
 from rosetta_jit.runtime.batch import Batch
 from rosetta_jit.runtime.holder import holder_class
@@ -225,3 +225,34 @@ def test_types_that_pyarrow_does_not_know():
     polars = pytest.importorskip("polars")
     with pytest.raises(ValuesError, match="a type that pyarrow does not know"):
         values(polars.DataFrame({"number": polars.Series([1], dtype=polars.Int128)}), "number")
+
+
+def test_times_in_the_unit_that_is_wanted():
+    """Which reaches further than nanoseconds, where no part of a time is lost."""
+    batch = Batch.new(many(), 2)
+    batch[0].stamp.sec, batch[0].stamp.nanosec = -1, 250_000_000
+    batch[1].stamp.sec = 9_300_000_000
+    for unit, ticks in (("ms", 1_000), ("us", 1_000_000)):
+        table = batch.to_arrow(["stamp"], times={"stamp": unit})
+        assert table["stamp"].cast(pa.int64()).to_pylist() == [-3 * ticks // 4, 9_300_000_000 * ticks]
+        assert table.schema.field("stamp").type == pa.timestamp(unit)
+        assert values(table, "stamp") == [message.stamp.to_dict() for message in batch]
+    with pytest.raises(EncodeError, match="time 0 is between two timestamps in s: take a finer unit"):
+        batch.to_arrow(["stamp"], times={"stamp": "s"})
+    with pytest.raises(EncodeError, match="further from 1970"):
+        batch.to_arrow(["stamp"], times=["stamp"])
+
+
+def test_options_that_are_none():
+    batch = Batch.new(many(), 1)
+    for error, words, options in (
+        (TypeError, r"columns is a list of names: columns=\['text'\]", {"columns": "text"}),
+        (TypeError, r"times=\['stamp'\]", {"times": "stamp"}),
+        (ValueError, 'is "s", "ms", "us" or "ns", not \'minutes\'', {"times": {"stamp": "minutes"}}),
+        (ValueError, 'octets is "string" or "binary", not \'bytes\'', {"octets": "bytes"}),
+        (ValueError, "errors='text' is the name of a column", {"errors": "text"}),
+        (KeyError, "`points` of `points.x` is an array or a map", {"columns": ["points.x"]}),
+        (KeyError, "t.Point has no field `lable`; did you mean `label`?", {"columns": ["point.lable"]}),
+    ):
+        with pytest.raises(error, match=words.replace("?", r"\?")):
+            batch.to_arrow(**options)

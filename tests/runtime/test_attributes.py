@@ -184,7 +184,7 @@ def test_every_accessor_is_compiled():
 
 @needs_code
 def test_objects_lie_in_memory_as_the_code_expects():
-    """The offsets that `rosetta_jit/runtime/attributes/*.ll` name."""
+    """The offsets that `rosetta_jit/runtime/attributes/*/*.ll` name."""
 
     def offsets(made, *names):
         return tuple(slot_offset(vars(made)[name]) for name in names)

@@ -63,3 +63,50 @@ def test_dlpack():
         assert np.shares_memory(shown, column if isinstance(column, np.ndarray) else column.values)
     assert np.from_dlpack(batch.fixed).tolist() == [[0, 0, 0], [4, 5, 6], [0, 0, 0]]
     assert batch.fixed.__dlpack_device__() == (1, 0)
+
+
+def test_names_of_columns():
+    """A path goes on in messages alone: never is it the column of another field."""
+    batch = Batch.new(all_kinds(), 2)
+    for name, words in (
+        ("txt", "t.All has no field `txt`; did you mean `text`?"),
+        ("part.naem", "t.Part has no field `naem`; did you mean `name`?"),
+        ("i8.text", "`i8` is no message, and has no fields"),
+        ("text.i8", "`text` is no message, and has no fields"),
+        ("nine.text", "`nine` is no message, and has no fields"),
+    ):
+        for asked in (batch.column, batch.mask, batch[0].column):
+            with pytest.raises(KeyError) as caught:
+                asked(name)
+            assert caught.value.args == (words,)
+    with pytest.raises(KeyError, match="`parts` has many elements"):
+        batch.mask("parts.x")
+    with pytest.raises(KeyError, match="did you mean `text`"):
+        batch[0].has("txt")
+    assert batch.column("by_name.x").values["value"].tolist() == []
+
+
+def test_what_a_batch_shows():
+    batch = Batch.new(flat(), 6)
+    batch[1].parts = [{"x": 5}]
+    assert {"small", "parts", "column", "to_arrow", "concatenate"} <= set(dir(batch))
+    assert not {"lanes", "room", "family_", "kept_"} & set(dir(batch))
+    with pytest.raises(AttributeError, match=r"<Batch of 6 .*> has no field 'smal'") as caught:
+        _ = batch.smal
+    assert (caught.value.name, caught.value.obj) == ("smal", batch)
+
+
+def test_rows_of_ragged_columns():
+    batch = Batch.new(all_kinds(), 6)
+    for row, text in enumerate(("", "é", "b", "c", "d", "e")):
+        batch[row].text, batch[row].names = text, [text] * row
+    texts, names = batch.column("text"), batch.column("names")
+    assert repr(texts) == "<Ragged of 6 texts: '', 'é', 'b', 'c', …>"
+    assert repr(names[1:3]) == "<Ragged of 2 arrays: <Ragged of 1 texts: 'é'>, <Ragged of 2 texts: 'b', 'b'>>"
+    assert texts[1:3].to_list() == ["é", "b"]
+    assert texts[::-2].to_list() == ["e", "c", "é"]
+    assert texts[np.array([True, False] * 3)].to_list() == ["", "b", "d"]
+    assert texts[[-1, 1]].to_list() == ["e", "é"]
+    assert names[2:][0].to_list() == ["b", "b"]
+    with pytest.raises(IndexError):
+        _ = texts[[6]]

@@ -159,3 +159,27 @@ def test_a_batch_whose_decode_failed_is_not_encoded():
         decode.many(message[:-1], np.array([0, len(message) - 1]), into=batch)
     with pytest.raises(InvalidHolder):
         rj.Encoder("yarp/icub/torso_state.mapping", encoding="yarp3").many(batch)
+
+
+def test_errors_go_with_their_messages():
+    """Parts, and batches put together, know which messages could not be decoded."""
+    decode, encode = (program.of("std_msgs/String", encoding="ros1") for program in (rj.Decoder, rj.Encoder))
+    good, bad = bytes(encode({"data": "a"})), b"\xff"
+    masked = decode.many([good, bad, good, bad], on_error="mask")
+    part = masked[[3, 0, 2]]
+    assert part.mask().tolist() == [False, True, True]
+    assert list(part.errors) == [0]
+    assert part.to_arrow(errors="why")["why"].is_valid().to_pylist() == [True, False, False]
+    skipped = decode.many([good, bad, good, bad], on_error="skip")
+    assert skipped[1:].kept.tolist() == [2]
+    assert list(skipped[1:].errors) == [1, 3]
+    whole = rj.Batch.concatenate([masked, decode.many([good]), skipped, skipped[1:], part])
+    assert whole.kept.tolist() == [0, 1, 2, 3, 4, 5, 7, 11, 13, 14, 15]
+    assert sorted(whole.errors) == [1, 3, 6, 8, 10, 12, 13]
+    assert whole.mask().tolist() == [True, False, True, False, *[True] * 4, False, True, True]
+    assert [message.data for message in whole] == ["a", "", "a", "", "a", "a", "a", "a", "", "a", "a"]
+    assert rj.Batch.concatenate([masked, part]).kept_ is None
+    with pytest.raises(TypeError, match="batches are needed, not int"):
+        rj.Batch.concatenate([masked, 1])
+    with pytest.raises(TypeError, match="a batch of String is needed"):
+        decode.many([good], into=5)

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 from contextlib import contextmanager
-from pathlib import Path
 
 import pytest
 
@@ -16,9 +14,19 @@ from rosetta_jit.transports.yarp.admin import ask_port
 from rosetta_jit.transports.yarp.bottles import from_text, to_text
 from rosetta_jit.transports.yarp.names import NameServer
 from tests.transports.free import answers, free_port, running, until
+from tests.transports.real_yarp import dialect, program
 
-BUILT = str(Path(os.environ.get("YARP_DIR", ""), "bin")) if os.environ.get("YARP_DIR") else None
-YARP, SERVER = (shutil.which(name, path=f"{BUILT}:{os.environ['PATH']}" if BUILT else None) for name in ("yarp", "yarpserver"))
+YARP, SERVER = program("yarp"), program("yarpserver")
+
+
+def bottle(text):
+    """A text as one of them writes it."""
+    return from_text(text, dialect())
+
+
+def text_of(data):
+    return to_text(data, dialect())
+
 
 LONG = f"7 8 9 {'x' * 150_000}"
 """More than two datagrams."""
@@ -53,7 +61,7 @@ def serving(found):
 
 @pytest.fixture
 def at(server):
-    return lambda name, more="": f"yarp:{name}?server=127.0.0.1:{server[0]}{more}"
+    return lambda name, more="": f"yarp:{name}?server=127.0.0.1:{server[0]}&dialect={dialect()}{more}"
 
 
 def obeyed(server, *command):
@@ -77,7 +85,7 @@ def test_what_yarp_writes_arrives(at, server, carrier):
             writer.stdin.write(f"{line}\n")
             writer.stdin.flush()
             message = source.take(5)
-            assert message.data == from_text(line, "yarp3")
+            assert message.data == bottle(line)
             assert message.attributes == {"sender": "/w", "carrier": carrier}
         source.close()
         writer.stdin.close()
@@ -96,7 +104,7 @@ def test_yarp_writes_as_text_to_a_port_of_ours(at, server):
             writer.stdin.write("1 2.5 hello\n")
             writer.stdin.flush()
             message = source.take(5)
-            assert (message.data, message.attributes["carrier"]) == (from_text("1 2.5 hello", "yarp3"), carrier)
+            assert (message.data, message.attributes["carrier"]) == (bottle("1 2.5 hello"), carrier)
             until(obeyed(server, "disconnect", "/w", "/r"))
             until(lambda: not source.connections)
 
@@ -109,8 +117,8 @@ def test_yarp_reads_what_is_written(at, server, carrier, tmp_path):
             until(obeyed(server, "connect", "/out", "/r", carrier))
             assert sink.connections == 1
             for number in range(3):
-                sink.send(from_text(f"{number} 0.5 (x [set])", "yarp3"), time=10**18 + number)
-            sink.send(from_text(LONG, "yarp3"))
+                sink.send(bottle(f"{number} 0.5 (x [set])"), time=10**18 + number)
+            sink.send(bottle(LONG))
             assert sink.flush()
             until(lambda: (tmp_path / "read").stat().st_size > 140_000)  # the rest is printed at the end
         reader.terminate()
@@ -120,17 +128,32 @@ def test_yarp_reads_what_is_written(at, server, carrier, tmp_path):
 
 
 def test_questions_go_both_ways(at, server):
-    with rj.serve(at("/srv"), lambda message: from_text(f"[ok] {to_text(message.data, 'yarp3')}", "yarp3")):
+    def answer(message):
+        return None if text_of(message.data) == "nothing" else bottle(f"[ok] {text_of(message.data)}")
+
+    with rj.serve(at("/srv"), answer):
         asked = subprocess.run(
-            [YARP, "rpc", "/srv"], env=server[1], input="set 1.5\nget\n", capture_output=True, text=True, timeout=10, check=False
+            [YARP, "rpc", "/srv"], env=server[1], input="set 1.5\nnothing\nget\n", capture_output=True, text=True, timeout=10, check=False
         )
-        assert asked.stdout.splitlines() == ["Response: [ok] set 1.5", "Response: [ok] get"]
+        assert asked.stdout.splitlines() == ["Response: [ok] set 1.5", "Response: ", "Response: [ok] get"]
     with running(YARP, "rpcserver", "/rs", env=server[1], stdin=subprocess.PIPE, text=True) as program:
         until(registered(at, "/rs"))
         program.stdin.write("fine 2.5 (1 2)\n")
         program.stdin.flush()
         with rj.call(at("/rs")) as ask:
-            assert to_text(ask(from_text("how are you", "yarp3")).data, "yarp3") == "fine 2.5 (1 2)"
+            assert text_of(ask(bottle("how are you")).data) == "fine 2.5 (1 2)"
+
+
+def test_ports_answer_commands(at, server):
+    def said(*command, **how):
+        return subprocess.run([YARP, *command], env=server[1], capture_output=True, text=True, timeout=10, check=True, **how).stdout
+
+    with rj.publish(at("/out")), rj.subscribe(at("/out")):
+        assert "/out" in said("ping", "/out")
+        assert said("exists", "/out") == ""
+        lines = said("admin", "rpc", "/out", input="[ver]\n[list] [in]\n[nonsense]\n").splitlines()
+        assert lines[:2] == ["Response: [ver] 1 2 3", "Response: anon_rpc"]
+        assert lines[2].startswith("Response: [fail]")
 
 
 def test_a_reader_that_is_killed_costs_nobody_else(at, server):
@@ -141,7 +164,7 @@ def test_a_reader_that_is_killed_costs_nobody_else(at, server):
             sink.send(b"1")
             assert source.take(5).data == b"1"
         for _ in range(20):
-            sink.send(from_text("2", "yarp3"))
+            sink.send(bottle("2"))
             assert source.take(5) is not None
         until(lambda: sink.connections == 1)
 
@@ -149,7 +172,7 @@ def test_a_reader_that_is_killed_costs_nobody_else(at, server):
 def test_a_name_server_that_is_started_again_gets_to_know_the_ports(tmp_path, monkeypatch):
     monkeypatch.setattr("rosetta_jit.transports.yarp.port.HEARTBEAT_S", 0.1)
     found = place(tmp_path)
-    here = f"?server=127.0.0.1:{found[0]}"
+    here = f"?server=127.0.0.1:{found[0]}&dialect={dialect()}"
     with serving(found) as first, rj.publish(f"yarp:/stays{here}") as sink, rj.subscribe(f"yarp:/stays{here}") as source:
         until(lambda: sink.connections)
         first.kill()
@@ -160,6 +183,6 @@ def test_a_name_server_that_is_started_again_gets_to_know_the_ports(tmp_path, mo
             until(lambda: ("/stays", None) in names_at(f"yarp:/{here}"))
             with running(YARP, "read", "/late", env=found[1], stdout=printed):
                 until(obeyed(found, "connect", "/stays", "/late"), 20)
-                sink.send(from_text("7 8", "yarp3"))
+                sink.send(bottle("7 8"))
                 until(lambda: "7 8" in (tmp_path / "read").read_text())
         assert not sink.lost

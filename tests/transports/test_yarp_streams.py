@@ -66,6 +66,7 @@ class Port:
     def __init__(self, dialect, number=1, replies=None):
         self.name, self.number, self.dialect, self.answers = "/r", number, dialect, replies is not None
         self.got, self.senders, self.groups, self.replies = [], [], [], replies
+        self.commands, self.answering = [], {}
 
     def came(self, _, sender, carrier):
         self.senders.append((sender, carrier))
@@ -82,7 +83,8 @@ class Port:
         reply(self.replies.pop(0), None)
 
     def administer(self, command, answer):
-        answer(f"obeyed {command}")
+        self.commands.append(command)
+        answer(self.answering.get(command, f"obeyed {command}"))
 
     def disconnect(self, other):
         return f"Removing connection from {other} to {self.name}"
@@ -141,6 +143,17 @@ def test_a_server_replies_as_yarp_does(dialect):
     port, line, _ = read(dialect, bytes.fromhex(live["client"]), number=live["port"], replies=list(parts))
     assert line.out == bytes.fromhex(live["server"])
     assert [to_text(data, dialect) for data, *_ in port.got][:2] == ["[set] [poss] (0.0 10.5 -3.25)", "[get] [enc] 0"]
+
+
+@pytest.mark.parametrize("dialect", LIVE)
+def test_commands_may_come_as_bottles(dialect):
+    """So `yarp admin rpc` sends them; answers are as those of a port of YARP."""
+    live = LIVE[dialect]["admin_rpc"]
+    port, line = Port(dialect, live["port"]), Line()
+    port.answering = {"[ver]": "[ver] 1 2 3", "[list] [in]": "anon_rpc", "[list] [out]": "", '[list] [out] "/nobody"': ""}
+    Feed(incoming(port, line)).feed(bytes.fromhex(live["client"]))
+    assert port.commands == list(port.answering)
+    assert line.out == bytes.fromhex(live["server"])
 
 
 @pytest.mark.parametrize("dialect", LIVE)

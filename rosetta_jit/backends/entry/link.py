@@ -32,13 +32,13 @@ from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.shape import (
     are_straight_and_compute,
     are_vast,
+    asks_host,
     calls_to_host,
     has_loops_for_vectors,
     is_large,
     is_moderate,
     is_short,
     is_short_and_straight,
-    is_told,
     our_functions,
 )
 from rosetta_jit.kernel.state import USED, lane_word, state_words
@@ -250,7 +250,7 @@ def _surroundings(modules: Sequence[binding.ModuleRef], kernels: Sequence[Kernel
 
 @cache
 def _entries(*texts: str) -> bytes:
-    return kept("entries", "\n".join(texts), lambda: object_of(texts, (*SYMBOLS["encode"], REST_SYMBOL)))
+    return kept("entries", "\n".join(texts), lambda: object_of(texts, (*SYMBOLS["encode"], REST_SYMBOL), thorough=False))
 
 
 @cache
@@ -278,7 +278,7 @@ def _typed(kernel: Kernel) -> tuple[str, str]:
 
 def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel]) -> str:
     """A module of an entry's functions. `#0` to `#2` are the attributes of the calls of kernels that are to be quick."""
-    told = "told.ll" if is_told(kernels) else "untold.ll"
+    told = "told.ll" if asks_host(kernels) else "untold.ll"
     hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
     count = max(kernel.registers for kernel in kernels)
     kept = _template("registers.ll").replace("COUNT", str(count)) if count else _template("no_registers.ll")

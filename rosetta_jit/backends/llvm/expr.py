@@ -27,6 +27,7 @@ from rosetta_jit.kernel.ir import (
     Expr,
     Fits,
     Get,
+    HostValue,
     IsText,
     Known,
     Load,
@@ -39,7 +40,6 @@ from rosetta_jit.kernel.ir import (
     Scalar,
     Scale,
     Select,
-    Told,
     Unary,
     Used,
     Wire,
@@ -69,7 +69,7 @@ def expression(frame: Frame, expr: Expr) -> ir.Value:
             return load(frame, wire_pointer(frame, at), type_, alignment=1, order=order)
         case Get(type_, place):
             return load(frame, place_pointer(frame, place), type_, alignment=place_alignment(frame, place, type_))
-        case Used() | Capacity() | Told() | Register():
+        case Used() | Capacity() | HostValue() | Register():
             return _known(frame, expr)
         case Unary(function, operand):
             return _unary(frame, function, expression(frame, operand), type_of(operand))
@@ -102,7 +102,7 @@ def _known(frame: Frame, expr: Known) -> ir.Value:
             return frame.builder.load(frame.used_slot(lane), typ=I64)
         case Capacity(lane):
             return frame.capacity(lane)
-        case Told(what):
+        case HostValue(what):
             return frame.told(what)
         case Register(number):
             return frame.register(number)

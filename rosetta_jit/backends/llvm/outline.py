@@ -27,6 +27,7 @@ from rosetta_jit.kernel.ir import (
     For,
     Get,
     HostCall,
+    HostValue,
     IsText,
     Let,
     Load,
@@ -41,7 +42,6 @@ from rosetta_jit.kernel.ir import (
     SetField,
     Store,
     Switch,
-    Told,
     Unary,
     Used,
     Var,
@@ -204,7 +204,7 @@ _LITERALS: dict[type[Expr], Callable[[Any], Hashable]] = {
     Unary: attrgetter("function"),
     Digits: attrgetter("places"),
     Lookup: attrgetter("type", "values"),
-    Told: attrgetter("what"),
+    HostValue: attrgetter("what"),
     Register: attrgetter("number"),
 }
 """What is an expression's own, besides its operands."""

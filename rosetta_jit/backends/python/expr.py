@@ -23,6 +23,7 @@ from rosetta_jit.kernel.ir import (
     Expr,
     Fits,
     Get,
+    HostValue,
     IsText,
     Known,
     Load,
@@ -34,7 +35,6 @@ from rosetta_jit.kernel.ir import (
     Scalar,
     Scale,
     Select,
-    Told,
     Unary,
     Used,
     Wire,
@@ -89,7 +89,7 @@ def expression(names: Names, expr: Expr) -> str:
             return _read(names, type_, Wire(at), order)
         case Get(type_, place):
             return _read(names, type_, place, "<")
-        case Used() | Capacity() | Told() | Register():
+        case Used() | Capacity() | HostValue() | Register():
             return _known(names, expr)
         case Unary("not", operand) if type_of(operand) == "bool":
             return f"(not {expression(names, operand)})"
@@ -123,7 +123,7 @@ def _known(names: Names, expr: Known) -> str:
             return names.used_name(lane)
         case Capacity(lane):
             return names.capacity_name(lane)
-        case Told(what):
+        case HostValue(what):
             return TOLD[what]
         case Register(number):
             return names.register_name(number)

@@ -26,6 +26,7 @@ from rosetta_jit.kernel.ir import (
     Expr,
     Fits,
     Get,
+    HostValue,
     IsText,
     Known,
     Load,
@@ -37,7 +38,6 @@ from rosetta_jit.kernel.ir import (
     Scalar,
     Scale,
     Select,
-    Told,
     Unary,
     Used,
     Wire,
@@ -66,7 +66,7 @@ def expression(scope: Scope, expr: Expr) -> str:
             return _loaded(scope, type_, expression(scope, at), order)
         case Get(type_, place):
             return read(scope, type_, place)
-        case Used() | Capacity() | Told() | Register():
+        case Used() | Capacity() | HostValue() | Register():
             return _about_the_holder(scope, expr)
         case Unary(function, operand):
             return _unary(scope, function, type_of(operand), _wide(scope, operand))
@@ -100,7 +100,7 @@ def _about_the_holder(scope: Scope, expr: Known) -> str:
             return scope.used(lane)
         case Capacity(lane):
             return scope.capacity(lane)
-        case Told(what):
+        case HostValue(what):
             return f"{scope.takes('holder')}->{what}"
         case Register(number):
             return scope.register(number)

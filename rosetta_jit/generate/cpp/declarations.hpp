@@ -7,6 +7,18 @@
 #if __cplusplus >= 202002L
     void decode(std::span<const std::byte> bytes, holder &target) { decode(bytes.data(), bytes.size(), target); }
 #endif
+/* == wire == */
+    /* Reads a message of `$wire`, and sets what its messages tell: the rest of the target stays. One that is refused changes nothing. */
+    rosetta_jit::result<rosetta_jit::done> try_decode_$wire(const void *bytes, std::size_t size, holder &target);
+
+    /* The same; throws rosetta_jit::failure. */
+    void decode_$wire(const void *bytes, std::size_t size, holder &target) { static_cast<void>(try_decode_$wire(bytes, size, target).value()); }
+#if __cplusplus >= 202002L
+    void decode_$wire(std::span<const std::byte> bytes, holder &target) { decode_$wire(bytes.data(), bytes.size(), target); }
+#endif
+
+    /* How many messages of all wires have been decoded since the last one of `$wire`; -1 before the first. */
+    std::int64_t age_$wire() const noexcept { return kept.unpack[$last] == 0 ? -1 : kept.unpack[$every] - kept.unpack[$last]; }
 /* == encode == */
     /* How many bytes the message takes. */
     rosetta_jit::result<std::size_t> try_size(const holder &source);

@@ -24,7 +24,7 @@ $state
 private:
     struct memory;
     std::unique_ptr<memory> memory_;
-};
+$written};
 
 $functions
 $around

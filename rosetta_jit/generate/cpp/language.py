@@ -13,6 +13,7 @@ from rosetta_jit.generate.c.language import parts_of
 from rosetta_jit.generate.cleared import without_clearing
 from rosetta_jit.generate.cpp.manners import MANNERS
 from rosetta_jit.generate.cpp.source import header, source
+from rosetta_jit.generate.unit import wire_of
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.unit import Unit
@@ -26,6 +27,8 @@ def files(unit: Unit) -> dict[str, str]:
     manners = {each.name: each for each in MANNERS}.get(unit.holder or "own")
     if manners is None:
         raise SchemaError((words.unknown_holder(unit.holder, tuple((each.name, each.summary) for each in MANNERS)),))
+    if manners.around and any(map(wire_of, unit.kernels)):
+        raise SchemaError((words.wires_around(manners.name),))
     if "borrow" in unit.kernels:
         unit = replace(unit, kernels={**unit.kernels, "borrow": without_clearing(unit.kernels["borrow"], unit.layout)})
     parts = parts_of(unit, lambda kernel, lanes, role: print_kernel(kernel, lanes, role, unit.origins.get(role, ())), dialect="c++")

@@ -23,6 +23,35 @@ $finish
     fill(*holder, bytes, row, target);
     return rosetta_jit::done{};
 }
+/* == wire == */
+rosetta_jit::result<rosetta_jit::done> codec::try_decode_$wire(const void *data, std::size_t size, ::$name::holder &target)
+{
+    ${name}_holder *const holder = memory_.get();
+    const unsigned char *const bytes = static_cast<const unsigned char *>(data);
+    const int64_t end = reach(size);
+    const auto before = holder->message;
+    struct failure failure = {0, 0, {0, 0, 0, 0}};
+    holder->now = now;
+    holder->number = number;
+$kept
+    holder->most = rosetta_jit::detail::most_rows(size);
+$save
+    int64_t result = $first;
+$others
+    if (result < 0) {
+        holder->message = before;
+$restore
+        return report(decode_${wire}_sites, failure, end - failure.offset, *holder);
+    }
+    share_$wire(*holder, bytes, holder->message, target);
+    return rosetta_jit::done{};
+}
+/* == reset == */
+void codec::reset()
+{
+    kept = state();
+    memory_.reset(new memory);
+}
 /* == other == */
     if (result < 0 && failure.site != 0) {
         struct failure other = {0, 0, {0, 0, 0, 0}};
@@ -77,7 +106,7 @@ rosetta_jit::result<std::size_t> written(${name}_holder *holder, unsigned char *
 
 rosetta_jit::result<std::size_t> codec::try_size(const ::$name::holder &source)
 {
-    ${name}_holder *const holder = memory_.get();
+    ${name}_holder *const holder = $memory.get();
     struct failure failure = {0, 0, {0, 0, 0, 0}};
     holder->now = now;
     holder->number = number;
@@ -92,7 +121,7 @@ $kept
 
 rosetta_jit::result<std::size_t> codec::try_encode(const ::$name::holder &source, void *bytes, std::size_t capacity)
 {
-    ${name}_holder *const holder = memory_.get();
+    ${name}_holder *const holder = $memory.get();
     holder->now = now;
     holder->number = number;
 $kept
@@ -108,7 +137,7 @@ rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::$name::holder &
         return size.error();
     }
     bytes.resize(*size);
-    const auto found = written(memory_.get(), reinterpret_cast<unsigned char *>(&bytes[0]), static_cast<int64_t>(*size));
+    const auto found = written($memory.get(), reinterpret_cast<unsigned char *>(&bytes[0]), static_cast<int64_t>(*size));
     if (!found) {
         return found.error();
     }

@@ -62,7 +62,7 @@ $said    return found;
 
 struct codec::memory : ${name}_holder {};
 
-codec::codec() : memory_(new memory) {}
+codec::codec() : memory_(new memory)$written {}
 codec::~codec() = default;
 codec::codec(codec &&) noexcept = default;
 codec &codec::operator=(codec &&) noexcept = default;

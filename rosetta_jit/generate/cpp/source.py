@@ -17,6 +17,8 @@ from rosetta_jit.generate.c.words import C_TYPES, RESERVED
 from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.classes import classes
 from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
+from rosetta_jit.generate.shares import WHOLE, changed_lanes
+from rosetta_jit.generate.unit import kind_of, wire_of
 from rosetta_jit.model.layout import Row
 from rosetta_jit.model.types import Ref, Struct
 
@@ -40,7 +42,6 @@ SAID = """    if (where.scratch >= 0) { /* the mapping has put this text togethe
 
 def header(unit: Unit, manners: Manners) -> str:
     """The text of the header."""
-    decodes, encodes = "borrow" in unit.kernels, "encode" in unit.kernels
     root = unit.schema.types[unit.type]
     assert isinstance(root, Struct)
     own = classes(unit) if manners.type is None else ""
@@ -54,7 +55,6 @@ def header(unit: Unit, manners: Manners) -> str:
     around = [_section(FOLDER / "around" / f"{each}.hpp") for each in manners.around]
     words = {"name": unit.name, "holder": named, "type": literal(root.name), "wire": literal(root.name)}
     lines += [line for before, _ in around for line in before.splitlines()]
-    declared = [name for name, there in (("decode", decodes), ("encode", encodes)) if there]
     return _filled(
         "header.hpp",
         made=made(unit),
@@ -62,8 +62,9 @@ def header(unit: Unit, manners: Manners) -> str:
         guard=f"{unit.name.upper()}_HPP",
         includes="\n".join(lines),
         classes=f"{own}\n/* What is filled and read. */\nusing holder = {named};\n",
-        declarations="\n".join(_declarations()[each] for each in declared),
+        declarations="\n".join(_declared(unit)),
         state=_state(unit),
+        written="    std::unique_ptr<memory> written_;\n" if _writes_apart(unit) else "",
         functions="".join(_function(unit, each.name, each.parameters, each.result) for each in unit.functions),
         around="\n".join(Template(text).substitute(words) for _, text in around),
     )
@@ -76,7 +77,18 @@ def _state(unit: Unit) -> str:
     names, words = (", ".join(map(str, some)) for some in zip(*((name, _word(word)) for name, word in unit.state), strict=True))
     members = (f"        std::int64_t {member}[{len(unit.state)}] = {{{words}}};" for member in dict.fromkeys(MEMBERS.values()))
     head = f"    /* What the mapping keeps from one message to the next, for each direction: {names}; floats by their bits. */"
-    return "\n".join([head, "    struct state {", *members, "    };", "    state kept;", *RESET])
+    reset = (RESET[0], "    void reset();") if _wires(unit) else RESET
+    return "\n".join([head, "    struct state {", *members, "    };", "    state kept;", *reset])
+
+
+def _wires(unit: Unit) -> list[str]:
+    """The wires, if there are several, whose messages are decoded."""
+    return [wire for role in unit.kernels if (wire := wire_of(role))]
+
+
+def _writes_apart(unit: Unit) -> bool:
+    """Whether encoders need memory of their own, as what decoders have filled stays."""
+    return bool(_wires(unit)) and "encode" in unit.kernels
 
 
 def _word(word: int) -> str:
@@ -113,6 +125,16 @@ def _declarations() -> dict[str, str]:
     return dict(zip(parts[::2], parts[1::2], strict=True))
 
 
+def _declared(unit: Unit) -> list[str]:
+    """The codec's functions."""
+    known = _declarations()
+    found = [known["decode"]] if "borrow" in unit.kernels else []
+    for wire in _wires(unit):
+        every, last = unit.arrivals[wire]
+        found.append(Template(known["wire"]).substitute(wire=wire, every=every, last=last))
+    return [*found, *([known["encode"]] if "encode" in unit.kernels else [])]
+
+
 def _section(file: Path) -> tuple[str, str]:
     """The includes of a file, and the rest."""
     text = file.read_text("utf-8")
@@ -130,13 +152,13 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
     walks = {direction: Walk(unit, lanes, manners, direction) for direction in ("decode", "encode")}
     root, element = unit.layout.root, lanes.all[0].element
     type_ = Ref(unit.type)
+    has_wires = bool(_wires(unit))  # then rows stay, and are the codec's
     directs = {
-        name: [*walk.directs(type_, root, element, "row", Spot(at))]
+        name: [] if has_wires else [*walk.directs(type_, root, element, "row", Spot(at))]
         for (name, walk), at in zip(walks.items(), ("target", "source"), strict=True)
     }
-    containers = {
-        each.lane: each.spot.at for each in walks["decode"].directs(type_, root, element, "row", Spot("std::declval<holder &>()"))
-    }
+    of_type = () if has_wires else walks["decode"].directs(type_, root, element, "row", Spot("std::declval<holder &>()"))
+    containers = {each.lane: each.spot.at for each in of_type}
     called = {name for each in printed.values() for name in each.support} | {"failure"}
     kernels: list[str] = []
     for role in sorted(printed, key=by_order):
@@ -157,6 +179,7 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
             [*(literal(f".{each.name}" if each.name else "") for each in unit.layout.lanes)] + [literal("")] * parts.hidden
         ),
         said=SAID if said else "",
+        written=", written_(new memory)" if _writes_apart(unit) else "",
         functions="\n".join(_methods(unit, parts, directs)),
     )
 
@@ -212,23 +235,20 @@ def _table(role: Role, unit: Unit, parts: Parts) -> str:
 
 
 def _walks(unit: Unit, parts: Parts, walks: dict[str, Walk], directs: dict[str, list[Direct]]) -> str:
-    """The functions between rows and classes: one for the message, and one for each lane of a type that contains itself."""
+    """The functions between rows and classes: one for the message or a wire's share of it, and one for each lane of a recursive type."""
     texts: list[str] = []
-    wanted = [name for name, role in (("decode", "borrow"), ("encode", "encode")) if role in unit.kernels]
-    for name in wanted:
-        walk = walks[name]
+    for name, walk in walks.items():
+        roles = [role for role in unit.kernels if kind_of(role) in (("decode", "borrow") if name == "decode" else ("encode",))]
+        if not roles:
+            continue
         walk.direct = frozenset(each.lane for each in directs[name])
-        heads, bodies = list[str](), list[str]()
-        functions = [(0, Ref(unit.type)), *((lane, Ref(struct)) for lane, struct in unit.layout.recursive)]
-        for lane, type_ in functions:
-            head, body = _walk(unit, parts, walk, lane, type_)
-            heads.append(head)
-            bodies.append(f"{head}\n{{\n{body}}}\n")
-        texts += [*(f"{head};" for head in heads[1:]), "", *bodies]
+        inner = [_walk(unit, parts, walk, lane, Ref(struct)) for lane, struct in unit.layout.recursive]
+        whole = [_walk(unit, parts, walk, 0, Ref(unit.type), role) for role in roles]
+        texts += [*(f"{head};" for head, _ in inner), "", *(f"{head}\n{{\n{body}}}\n" for head, body in (*whole, *inner))]
     return "\n".join(texts)
 
 
-def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref) -> tuple[str, str]:
+def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Role = "") -> tuple[str, str]:
     lanes, name = parts.lanes, f"_{parts.lanes.rows(lane)}" if lane else ""
     element, row = lanes.all[lane].element, lanes.type(lane)
     if lane:
@@ -238,12 +258,14 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref) -> tuple[
         row = element.identifier
     if walk.direction == "decode":
         given = f"const {unit.name}_holder &from, const unsigned char *bytes, const {row} &row, Target &target"
-        head = f"template <class Target>\nvoid fill{name}({given})"
+        function = f"share_{wire_of(role)}" if wire_of(role) else f"fill{name}"
+        head = f"template <class Target>\nvoid {function}({given})"
         target, unused = "target", ("from", "bytes", "row", "target")
     else:
         head = f"template <class Source>\nvoid collect{name}(const Source &source, {unit.name}_holder &to, {row} &row)"
         target, unused = "source", ("source", "to", "row")
     walk.writer.lines, walk.writer.depth, walk.depth, walk.in_rows = [], 1, 0, 1 if lane else 0
+    walk.share = unit.shares.get(role, WHOLE)
     for each in unused:
         walk.writer.line(f"static_cast<void>({each});")
     walk.value(type_, unit.layout.lanes[lane].element, element, "row", Spot(target))
@@ -272,10 +294,13 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]]) -> list
                 empty="\n".join(f"    {line}" for line in finish.splitlines()),
             )
         )
+    texts += [_of_wire(unit, parts, known, role) for role in printed if wire_of(role)]
+    texts += [known["reset"]] if _wires(unit) else []
     if "encode" in printed:
         texts.append(
             Template(known["encode"]).substitute(
                 words,
+                memory="written_" if _writes_apart(unit) else "memory_",
                 clear="" if _is_collected(unit) else "    row = {};",
                 reset="\n".join(f"    holder->{lanes.rows(lane)}.reset();" for lane in range(1, lanes.own)),
                 bind="\n".join(_read(lanes.rows(each.lane), each) for each in directs["encode"]),
@@ -287,6 +312,21 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]]) -> list
             )
         )
     return [re.sub(r"\n+(\n    |\n})", r"\1", text) for text in texts]
+
+
+def _of_wire(unit: Unit, parts: Parts, known: dict[str, str], role: Role) -> str:
+    """The decoder of one of several wires."""
+    first, *others = parts.printed[role].attempts
+    changed = [f"    holder->{parts.lanes.rows(lane)}.{{}}();" for lane in changed_lanes(unit.kernels[role])]
+    return Template(known["wire"]).substitute(
+        name=unit.name,
+        wire=wire_of(role),
+        kept="    holder->state = &kept;",
+        first=run(first, "failure"),
+        others="".join(Template(known["other"]).substitute(call=run(each, "other")) for each in others),
+        save="\n".join(each.format("save") for each in changed),
+        restore="\n".join(f"    {each.format('restore')}" for each in changed),
+    )
 
 
 def _is_collected(unit: Unit) -> bool:

@@ -1,7 +1,8 @@
 """Between the rows of kernels and the fields of classes: one walk over a type, for both directions.
 
-    fill(from, bytes, target)        a class gets what a decoder left in the rows
-    collect(source, to)              the rows get what a class has, for an encoder
+    fill(from, bytes, row, target)        a class gets what a decoder left in the rows
+    share_WIRE(from, bytes, row, target)  it gets what a message of one of several wires fills
+    collect(source, to, row)              the rows get what a class has, for an encoder
 
 A lane is *direct* where a field of the message itself is a container of numbers or characters: kernels then work on the elements of that
 container, and nothing is copied. Bytes that a decoder left in the message are copied once, from there. An encoder copies no numbers or
@@ -22,6 +23,7 @@ from rosetta_jit.generate.c.rows import PADDING
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.names import member_names
+from rosetta_jit.generate.shares import WHOLE, Ways, within
 from rosetta_jit.model.layout import Number, Row, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Enum, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
@@ -61,7 +63,7 @@ class Direct:
 
 @dataclass(slots=True)
 class Walk:
-    """One of the two functions being printed; ``in_rows`` is how many lists there are around a value."""
+    """One of the functions being printed; ``in_rows`` is how many lists there are around a value, ``share`` what is set of it."""
 
     unit: Unit
     lanes: Lanes
@@ -71,6 +73,7 @@ class Walk:
     writer: Writer = field(default_factory=Writer)
     depth: int = 0
     in_rows: int = 0
+    share: Ways = WHOLE
 
     # --- names and templates ---------------------------------------------------------------------------------------------------------
 
@@ -133,12 +136,15 @@ class Walk:
     def struct(self, struct: Struct, slot: Row, element: object, row: str, spot: Spot) -> None:
         """The fields of a class, one after the other."""
         assert isinstance(element, RowStruct)
-        known, names = _members(element), self.names(struct)
-        if slot.unknown is not None and "unknown decode" in self.manners.sections():
+        known, names, share = _members(element), self.names(struct), self.share
+        if slot.unknown is not None and () in share and "unknown decode" in self.manners.sections():
             lane = self.lanes.rows(slot.unknown.lane)
             self.lines("unknown", Spot(spot.at, spot.at), row=f"{row}.unknown", lane=lane)
         for each, name, member, own in zip(struct.fields, names, slot.members, known, strict=True):
-            self.field_of(each, name, member, own.type, f"{row}.{own.identifier}", row, spot.at)
+            if inner := within(share, each.name):
+                self.share = inner if isinstance(member.slot, Row) else WHOLE
+                self.field_of(each, name, member, own.type, f"{row}.{own.identifier}", row, spot.at)
+        self.share = share
 
     def field_of(self, each: Field, name: str, member: Member, element: object, row: str, around: str, owner: str) -> None:
         """A field, which may be absent."""

@@ -13,6 +13,38 @@ Signals DECODE-ERROR. With a codec and an object that are used again, numbers ar
     (unless ($begin (attempts codec #'decode-kernel data end $attempts))
       (signal-failure codec *decode-sites* end))
     (take-message codec data 0 before)))
+;; == wire
+(defun $decode (octets into &key (end (length octets)) (codec *codec*))
+  "Read a message of $wire, bytes 0 to END of a vector, and set what its messages tell of an object, which is given back.
+
+Signals DECODE-ERROR, and changes nothing then. What arrays hold that several wires fill is the codec's."
+  (declare (type codec codec) (type $type into))
+  (let ((data (if (typep octets 'octets) octets (coerce octets 'octets))))
+    (declare (type octets data))
+    (check-type end (integer 0))
+    (assert (<= end (length data)) (end))
+    (setf (codec-state-most codec) (+ 1048576 (* 64 end)))
+    $tell
+    (setf $save)
+    (unless ($begin (attempts codec #'$decode-kernel data end $attempts))
+      $restore
+      (signal-failure codec *$decode-sites* end))
+    ($share codec data 0 into)))
+
+(defun $age (&optional (codec *codec*))
+  "How many messages of all wires have been decoded since the last one of $wire; nil before the first."
+  (let* ((registers (codec-state-unpack-registers codec)) (last (aref registers $last)))
+    (if (zerop last) nil (- (aref registers $every) last))))
+;; == wires
+(defun forget-rows (codec)
+  (fill (codec.message codec) 0)
+  (setf $emptied)
+  codec)
+;; == writer
+(defun writer (codec)
+  "A codec for what is written: rows that messages have left stay."
+  (declare (type codec codec))
+  (or (codec.writer codec) (setf (codec.writer codec) (make-codec))))
 ;; == encode
 (defun collect-message (codec object)
   "Bring an object into the rows of a codec."
@@ -35,6 +67,7 @@ Signals DECODE-ERROR. With a codec and an object that are used again, numbers ar
 
 (defun message-size (object &key (codec $codec))
   "How many bytes the message of an object has. Signals ENCODE-ERROR."
+  $apart
   (collect-message codec object)
   (size-of-rows codec))
 
@@ -43,12 +76,14 @@ Signals DECODE-ERROR. With a codec and an object that are used again, numbers ar
 
 With a codec that is used again, numbers are written without allocating memory."
   (check-type octets octets)
+  $apart
   (collect-message codec object)
   $measure
   (encode-rows codec octets))
 
 (defun encode (object &key (codec $codec))
   "The message of an object, a vector of octets. Signals ENCODE-ERROR."
+  $apart
   (collect-message codec object)
   (let* ((size (size-of-rows codec))
          (octets (make-array size :element-type 'u8))

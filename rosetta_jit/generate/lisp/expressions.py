@@ -29,6 +29,7 @@ from rosetta_jit.kernel.ir import (
     Expr,
     Fits,
     Get,
+    HostValue,
     IsText,
     Known,
     Load,
@@ -40,7 +41,6 @@ from rosetta_jit.kernel.ir import (
     Scalar,
     Scale,
     Select,
-    Told,
     Unary,
     Used,
     Wire,
@@ -100,7 +100,7 @@ def expression(scope: Scope, expr: Expr) -> str:
             return f"({access(type_, order)} data {expression(scope, at)})"
         case Get(type_, place):
             return got(scope, type_, place)
-        case Used() | Capacity() | Told() | Register():
+        case Used() | Capacity() | HostValue() | Register():
             return _known(scope, expr)
         case Unary(function, operand):
             return _unary(function, type_of(operand), expression(scope, operand))
@@ -140,7 +140,7 @@ def _known(scope: Scope, expr: Known) -> str:
             return scope.used(lane)
         case Capacity(lane):
             return "1" if lane == 0 else f"(the i64 (truncate (length {scope.rows(lane)}) {scope.lanes.stride(lane)}))"
-        case Told(what):
+        case HostValue(what):
             return f"(codec-state-{what} codec)"
         case Register(number):
             return state_word(scope, number)

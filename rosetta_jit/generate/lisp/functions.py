@@ -12,6 +12,7 @@ from rosetta_jit.generate.lisp.expressions import Scope, expression
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.statements import Function, Variable, declaration, print_block, registers
 from rosetta_jit.generate.lisp.words import LISP_TYPES, Names, hyphenated
+from rosetta_jit.generate.shares import changed_lanes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import Binary, Compare, Convert, Decimal, Unary
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
@@ -98,7 +99,7 @@ def _function(
 
 def _attempt(lines: Lines, function: Function, kernel: Kernel, number: int) -> None:
     body = reached(kernel.bodies[number])
-    function.read = read_names(body)
+    function.read, function.staying = read_names(body), changed_lanes(kernel)
 
     def finish() -> None:
         if not leaves(body):
@@ -118,10 +119,11 @@ def _within_lanes(lines: Lines, function: Function, kernel: Kernel | None, write
 
 
 def _used_at_start(kernel: Kernel, lanes: Lanes, lane: int) -> str:
-    """Lane 0 has the row of the message; a decoder starts with all others empty, as hidden ones are."""
+    """Lane 0 has the row of the message; a decoder starts with all others empty but those that it keeps, as hidden ones are."""
     if lane == 0:
         return "1"
-    return "0" if kernel.direction == "decode" or lane >= lanes.own else lanes.place_of_used(lane)
+    is_empty = lane >= lanes.own or (kernel.direction == "decode" and lane not in kernel.kept)
+    return "0" if is_empty else lanes.place_of_used(lane)
 
 
 def _routine(lines: Lines, function: Function, routine: Routine) -> None:

@@ -14,10 +14,12 @@ from rosetta_jit.generate.lisp.functions import About, computes_with_floats, pri
 from rosetta_jit.generate.lisp.lanes import lanes_of
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.objects import Put, Take
-from rosetta_jit.generate.lisp.structs import definitions, function_symbols, structures_of
+from rosetta_jit.generate.lisp.structs import definitions, function_symbols, structures_of, wire_symbols
 from rosetta_jit.generate.lisp.texts import comment, literal
 from rosetta_jit.generate.lisp.words import package_of, runtime_text
-from rosetta_jit.kernel.shape import is_told
+from rosetta_jit.generate.shares import changed_lanes
+from rosetta_jit.generate.unit import wire_of
+from rosetta_jit.kernel.shape import asks_host
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -62,6 +64,9 @@ class _Source:
 
     def __init__(self, unit: Unit) -> None:
         self.unit, self.structures = unit, structures_of(unit)
+        self.wires = wire_symbols(self.structures, filter(None, map(wire_of, unit.kernels)))
+        self.verbs = {role: f"decode-{self.wires[wire_of(role)]}" if wire_of(role) else NAMES[role] for role in unit.kernels}
+        self.shares: dict[Role, str] = {}
         self.functions = function_symbols(self.structures, [each.name for each in unit.functions])
         longest = max(unit.kernels.values(), key=lambda each: len(each.strides))
         c = named_parts(unit, frozenset())(longest.strides)
@@ -71,7 +76,7 @@ class _Source:
 
     def _kernel(self, role: Role, kernel: Kernel) -> Printed:
         about = About(self.unit.origins.get(role, ()), self.paths, self.functions)
-        return print_kernel(kernel, self.lanes, NAMES[role], about)
+        return print_kernel(kernel, self.lanes, self.verbs[role], about)
 
     def head(self) -> str:
         """What the file was made from."""
@@ -85,7 +90,7 @@ class _Source:
             self._package(package),
             definitions(self.structures),
             self._constants(),
-            codec(self.lanes, self.unit.state),
+            self._codec(),
             *(text for role in self.unit.kernels for text in (self._sites(role), self.printed[role].text)),
             *walks,
             *self._functions_of_the_header(),
@@ -99,6 +104,7 @@ class _Source:
         lines.line("(declaim (sb-ext:muffle-conditions sb-ext:compiler-note))")
         lines.line("")
         names = [*self.structures.exported(), *self.functions.values(), *(["*codec*"] if self.unit.state else [])]
+        names += [f"{verb}-{wire}" for wire in self.wires.values() for verb in ("decode", "age")]
         lines.line(f"(export '({' '.join(names)}))")
         return lines.text()
 
@@ -110,7 +116,7 @@ class _Source:
         """What can be wrong: the sites that the kernel's function names."""
         sites = self.unit.kernels[role].sites
         lines = Lines()
-        with lines.form(f"(defparameter *{NAMES[role]}-sites*"), lines.form("(vector"):
+        with lines.form(f"(defparameter *{self.verbs[role]}-sites*"), lines.form("(vector"):
             lines.line(f'(site :count "" {literal(NO_MEMORY)} "")')
             for number in self.printed[role].sites[1:]:
                 lines.line(self._site(sites[number]))
@@ -123,11 +129,22 @@ class _Source:
 
     def _walks(self) -> list[str]:
         found: list[str] = []
+        take, put = Take(self.structures, self.lanes, "take"), Put(self.structures, self.lanes, "put")
         if "borrow" in self.unit.kernels:
-            found.append(Take(self.structures, self.lanes, "take").printed())
+            take.whole()
+        self.shares = {role: take.whole(self.wires[wire_of(role)], ways) for role, ways in self.unit.shares.items() if wire_of(role)}
+        if take.pending:
+            found.append(take.printed())
         if "encode" in self.unit.kernels:
-            found.append(Put(self.structures, self.lanes, "put").printed())
+            put.whole()
+            found.append(put.printed())
         return found
+
+    def _codec(self) -> str:
+        changed = sorted({lane for role in self.unit.shares if wire_of(role) for lane in changed_lanes(self.unit.kernels[role])})
+        more = [f"({self.lanes.rows(lane)}.saved (no-octets) :type octets)" for lane in (0, *changed)] if self.wires else []
+        more += ["(writer nil)"] if self.wires and "encode" in self.unit.kernels else []
+        return codec(self.lanes, self.unit.state, more)
 
     def _needs_measures(self) -> bool:
         """Whether an encoder reads what measuring has left in lanes that the holder does not have, as sizes of messages within others."""
@@ -137,7 +154,7 @@ class _Source:
     def _functions_of_the_header(self) -> Iterator[str]:
         """Those that a program calls."""
         sections = dict(part.split("\n", 1) for part in API.read_text("utf-8").split(";; == ")[1:])
-        told = is_told(self.unit.kernels.values())
+        told = asks_host(self.unit.kernels.values())
         given = {
             "type": self.structures.types[self.unit.type],
             "codec": "*codec*" if self.unit.state else "(make-codec)",
@@ -145,16 +162,51 @@ class _Source:
             "measure": "(size-of-rows codec)" if self._needs_measures() else "",
             "empty": "".join(f"\n        {self.lanes.place_of_used(lane)} 0" for lane in range(1, self.lanes.own)),
         }
+        apart = bool(self.wires) and "encode" in self.unit.kernels
+        given["apart"] = "(setf codec (writer codec))" if apart else ""
         for role, kernel in self.unit.kernels.items():
             if role == "size":
                 continue
             floats = computes_with_floats(kernel) or (role == "encode" and computes_with_floats(self.unit.kernels["size"]))
             around = {"begin": "with-floats" if floats else "progn", "attempts": str(self.printed[role].attempts)}
-            yield re.sub(r"\n +(?=\n)|\n +(?=\))", "", Template(sections[NAMES[role]]).substitute(given, **around))
+            section = sections["wire" if wire_of(role) else self.verbs[role]]
+            yield _tidy(Template(section).substitute(given, **around, **self._of_wire(role)))
+        if self.wires:
+            writer = "\n        (codec.writer codec) nil" if apart else ""
+            yield Template(sections["wires"]).substitute(emptied=(given["empty"] + writer).strip())
+        if apart:
+            yield sections["writer"]
+
+    def _of_wire(self, role: Role) -> dict[str, str]:
+        """The words of the functions of one of several wires."""
+        wire = wire_of(role)
+        if not wire:
+            return {}
+        places = [self.lanes.place(lane) for lane in (0, *changed_lanes(self.unit.kernels[role]))]
+        saved = [f"{place[: -len(' codec)')]}.saved codec)" for place in places]
+        every, last = self.unit.arrivals[wire]
+        return {
+            "wire": wire,
+            "decode": self.verbs[role],
+            "age": f"age-{self.wires[wire]}",
+            "share": self.shares[role],
+            "every": str(every),
+            "last": str(last),
+            "save": "\n          ".join(f"{spare} (saved {spare} {place})" for place, spare in zip(places, saved, strict=True)),
+            "restore": "\n      ".join(f"(replace {place} {spare})" for place, spare in zip(places, saved, strict=True)),
+        }
 
 
-def codec(lanes: Lanes, state: Sequence[tuple[str, int]] = ()) -> str:
-    """The structure with a vector for each lane, and how many of its rows are in use; one of its own for a mapping that has state."""
+def _tidy(text: str) -> str:
+    """Without the lines of what there is not."""
+    return re.sub(r"\n +(?=\n)|\n +(?=\))", "", text)
+
+
+def codec(lanes: Lanes, state: Sequence[tuple[str, int]] = (), more: Sequence[str] = ()) -> str:
+    """The structure with a vector for each lane, and how many of its rows are in use; one of its own for a mapping that has state.
+
+    ``more`` are the slots of a mapping of several wires.
+    """
     lines = Lines()
     if state:
         head = "(eval-when (:compile-toplevel :load-toplevel :execute)", "(defparameter *initial-state*", "(list"
@@ -162,6 +214,7 @@ def codec(lanes: Lanes, state: Sequence[tuple[str, int]] = ()) -> str:
             for name, word in state:
                 lines.line(str(word), name)
     included = "".join(f" ({each}-registers (apply #'registers *initial-state*))" for each in ("first", "unpack", "pack") if state)
+    included += " (forget 'forget-rows)" if more else ""
     with lines.form(f"(defstruct (codec (:include codec-state{included}) (:conc-name codec.) (:copier nil) (:predicate nil))"):
         lines.line('"Memory that is kept from one message to the next. Each thread needs its own."')
         for lane in range(len(lanes.all)):
@@ -169,6 +222,8 @@ def codec(lanes: Lanes, state: Sequence[tuple[str, int]] = ()) -> str:
             lines.line(f"({lanes.rows(lane)} (make-array {size} :element-type 'u8) :type octets)")
             if lane:
                 lines.line(f"({lanes.used(lane)} 0 :type fixnum)")
+        for slot in more:
+            lines.line(slot)
     if state:
         lines.line('(defvar *codec* (make-codec) "Keeps the state of the mapping, for functions that are given no other codec.")')
     return lines.text()

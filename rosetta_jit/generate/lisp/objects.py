@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.generate.lisp.expressions import access, row_start
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.structs import ABSENT_BOOL, UNKNOWN
+from rosetta_jit.generate.shares import WHOLE, Ways, within
 from rosetta_jit.model.layout import Number, Row, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bool, Bytes, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
@@ -21,8 +22,8 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from rosetta_jit.generate.lisp.lanes import Lanes
     from rosetta_jit.generate.lisp.structs import Structures
-    from rosetta_jit.model.layout import Slot
-    from rosetta_jit.model.types import Type
+    from rosetta_jit.model.layout import Member, Slot
+    from rosetta_jit.model.types import Field, Type
 
 
 @dataclass(slots=True)
@@ -32,8 +33,8 @@ class Walk:
     structures: Structures
     lanes: Lanes
     verb: str
-    done: dict[tuple[int, int, str], str] = field(default_factory=dict[tuple[int, int, str], str])
-    pending: list[tuple[Struct, Row, int, str]] = field(default_factory=list[tuple[Struct, Row, int, str]])
+    done: dict[tuple[int, int, str, Ways], str] = field(default_factory=dict[tuple[int, int, str, Ways], str])
+    pending: list[tuple[Struct, Row, int, str, Ways]] = field(default_factory=list[tuple[Struct, Row, int, str, Ways]])
     lines: Lines = field(default_factory=Lines)
     depth: int = 0
 
@@ -44,12 +45,13 @@ class Walk:
     def resolved(self, type_: Type) -> Type:
         return self.structures.schema.resolve(type_)
 
-    def function(self, struct: Struct, slot: Row, lane: int, path: str) -> str:
-        """The function for the structs at a slot of a lane's rows."""
-        key = lane, slot.offset, struct.name
+    def function(self, struct: Struct, slot: Row, lane: int, path: str, ways: Ways = WHOLE) -> str:
+        """The function for the structs at a slot of a lane's rows, or for some of their fields."""
+        key = lane, slot.offset, struct.name, ways
         if key not in self.done:
-            self.done[key] = self.structures.names.symbol("\0".join(map(str, (self.verb, *key))), wanted=f"{self.verb}-{path}")
-            self.pending.append((struct, slot, lane, self.done[key]))
+            named = "\0".join(map(str, (self.verb, *key[:3], *map(".".join, sorted(ways)))))
+            self.done[key] = self.structures.names.symbol(named, wanted=f"{self.verb}-{path}")
+            self.pending.append((struct, slot, lane, self.done[key], ways))
         return self.done[key]
 
     def at(self, lane: int, offset: int, scalar: str, row: str) -> str:
@@ -61,13 +63,16 @@ class Walk:
         """The place of a scalar of a row."""
         return f"({access(scalar)} {self.lanes.place(lane)} {self.at(lane, offset, scalar, row)})"  # pyright: ignore[reportArgumentType]
 
-    def printed(self) -> str:
-        """The functions, that of the message last."""
+    def whole(self, path: str = "message", ways: Ways = WHOLE) -> str:
+        """The function for the message."""
         unit = self.structures.unit
         root = self.resolved(Ref(unit.type))
         assert isinstance(root, Struct)
         assert isinstance(unit.layout.root, Row)
-        self.function(root, unit.layout.root, 0, "message")
+        return self.function(root, unit.layout.root, 0, path, ways)
+
+    def printed(self) -> str:
+        """The functions, those of messages last."""
         texts: list[str] = []
         while self.pending:
             self.lines = Lines()
@@ -75,7 +80,7 @@ class Walk:
             texts.append(self.lines.text())
         return "\n".join(reversed(texts))
 
-    def one(self, struct: Struct, slot: Row, lane: int, name: str) -> None:
+    def one(self, struct: Struct, slot: Row, lane: int, name: str, ways: Ways) -> None:
         raise NotImplementedError
 
     def local(self, what: str) -> str:
@@ -86,26 +91,33 @@ class Walk:
 class Take(Walk):
     """From rows to objects: an expression for each value."""
 
-    def one(self, struct: Struct, slot: Row, lane: int, name: str) -> None:
+    def one(self, struct: Struct, slot: Row, lane: int, name: str, ways: Ways) -> None:
         type_, row = self.structures.types[struct.name], "row" if lane else "0"
         with self.lines.form(f"(defun {name} (codec data row before)"):
             self.lines.line("(declare (type codec codec) (type octets data) (type fixnum row) (ignorable codec data row))")
             with self.lines.form(f"(let ((object (if (typep before '{type_}) before (make-{type_}))))"):
                 for each, member in zip(struct.fields, slot.members, strict=True):
-                    place = self.structures.accessor(struct, each.name)
-                    if member.presence is None:
-                        value = self.value(each.type, member.slot, lane, row, place, each.name)
-                    else:
-                        assert isinstance(each.type, Optional)
-                        word, bit = divmod(member.presence, 64)
-                        absent = ABSENT_BOOL if isinstance(self.resolved(each.type.value), Bool) else "nil"
-                        there = f"(logbitp {bit} {self.scalar(lane, slot.offset + 8 * word, 'u64', row)})"
-                        value = f"(if {there} {self.value(each.type.value, member.slot, lane, row, place, each.name)} {absent})"
-                    self.lines.line(f"(setf {place} {value})")
-                if slot.unknown is not None:
+                    if part := within(ways, each.name):
+                        place = self.structures.accessor(struct, each.name)
+                        self.lines.line(f"(setf {place} {self.member(each, member, slot, lane, row, place, part)})")
+                if slot.unknown is not None and () in ways:
                     place = self.structures.accessor(struct, UNKNOWN)
                     self.lines.line(f"(setf {place} {self.sequence(Bytes(), slot.unknown, lane, row, place, '')})")
                 self.lines.line("object")
+
+    def member(self, each: Field, member: Member, slot: Row, lane: int, row: str, place: str, part: Ways) -> str:
+        """The value of a field, of which a part is set: it may be absent."""
+        type_ = each.type.value if isinstance(each.type, Optional) and member.presence is not None else each.type
+        resolved = self.resolved(type_)
+        if () not in part and isinstance(resolved, Struct) and isinstance(member.slot, Row):
+            value = f"({self.function(resolved, member.slot, lane, each.name, part)} codec data {row} {place})"
+        else:
+            value = self.value(type_, member.slot, lane, row, place, each.name)
+        if member.presence is None:
+            return value
+        word, bit = divmod(member.presence, 64)
+        absent = ABSENT_BOOL if isinstance(resolved, Bool) else "nil"
+        return f"(if (logbitp {bit} {self.scalar(lane, slot.offset + 8 * word, 'u64', row)}) {value} {absent})"
 
     def value(self, type_: Type, slot: Slot, lane: int, row: str, before: str, path: str) -> str:
         """The value at a slot of a row; ``before`` is the one that was there."""
@@ -176,7 +188,8 @@ class Take(Walk):
 class Put(Walk):
     """From objects to rows, which are 0 before: statements for each value."""
 
-    def one(self, struct: Struct, slot: Row, lane: int, name: str) -> None:
+    def one(self, struct: Struct, slot: Row, lane: int, name: str, ways: Ways) -> None:
+        del ways  # all fields are written
         with self.lines.form(f"(defun {name} (codec row object)"):
             type_, row = self.structures.types[struct.name], "row" if lane else "0"
             self.lines.line(f"(declare (type codec codec) (type fixnum row) (type {type_} object) (ignorable codec row object))")

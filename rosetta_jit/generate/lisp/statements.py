@@ -66,6 +66,7 @@ class Function:
     ``read`` are the locals whose values anything needs. ``is_routine``: it gives the number of its own site that failed, or 0.
     ``routines`` are the functions of routines by name. ``numbers`` are the rows of the table that sites of the kernel have got, ``paths``
     the fields that lanes belong to, ``functions`` those of the mapping by name.
+    ``staying`` are lanes of which a message leaves rows to others.
     """
 
     name: str
@@ -78,6 +79,7 @@ class Function:
     origins: Sequence[Origin] = ()
     read: frozenset[str] = frozenset()
     is_routine: bool = False
+    staying: Sequence[int] = ()
     lines: Lines = field(default_factory=Lines)
 
     def line(self, form: str, said: str = "") -> None:
@@ -193,6 +195,8 @@ def _return(function: Function, position: Expr, changed: Sequence[tuple[int, Exp
     with function.lines.form(f"(let ((behind {function.form(position)}))"):
         function.line("(declare (type i64 behind))")
         function.line(f"(psetf {assigned})")
+        for lane in function.staying:
+            function.line(f"(setf {function.scope.lanes.place_of_used(lane)} {function.scope.used(lane)})")
         function.line(function.leave("behind"))
 
 

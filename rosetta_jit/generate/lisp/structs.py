@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.unit import Unit
     from rosetta_jit.model.types import Schema, Type
 
-KERNELS = frozenset({"decode-kernel", "encode-kernel", "size-kernel", "unknown-fields"})
+KERNELS = frozenset({"decode-kernel", "encode-kernel", "size-kernel", "unknown-fields", "forget-rows", "writer"})
 UNKNOWN = "unknown fields"
 """Of the slot with fields that the schema does not know: no schema has a name with a space."""
 ABSENT_BOOL = ":absent"
@@ -195,6 +195,12 @@ def _element(structures: Structures, element: Type) -> str:
     """What is in an array of a fixed length at first: objects, of recursive types too."""
     resolved = structures.schema.resolve(element)
     return f"(make-{structures.types[resolved.name]})" if isinstance(resolved, Struct) else default(structures, element)
+
+
+def wire_symbols(structures: Structures, wires: Iterable[str]) -> dict[str, str]:
+    """What stands for wires in the symbols of their functions, as `decode-WIRE`."""
+    taken = ("decode-{}", "age-{}", "decode-{}-kernel")
+    return {each: structures.names.symbol(f"wire {each}", *taken, wanted=each) for each in wires}
 
 
 def function_symbols(structures: Structures, functions: Iterable[str]) -> dict[str, str]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.cpp.classes import reached_types
+from rosetta_jit.generate.unit import wire_of
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.unit import Unit
     from rosetta_jit.model.types import Type
 
-OWN = """array dataclass field Struct Any Callable math c_float now functions decode encode size
+OWN = """array dataclass field Struct Any Callable math c_float now functions decode encode size reset
 Refused MessageError DecodeError EncodeError np npt copy"""
 TAKEN = frozenset((*keyword.kwlist, *dir(builtins), *OWN.split()))
 MEMBERS = frozenset((*keyword.kwlist, "unknown_fields", "field"))
@@ -41,7 +42,8 @@ NUMPY = {
 
 def names_of(unit: Unit) -> dict[str, str]:
     """The classes by the types' names in the schema."""
-    scope, found = Namespace(TAKEN), dict[str, str]()
+    of_wires = (f"{verb}_{wire_of(role)}" for role in unit.kernels if wire_of(role) for verb in ("decode", "age"))
+    scope, found = Namespace(TAKEN.union(of_wires)), dict[str, str]()
     for name in reached_types(unit):
         simple = re.split(r"[./:]+", name)[-1]
         found[name] = scope.identifier(simple if simple not in scope.identifiers else "_".join(re.split(r"[./:]+", name)))

@@ -30,6 +30,7 @@ from rosetta_jit.kernel.ir import (
     Expr,
     Fits,
     Get,
+    HostValue,
     IsText,
     Known,
     Load,
@@ -41,7 +42,6 @@ from rosetta_jit.kernel.ir import (
     Scalar,
     Scale,
     Select,
-    Told,
     Unary,
     Used,
     Wire,
@@ -189,7 +189,7 @@ def expression(scope: Scope, expr: Expr) -> str:
         case Get(type_, place):
             text = scope.place(place, type_)
             return f"({text} != 0)" if type_ == "bool" else text
-        case Used() | Capacity() | Told() | Register():
+        case Used() | Capacity() | HostValue() | Register():
             return _known(scope, expr)
         case Unary(function, operand):
             return _unary(function, type_of(operand), expression(scope, operand))
@@ -241,7 +241,7 @@ def _known(scope: Scope, expr: Known) -> str:
             return scope.used(lane)
         case Capacity(lane):
             return scope.room(lane)
-        case Told(what):
+        case HostValue(what):
             scope.told.add(what)
             return f"told_{what}"
         case Register(number):

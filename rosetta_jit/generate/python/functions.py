@@ -14,6 +14,7 @@ from rosetta_jit.generate.python.direct import FEW, direct
 from rosetta_jit.generate.python.expressions import CODES, Scope, bare, expression, flat_name, view_name
 from rosetta_jit.generate.python.groups import not_negative, undamaged
 from rosetta_jit.generate.python.statements import Attempt, Function, print_block
+from rosetta_jit.generate.unit import kind_of
 from rosetta_jit.kernel.ir import (
     Capacity,
     Const,
@@ -58,7 +59,7 @@ WORDS = frozenset(
         "copy",
         "np",
     )
-) | {f"told_{what}" for what in ("now", "number", "registers", "end", "copy")}
+) | {f"told_{what}" for what in ("now", "number", "registers", "end", "copy", "into")}
 
 
 def is_flat(kernel: Kernel, lanes: Lanes) -> bool:
@@ -145,7 +146,7 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Att
     blocks = (body, *(routine.body for routine in kernel.routines))
     exprs = (expr for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt))
     asked = {part.lane for expr in exprs for part in subexpressions(expr) if isinstance(part, Capacity)}
-    function.outside = {stmt.lane for stmt in body if isinstance(stmt, Reserve)} - asked
+    function.outside = {stmt.lane for stmt in body if isinstance(stmt, Reserve)} - asked - {*kernel.kept}
     print_block(function, body)
     made = objects.inner(scope)
     name = f"_{role}_{number + 1}"
@@ -201,14 +202,21 @@ def _lanes(function: Function) -> set[int]:
 
 
 def _begin(function: Function, role: Role) -> list[str]:
-    """Lanes that start empty, and views of those that are given."""
+    """Lanes that start empty, or as another message has left them, and views of those that are given."""
+    kept, kind = function.kernel.kept, kind_of(role)
     scope, own, lines = function.scope, function.scope.lanes.own, list[str]()
     for lane in sorted(_lanes(function) - {0}):
         name = scope.lanes.rows(lane)
         codes = sorted(code for number, code in scope.views if number == lane and code)
-        if lane < own and role in ("encode", "size"):
+        if lane < own and kind in ("encode", "size"):
             continue
-        if role != "encode":
+        if lane in kept:
+            lines.append(f'{name} = bytearray(_rows["{name}"])')
+            lines += [f"{name}_room = len({name}) // {scope.lanes.stride(lane)}"] if lane in scope.rooms else []
+            lines += [f'{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
+            lines += [f"{name}_used = len({name}) // {scope.lanes.stride(lane)}"] if lane in scope.counted else []
+            continue
+        if kind != "encode":
             lines.append(f"{name} = bytearray()")
             lines += [f"{name}_room = 0"] if lane in scope.rooms else []
             lines += [f"{name}_{code} = _EMPTY_{code}" for code in codes]
@@ -216,8 +224,8 @@ def _begin(function: Function, role: Role) -> list[str]:
         else:
             lines += [f'{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
         lines += [f"{name}_used = 0"] if lane in scope.counted else []
-    if not scope.flat and role in ("decode", "borrow"):
-        lines.append(f"message = bytearray({scope.lanes.stride(0)})")
+    if not scope.flat and kind in ("decode", "borrow"):
+        lines.append('message = bytearray(_rows["message"])' if kept else f"message = bytearray({scope.lanes.stride(0)})")
         lines += [f'message_{code} = memoryview(message).cast("{code}")' for lane, code in sorted(scope.views) if lane == 0 and code]
     return lines
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,8 +18,10 @@ from rosetta_jit.generate.python.functions import WORDS, is_flat, print_kernel
 from rosetta_jit.generate.python.objects import Collect, Make, arrays_of
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.python.statements import Objects
+from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
+from rosetta_jit.generate.unit import wire_of
 from rosetta_jit.kernel.ir import Advance, Const, Return
-from rosetta_jit.kernel.shape import is_told, statements
+from rosetta_jit.kernel.shape import asks_host, statements
 from rosetta_jit.model.types import Ref
 
 if TYPE_CHECKING:
@@ -58,6 +61,7 @@ class _Module:
     def text(self) -> str:
         """All of it."""
         parts = [self._decoder()] if "borrow" in self.unit.kernels else []
+        parts += [self._decoder_of(wire, role) for wire, role in wires_of(self.unit).items()]
         parts += [self._encoder()] if "encode" in self.unit.kernels else []
         parts += [self._reset()] if self.unit.state else []
         runtime = RUNTIME.read_text("utf-8")
@@ -97,12 +101,14 @@ class _Module:
         lines += [f'{name} = Struct("{code}").pack_into' for code, name in self.structs.items()]
         if self.guesses:
             lines += ["_room = [256]", '"""The room that messages took."""']
-        if any(is_told([kernel]) for kernel in self.unit.kernels.values()):
+        if any(asks_host([kernel]) for kernel in self.unit.kernels.values()):
             lines.append("_numbers = _count()")
         if self.unit.state:
             words = "".join(f"    {word},  # {name}\n" for name, word in self.unit.state)
             lines += ["# What is kept from one message to the next: integers as they are, floats by their bits.", f"_INITIAL = (\n{words})"]
             lines += [f"{each} = list(_INITIAL)" for each in REGISTERS.values()]
+        if wires_of(self.unit):
+            lines.append(rows_at_first(self.unit, self.lanes([each.stride for each in self.unit.layout.lanes])))
         return "\n".join(lines)
 
     def _reset(self) -> str:
@@ -110,6 +116,8 @@ class _Module:
         with writer.indented("def reset() -> None:"):
             writer.line('"""Forget all messages: state is what the mapping says that it is at first."""')
             writer.line(" = ".join(f"{each}[:]" for each in REGISTERS.values()) + " = _INITIAL")
+            if wires_of(self.unit):
+                writer.line("_rows.update(_ROWS_AT_FIRST)")
         return writer.text()
 
     def _lanes(self, kernel: Kernel) -> Lanes:
@@ -117,7 +125,7 @@ class _Module:
         return self.lanes(kernel.strides)
 
     def _sites(self, role: Role) -> str:
-        lines = [f"_{role.upper()}_SITES = ("]
+        lines = [f"_{role if wire_of(role) else role.upper()}_SITES = ("]
         for number, site in enumerate(self.unit.kernels[role].sites):
             kind, detail = ("count", NO_MEMORY) if number == 0 else (site.kind, site.detail)
             inner = "".join(f"({each.offset}, {each.size}, {each.step}, {each.path!a}), " for each in site.parts).rstrip()
@@ -149,6 +157,23 @@ class _Module:
         objects = Objects(made, row, inner, self.unit.layout, frozenset(arrays), self.unit.numpy, frozenset(self.names.values()))
         text, attempts = print_kernel(kernel, lanes, "borrow", self.loads, origins, objects, self.paths, flat=is_flat(kernel, lanes))
         return "\n\n".join([self._sites("borrow"), f"\n{text.rstrip()}", f"\n{self._decode(attempts)}"])
+
+    def _decoder_of(self, wire: str, role: Role) -> str:
+        """The decoder of one of several wires."""
+        kernel = replace(self.unit.kernels[role], kept=tuple({*self.unit.kernels[role].kept} & {*staying(self.unit)}))
+        taken = frozenset(stmt.lane for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, Advance))
+
+        def inner(scope: Scope) -> list[str]:
+            make = Make(self.unit, scope, self.names, taken)
+            return filling(make, kernel, self.unit.shares[role])
+
+        objects = Objects(lambda _, __: "filled()", inner=inner, numpy=self.unit.numpy, classes=frozenset(self.names.values()))
+        origins, lanes = self.unit.origins.get(role, ()), self._lanes(kernel)
+        text, attempts = print_kernel(kernel, lanes, role, self.loads, origins, objects, self.paths, flat=False)
+        told = Writer()
+        self._told(told, {each for attempt in attempts for each in attempt.needs}, "decode")
+        called = decoder(self.root, wire, attempts, told.lines, self.unit.arrivals[wire])
+        return "\n\n".join([self._sites(role), f"\n{text.rstrip()}", f"\n{called}"])
 
     def _decode(self, attempts: tuple[Attempt, ...]) -> str:
         writer = Writer()

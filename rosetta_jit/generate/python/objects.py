@@ -18,9 +18,8 @@ if TYPE_CHECKING:
 
     from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.model.layout import Slot
-    from rosetta_jit.model.types import Type
-
+    from rosetta_jit.model.layout import Member, Slot
+    from rosetta_jit.model.types import Field, Type
 
 MOST_AT_ONCE = 40
 """Numbers of an array of a fixed length that are packed by a function of its own."""
@@ -68,18 +67,22 @@ class Make:
         return self.scope.field(lane, row, slot.offset + 8, "i64")
 
     def struct(self, struct: Struct, slot: Row, lane: int, row: str) -> str:
-        given: list[str] = []
-        for each, member in zip(struct.fields, slot.members, strict=True):
-            if member.presence is None:
-                given.append(self.value(each.type, member.slot, lane, row))
-                continue
-            assert isinstance(each.type, Optional)
-            word, bit = divmod(member.presence, 64)
-            there = f"{self.scope.field(lane, row, slot.offset + 8 * word, 'u64')} & {1 << bit}"
-            given.append(f"({self.value(each.type.value, member.slot, lane, row)}) if {there} else None")
+        given = [self.member(each, member, slot, lane, row) for each, member in zip(struct.fields, slot.members, strict=True)]
         if slot.unknown is not None:
             given.append(self._text("_bytes", slot.unknown, lane, row))
         return f"{self.names[struct.name]}({', '.join(given)})"
+
+    def member(self, each: Field, member: Member, slot: Row, lane: int, row: str) -> str:
+        """The value of a field of the struct at a slot; it may be absent."""
+        if member.presence is None:
+            return self.value(each.type, member.slot, lane, row)
+        assert isinstance(each.type, Optional)
+        there = self.is_there(member.presence, slot, lane, row)
+        return f"({self.value(each.type.value, member.slot, lane, row)}) if {there} else None"
+
+    def is_there(self, presence: int, slot: Row, lane: int, row: str) -> str:
+        word, bit = divmod(presence, 64)
+        return f"{self.scope.field(lane, row, slot.offset + 8 * word, 'u64')} & {1 << bit}"
 
     def union(self, union: Union, slot: Variant, lane: int, row: str) -> str:
         which = self.scope.field(lane, row, slot.offset, "i64")
@@ -303,8 +306,7 @@ class Collect:
             self.writer.line(f"{lane}.extend({raw})")
         elif isinstance(type_, Map):
             self._entries(type_, slot.lane, at, start, count)
-        else:
-            assert isinstance(type_, Array)
+        elif isinstance(type_, Array):
             self._rows(type_.element, slot.lane, at, start, count)
         self._span(slot, start, count, found)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.passes.bulk import bulk, bulk_of_bytes, group
 from rosetta_jit.kernel.passes.drop import drop
+from rosetta_jit.kernel.passes.forget import forget
 from rosetta_jit.kernel.passes.hoist import hoist
 from rosetta_jit.kernel.passes.join import join
 from rosetta_jit.kernel.passes.merge import merge
@@ -25,7 +26,9 @@ if TYPE_CHECKING:
 Pass = Callable[["Kernel"], "Kernel"]
 
 PASSES: tuple[Pass, ...] = (
+    forget,
     simplify,
+    forget,
     reuse,
     simplify,
     drop,

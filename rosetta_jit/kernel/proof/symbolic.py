@@ -21,6 +21,7 @@ from rosetta_jit.kernel.ir import (
     Digits,
     Fits,
     Get,
+    HostValue,
     IsText,
     Load,
     Local,
@@ -30,7 +31,6 @@ from rosetta_jit.kernel.ir import (
     Register,
     Scale,
     Select,
-    Told,
     Unary,
     Used,
     Wire,
@@ -169,8 +169,8 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
         case Used(lane) | Capacity(lane):
             check_lane(scope, lane)
             return "i64", (scope.used if isinstance(expr, Used) else scope.capacity)[lane]
-        case Told(what) | Register(what):
-            kind = "told" if isinstance(expr, Told) else "register"
+        case HostValue(what) | Register(what):
+            kind = "told" if isinstance(expr, HostValue) else "register"
             return "i64", scope.facts.named((kind, what), *limits("i64"))
         case Unary():
             return _unary(scope, expr)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.algebra.normal_form import rebuilt, renamed
 from rosetta_jit.language.algebra.polynomial import TooComplexError, polynomial_of
 from rosetta_jit.language.algebra.quotients import NOTHING, are_same, mentions, only_atom
 from rosetta_jit.language.typed import BOOL, Access, Binary, Const, Convert, Has, IndexStep, LenOf, Local, Nearest, StateVariable
+from rosetta_jit.language.walk import operands, parts, renamed
 from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from rosetta_jit.language.algebra.quotients import Digit, Fact, Facts
     from rosetta_jit.language.typed import Expr, Step
@@ -51,32 +51,22 @@ def _matches(pattern: Expr, expr: Expr, bound: dict[str, Expr]) -> bool:
 
 def reads_other(value: Expr, side: Side) -> bool:
     """Whether an expression reads what lies between the two directions: nothing is known of that."""
-    if isinstance(value, Access | LenOf | Has) and value.place.side != side:
-        return True
-    found: list[bool] = []
-    rebuilt(value, lambda part: found.append(reads_other(part, side)) or part)
-    return any(found)
+    return any(isinstance(part, Access | LenOf | Has) and part.place.side != side for part in parts(value))
 
 
 def has_local(expr: Expr) -> bool:
     """Whether an expression depends on the round of a loop."""
-    found = [isinstance(expr, Local)]
-    rebuilt(expr, lambda part: found.append(has_local(part)) or part)
-    return any(found)
+    return any(isinstance(part, Local) for part in parts(expr))
 
 
 def has_state(expr: Expr) -> bool:
     """Whether an expression depends on what earlier messages have left."""
-    found = [isinstance(expr, StateVariable)]
-    rebuilt(expr, lambda part: found.append(has_state(part)) or part)
-    return any(found)
+    return any(isinstance(part, StateVariable) for part in parts(expr))
 
 
 def is_part(part: Expr, expr: Expr) -> bool:
     """Whether an expression has another one within it, or is it."""
-    found = [expr == part]
-    rebuilt(expr, lambda each: found.append(is_part(part, each)) or each)
-    return any(found)
+    return any(each == part for each in parts(expr))
 
 
 def fact(expr: Expr, value: Expr) -> Fact | None:
@@ -116,19 +106,18 @@ def same_number(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:
 
 def given_back(value: Expr) -> Expr:
     """A value as what it was packed from, where it is what the check of a `Nearest` within it says that unpacking gives."""
-    found: list[Nearest] = []
-    _find_nearest(value, found)
-    for each in found:
+    for each in _outermost_nearest(value):
         if renamed(each.check.right, {each.variable.name: each}) == value:
             return each.check.left
     return value
 
 
-def _find_nearest(expr: Expr, found: list[Nearest]) -> None:
+def _outermost_nearest(expr: Expr) -> Iterator[Nearest]:
     if isinstance(expr, Nearest):
-        found.append(expr)
+        yield expr
         return
-    rebuilt(expr, lambda part: _find_nearest(part, found) or part)
+    for part in operands(expr):
+        yield from _outermost_nearest(part)
 
 
 def same_place(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:

@@ -1,4 +1,4 @@
-"""Typed expressions and rules of other parts, and their normal form: loops numbered by depth, texts compared like numbers."""
+"""The normal form of typed rules: loops numbered by depth, texts compared like numbers."""
 
 from __future__ import annotations
 
@@ -10,27 +10,18 @@ from rosetta_jit.language.typed import (
     Access,
     Assign,
     Binary,
-    Call,
     Choice,
     Const,
-    Convert,
     Default,
     For,
-    Has,
     Ignore,
-    IndexStep,
     IsText,
-    LenOf,
-    Listed,
     Local,
-    Nearest,
-    Reduce,
     Reject,
-    Search,
     SetLength,
-    Unary,
     When,
 )
+from rosetta_jit.language.walk import placed, rebuilt, renamed
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Bytes, String
 
@@ -38,46 +29,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosetta_jit.language.typed import Assignment, Expr, Place, Rule
-
-
-def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
-    """The expression with each of its parts changed, the indices of places included; what is not known here stays as it is."""
-    match expr:
-        case Access(place) | LenOf(place) | IsText(place) | Has(place):
-            return replace(expr, place=placed(place, change))
-        case Search(place, _, condition):
-            return replace(expr, place=placed(place, change), condition=change(condition))
-        case Reduce(count=count, value=value, refused=refused):
-            checks = tuple((change(condition), why) for condition, why in refused)
-            return replace(expr, count=change(count), value=change(value), refused=checks)
-        case Unary(operand=operand) | Convert(operand=operand):
-            return replace(expr, operand=change(operand))
-        case Binary(left=left, right=right):
-            return replace(expr, left=change(left), right=change(right))
-        case Nearest(operand=operand, check=check):
-            return replace(expr, operand=change(operand), check=replace(check, left=change(check.left), right=change(check.right)))
-        case Call(arguments=arguments):
-            return replace(expr, arguments=tuple(map(change, arguments)))
-        case Choice(cases, otherwise):
-            pairs = tuple((change(condition), change(value)) for condition, value in cases)
-            return replace(expr, cases=pairs, otherwise=None if otherwise is None else change(otherwise))
-        case Listed(items, index):
-            return replace(expr, items=tuple(map(change, items)), index=change(index))
-        case _:
-            return expr
-
-
-def placed(place: Place, change: Callable[[Expr], Expr]) -> Place:
-    """A place with its indices changed."""
-    steps = tuple(replace(step, index=change(step.index)) if isinstance(step, IndexStep) else step for step in place.steps)
-    return replace(place, steps=steps)
-
-
-def renamed(expr: Expr, names: dict[str, Expr]) -> Expr:
-    """The expression with expressions in place of loop variables."""
-    if isinstance(expr, Local):
-        return names.get(expr.name, expr)
-    return rebuilt(expr, lambda part: renamed(part, names)) if names else expr
 
 
 def normal(rules: tuple[Rule, ...], names: dict[str, Expr] | None = None) -> tuple[Rule, ...]:

@@ -11,6 +11,7 @@ from dataclasses import replace
 from itertools import count
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue import fields
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.language.arrays.counts import ONE, LayoutError, times
 from rosetta_jit.language.arrays.element_loops import Moves, element_of
@@ -27,8 +28,8 @@ from rosetta_jit.language.units.places import unit_at
 from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Literal, Member, Name, Path
 from rosetta_jit.model.mapping import Arranged, Assign, For, Reject, SetLength, Via, When
 from rosetta_jit.model.printer import show_expr
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Struct, Union
-from rosetta_jit.model.walk import parts
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union
+from rosetta_jit.model.walk import every_rule, parts
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ Lengths = dict[Path, "Expr"]
 
 def elementwise(rules: tuple[Rule, ...], scope: Scope, broken: list[tuple[str, ...]]) -> tuple[Rule, ...]:
     """The rules of a block with loops in place of those about many elements; what fails is reported, and its field is ``broken``."""
-    names = frozenset(_names(rules)) | {*scope.constants.full, *scope.locals}
+    names = frozenset(rule.variable for rule in every_rule(rules) if isinstance(rule, For)) | {*scope.constants.full, *scope.locals}
     return _Expansion(scope, broken, names, count(1)).block(rules, {}, 0)
 
 
@@ -154,6 +155,9 @@ class _Expansion:
         target = view_of(place)
         if isinstance(self.type_of(target.array), SINGLE):
             raise LayoutError(_many(rule))
+        for array in (target.array, *(view.array for view in views.values())):
+            if isinstance(self.type_of(array), String) and (array != target.array or has_each(rule.place)):
+                raise LayoutError(fields.not_indexable(array.span, "text", show_expr(array)))
         width = ONE if packed is None else packed.size
         given = [times(padding[0], padding[2])] if padding else [times(view.total, width) for view in views.values()]
         refused = [each for view in views.values() for each in view.refused]
@@ -201,7 +205,9 @@ class _Expansion:
         if known is not None:
             return known, [check for total in given for check in _unless_equal(total, known, rule.span)]
         if not given:
-            raise LayoutError(words.open_end(rule.place.span) if is_open else words.no_count(rule.place.span, show_expr(target.array)))
+            is_array = isinstance(rule.value, Path) and isinstance(self.type_of(rule.value), Array)
+            no_count = words.no_count(rule.place.span, show_expr(target.array), show_expr(rule.value) if is_array else "")
+            raise LayoutError(words.open_end(rule.place.span) if is_open else no_count)
         checks = [check for total in given[1:] for check in _unless_equal(total, given[0], rule.span)]
         if is_open:
             return given[0], checks
@@ -351,18 +357,6 @@ def _whole(value: Expr) -> Path | Call:
     if isinstance(value, Path | Call):
         return value
     raise LayoutError(words.scalar_needs_each(value.span) if isinstance(value, Literal) else words.not_an_array(value.span))
-
-
-def _names(rules: tuple[Rule, ...]) -> Iterator[str]:
-    for rule in rules:
-        match rule:
-            case For(variable, _, _, body):
-                yield variable
-                yield from _names(body)
-            case When(_, then, otherwise):
-                yield from _names((*then, *otherwise))
-            case _:
-                pass
 
 
 def _many(rule: Assignment) -> Diagnostic:

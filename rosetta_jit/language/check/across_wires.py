@@ -7,18 +7,17 @@ computed when its own message comes, and kept as state. Such a rule waits until 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language import typed
-from rosetta_jit.language.algebra.normal_form import rebuilt
 from rosetta_jit.language.typed import FieldStep
 from rosetta_jit.language.untouched import places_read
+from rosetta_jit.language.walk import operands, parts
 from rosetta_jit.model.types import Bool, Float, Int
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Iterable, Mapping
 
     from rosetta_jit.language.typed import Expr, Place
 
@@ -83,18 +82,6 @@ def type_name(expr: Expr) -> str | None:
             return None
 
 
-def with_parts(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
-    """The expression with each of its parts changed, those of calls of users' functions and of texts of errors included."""
-    found = rebuilt(expr, change)
-    match found:
-        case typed.HostCall(_, arguments):
-            return replace(found, arguments=tuple(map(change, arguments)))
-        case typed.Choice(pieces=pieces):
-            return replace(found, pieces=tuple(map(change, pieces)))
-        case _:
-            return found
-
-
 def _can_be_known(expr: Expr, wire: str, found: list[Expr]) -> bool:
     """Whether an expression can be computed at a message of ``wire``; what it needs of the others is added to ``found``."""
     read = wires_read([expr])
@@ -105,7 +92,7 @@ def _can_be_known(expr: Expr, wire: str, found: list[Expr]) -> bool:
         return True
     if isinstance(expr, typed.Access | typed.LenOf | typed.IsText | typed.Has | typed.Search) and wire not in wire_of(expr.place):
         return False
-    return all(_can_be_known(part, wire, found) for part in _parts(expr))
+    return all(_can_be_known(part, wire, found) for part in operands(expr))
 
 
 def _is_kept(expr: Expr) -> bool:
@@ -121,33 +108,20 @@ def _is_kept(expr: Expr) -> bool:
         case typed.Choice() | typed.Listed() | typed.Binary("and" | "or"):
             return True
         case _:
-            return any(type_name(part) is None for part in _parts(expr))
+            return any(type_name(part) is None for part in operands(expr))
 
 
 def _looks_elsewhere(expr: Expr) -> bool:
     """Whether an expression reads state, the time, or what a user's function gives."""
-    match expr:
-        case typed.StateVariable() | typed.HostCall() | typed.Call(arguments=()):
-            return True
-        case _:
-            return any(map(_looks_elsewhere, _parts(expr)))
+    return any(
+        isinstance(each, typed.StateVariable | typed.HostCall) or (isinstance(each, typed.Call) and not each.arguments)
+        for each in parts(expr)
+    )
 
 
 def _free(expr: Expr) -> set[str]:
     """The loop variables that an expression does not choose itself."""
     if isinstance(expr, typed.Local):
         return {expr.name}
-    inner = set[str]().union(*map(_free, _parts(expr)))
+    inner = set[str]().union(*map(_free, operands(expr)))
     return inner - {expr.variable.name} if isinstance(expr, typed.Reduce | typed.Search | typed.Nearest) else inner
-
-
-def _parts(expr: Expr) -> list[Expr]:
-    """The expressions that an expression is made of."""
-    found: list[Expr] = []
-
-    def note(part: Expr) -> Expr:
-        found.append(part)
-        return part
-
-    with_parts(expr, note)
-    return found

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.model.mapping import For, Relation, When
+from rosetta_jit.catalogue import fields as words
+from rosetta_jit.model.mapping import Relation
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -16,6 +19,12 @@ if TYPE_CHECKING:
 
 OF_NAMES = frozenset(("unknown-function", "unknown-name", "unknown-field"))
 """Mistakes that leave open what a rule means."""
+
+UNDECLARED = frozenset(("unknown-state", "parameter-type"))
+"""Mistakes in what a name is declared as: rules that use it have no further mistake."""
+
+UNUSED = frozenset(("parameter-unused",))
+"""Warnings about a name that a rule may have meant."""
 
 OF_CALLS = frozenset(("arguments", "signal"))
 """Mistakes in what a function is given, which leave open what undoes it."""
@@ -35,20 +44,7 @@ OF_INVERSES = frozenset(("no-inverse",))
 
 def relations_of(rules: tuple[Rule, ...]) -> list[Span]:
     """Where relations stand, those in blocks included, in the order of the text."""
-    return [span for span in _spans(rules) if span is not None]
-
-
-def _spans(rules: tuple[Rule, ...]) -> Iterator[Span | None]:
-    for rule in rules:
-        match rule:
-            case Relation(span=span):
-                yield span
-            case For(body=body):
-                yield from _spans(body)
-            case When(then=then, otherwise=otherwise):
-                yield from _spans((*then, *otherwise))
-            case _:
-                pass
+    return [rule.span for rule in every_rule(rules) if isinstance(rule, Relation) and rule.span is not None]
 
 
 def unclear(problems: Iterable[Diagnostic], relations: list[Span]) -> bool:
@@ -64,11 +60,12 @@ def causes(problems: list[Diagnostic], relations: list[Span]) -> list[Diagnostic
     """
     named = {_relation(each, relations) for each in problems if each.code in OF_NAMES | OF_CALLS}
     clashes = unclear(problems, relations)
-    undeclared = {_quoted(each) for each in problems if each.code == "unknown-state"}
+    undeclared = {_quoted(each) for each in problems if each.code in UNDECLARED}
+    misnamed = {_written(each) for each in problems if each.code in OF_NAMES}
     found: list[Diagnostic] = []
     wrong: set[int] = set()
-    for each in problems:
-        if each.code == "unknown-name" and _quoted(each) in undeclared:
+    for each in _once(problems, relations):
+        if (each.code == "unknown-name" and _quoted(each) in undeclared) or (each.code in UNUSED and _quoted(each) in misnamed):
             continue
         relation = _relation(each, relations)
         if relation is not None and each.severity == "error":
@@ -80,6 +77,29 @@ def causes(problems: list[Diagnostic], relations: list[Span]) -> list[Diagnostic
                 wrong.add(relation)
         found.append(each)
     return found
+
+
+def _once(problems: list[Diagnostic], relations: list[Span]) -> Iterator[Diagnostic]:
+    """The reports, of names one a place, and of relations whose sides stand in each other's place one for both."""
+    said: set[object] = set()
+    swapped: dict[int, set[int]] = {}
+    for each in problems:
+        relation = _relation(each, relations)
+        if relation is not None and each.span is not None and words.is_elsewhere(each):
+            swapped.setdefault(relation, set()).add(each.span.start)
+    for each in problems:
+        relation = _relation(each, relations)
+        of_sides = relation is not None and words.is_elsewhere(each) and len(swapped[relation]) > 1
+        key = ("sides", relation) if of_sides else (each.code, each.span) if each.code in OF_NAMES else None
+        if key is None or key not in said:
+            yield replace(each, help=words.TURNED) if of_sides else each
+        said.add(key)
+
+
+def _written(problem: Diagnostic) -> str:
+    """What is written where a name is wrong, without its dot."""
+    span = problem.span
+    return "" if span is None else span.source.text[span.start : span.end].lstrip(".")
 
 
 def _quoted(problem: Diagnostic) -> str:

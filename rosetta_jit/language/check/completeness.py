@@ -244,6 +244,8 @@ class _Checker:
                 self.problems.append(words.not_affine(write.span, where.text))
                 return []
             groups.setdefault(entered[0], []).append(entered[1])
+        if any(sum(not write.steps for write in group) > 1 for group in groups.values()):
+            return list(groups.values())  # one is set twice, and another probably not for this reason
         try:
             self.problems.extend(coverage(where.text, list(groups), extent.length, extent.span or self.missing.span, optional=optional))
         except TooComplexError:

@@ -16,6 +16,7 @@ from rosetta_jit.language.check.discriminators import discriminator_of
 from rosetta_jit.language.limits import MAX_LABELS
 from rosetta_jit.language.places import field_names, rules_within, shown_fields
 from rosetta_jit.language.typed import Assign, Const, Default, For, IndexStep, Local, SetLength, When
+from rosetta_jit.language.walk import indices
 from rosetta_jit.model.types import Array, Bool, Map
 
 if TYPE_CHECKING:
@@ -205,7 +206,7 @@ def _filled(place: Place) -> list[Spot]:
 
 
 def _spot(place: Place, steps: int, names: Names) -> Spot:
-    return names, tuple(step.index for step in place.steps[:steps] if isinstance(step, IndexStep))
+    return names, indices(replace(place, steps=place.steps[:steps]))
 
 
 def _arrays(place: Place) -> list[Names]:

@@ -20,6 +20,7 @@ from rosetta_jit.language.check.left_out import left_out
 from rosetta_jit.language.check.rounding import rounded
 from rosetta_jit.language.check.state import idle, set_again
 from rosetta_jit.language.check.unequal_lengths import other_lengths
+from rosetta_jit.language.check.unreachable import unreachable
 from rosetta_jit.language.check.wires import message_of_wires, wrong_wires
 from rosetta_jit.language.imports.declarations import Imports, merge, reached, read_imports
 from rosetta_jit.language.imports.mappings import read_others
@@ -45,7 +46,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.resolve.rules import TypedRules
     from rosetta_jit.language.scope import Message
     from rosetta_jit.language.typed import Rule, StateVariable
-    from rosetta_jit.language.uses import Others, Signature, Use
+    from rosetta_jit.language.uses import Signature, UsableMappings, Use
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.types import Schema
@@ -107,7 +108,7 @@ def check(
     problems = _wrong(texts, resolved)
     if _errors(problems):
         raise _error(problems)
-    problems += [*_silent_losses(texts.mapping, resolved, _blocks(texts.written)), *idle(texts.mapping)]
+    problems += [*_silent_losses(texts.mapping, resolved, _blocks(texts.written)), *idle(texts.mapping), *unreachable(texts.written)]
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
     functions, uses = dict(resolved.functions), tuple(texts.others.uses)
     notes, warnings = ([each for each in problems if (each.severity == "note") == is_note] for is_note in (True, False))
@@ -124,7 +125,7 @@ class _Texts:
 
     written: Mapping
     mapping: Mapping
-    others: Others
+    others: UsableMappings
     imports: Imports
     imported: list[Imported]
     schema: Schema
@@ -162,7 +163,8 @@ def _wrong(texts: _Texts, resolved: Resolved) -> list[Diagnostic]:
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in wrong_factors(block.rules)]
     problems += [*_unused(texts.imported, resolved), *misnamed(mapping, texts.schema)]
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in set_again(block.rules)]
-    problems += _of_wires(resolved) if mapping.wires else ()
+    again = {each.span for each in problems if each.code == "set-twice"}
+    problems += [each for each in (_of_wires(resolved) if mapping.wires else ()) if each.span not in again]
     return problems + [in_used(other.state[0].span, other.source.name) for other in texts.others.mappings() if other.state]
 
 
@@ -189,7 +191,7 @@ def _errors(problems: list[Diagnostic]) -> list[Diagnostic]:
     return [problem for problem in problems if problem.severity == "error"]
 
 
-def _without_handed_on(problems: list[Diagnostic], mapping: Mapping, others: Others) -> list[Diagnostic]:
+def _without_handed_on(problems: list[Diagnostic], mapping: Mapping, others: UsableMappings) -> list[Diagnostic]:
     """Without the warnings about parameters that no rule uses, but a mapping that is used."""
     declared = {each.name for other in others.mappings() for each in other.parameters}
     spans = [each.span for each in mapping.parameters if each.name in declared]
@@ -262,7 +264,8 @@ def _is_used(one: Imported, used: set[str], known: set[tuple[str, ...]]) -> bool
 
 
 def _sorted(problems: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
-    def place(problem: Diagnostic) -> tuple[str, int]:
-        return ("", -1) if problem.span is None else (problem.span.source.name, problem.span.start)
+    def place(problem: Diagnostic) -> tuple[str, int, bool]:
+        is_warning = problem.severity != "error"  # of one place, what is wrong comes before what is suspect
+        return ("", -1, is_warning) if problem.span is None else (problem.span.source.name, problem.span.start, is_warning)
 
     return tuple(sorted(dict.fromkeys(problems), key=place))

@@ -9,11 +9,9 @@ from rosetta_jit.catalogue import state as words
 from rosetta_jit.language.typed import For, SetState, When
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.expr import Name
-from rosetta_jit.model.walk import expressions_of, parts
+from rosetta_jit.model.walk import every_rule, expressions_of, parts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.typed import Rule
     from rosetta_jit.source import Span
@@ -53,7 +51,7 @@ def idle(mapping: model.Mapping) -> list[Diagnostic]:
     """Warnings about variables that no rule of either direction sets, or reads for anything but to set them again."""
     if not mapping.state:
         return []
-    every = [*_every(mapping.unpack_rules or ()), *_every(mapping.pack_rules or ())]
+    every = [*every_rule(mapping.unpack_rules or ()), *every_rule(mapping.pack_rules or ())]
     changed = {rule.variable for rule in every if isinstance(rule, model.SetState)}
     read = {name for rule in every for name in _names(rule) if not (isinstance(rule, model.SetState) and rule.variable == name)}
     return [
@@ -65,16 +63,3 @@ def idle(mapping: model.Mapping) -> list[Diagnostic]:
 def _names(rule: model.Rule) -> set[str]:
     """What the expressions of a rule name."""
     return {part.name for expr in expressions_of(rule) for part in parts(expr) if isinstance(part, Name)}
-
-
-def _every(rules: tuple[model.Rule, ...]) -> Iterator[model.Rule]:
-    """The rules of a block and of all blocks within."""
-    for rule in rules:
-        yield rule
-        match rule:
-            case model.For(body=body):
-                yield from _every(body)
-            case model.When(then=then, otherwise=otherwise):
-                yield from _every((*then, *otherwise))
-            case _:
-                pass

@@ -21,10 +21,10 @@ from rosetta_jit.language.check.across_wires import (
     values_of_others,
     wire_of,
     wires_read,
-    with_parts,
 )
 from rosetta_jit.language.places import places_in, shown_names, shown_place
-from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, IndexStep, Reject, SetLength, SetState, When
+from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, SetState, When
+from rosetta_jit.language.walk import expressions_of, placed, rebuilt
 from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Enum, Field, Float, Int, Ref, Schema, Struct, same_name
 from rosetta_jit.startup.dataclass import dataclass
@@ -81,7 +81,7 @@ def message_of_wires(mapping: model.Mapping, schema: Schema) -> Schema:
 
 
 @dataclass(frozen=True, slots=True)
-class _Told:
+class _Nested:
     """What a rule says, with the blocks around it.
 
     Attributes
@@ -95,12 +95,12 @@ class _Told:
     wires: Wires = NO_WIRE
     exprs: tuple[Expr, ...] = ()
 
-    def within(self, rule: Rule, target: Side) -> _Told:
+    def within(self, rule: Rule, target: Side) -> _Nested:
         """The same with one more rule."""
         places = [rule.place] if isinstance(rule, Assign | SetLength | Default | Ignore) else []
         exprs = _own(rule) if target == "holder" else ()
         set_ = () if target == "wire" and isinstance(rule, Ignore) else tuple(map(wire_of, places))
-        return _Told(self.wires.union(wires_read(exprs), *set_), (*self.exprs, *exprs))
+        return _Nested(self.wires.union(wires_read(exprs), *set_), (*self.exprs, *exprs))
 
     @property
     def runs_at(self) -> Wires:
@@ -108,10 +108,12 @@ class _Told:
         return self.wires if len(self.wires) < 2 else runs_at(self.exprs, self.wires)
 
 
-NOTHING_AROUND = _Told()
+NOTHING_AROUND = _Nested()
 
 
-def _told(rules: tuple[Rule, ...], target: Side, around: _Told = NOTHING_AROUND, *, chosen: bool = False) -> Iterator[tuple[Rule, _Told]]:
+def _told(
+    rules: tuple[Rule, ...], target: Side, around: _Nested = NOTHING_AROUND, *, chosen: bool = False
+) -> Iterator[tuple[Rule, _Nested]]:
     """Each rule that is no block, with what it reads; the conditions and bounds of the blocks around it count.
 
     Rules of one place that conditions choose among, ``chosen`` ones, are as one: each of them reads what all of them read.
@@ -128,7 +130,7 @@ def _told(rules: tuple[Rule, ...], target: Side, around: _Told = NOTHING_AROUND,
                 yield rule, within
 
 
-def _as_one(chosen: list[tuple[Rule, _Told]]) -> Iterator[tuple[Rule, _Told]]:
+def _as_one(chosen: list[tuple[Rule, _Nested]]) -> Iterator[tuple[Rule, _Nested]]:
     together: dict[str, tuple[Wires, dict[int, Expr]]] = {}
     for rule, told in chosen:
         for place in places_in((rule,)):
@@ -136,27 +138,13 @@ def _as_one(chosen: list[tuple[Rule, _Told]]) -> Iterator[tuple[Rule, _Told]]:
             together[shown_place(place.steps)] = wires | told.wires, exprs | {id(each): each for each in told.exprs}
     for rule, told in chosen:
         found = [together[shown_place(place.steps)] for place in places_in((rule,))]
-        yield rule, _Told(found[0][0], tuple(found[0][1].values())) if found else told
+        yield rule, _Nested(found[0][0], tuple(found[0][1].values())) if found else told
 
 
 def _own(rule: Rule) -> tuple[Expr, ...]:
-    """The expressions that a rule computes itself."""
-    match rule:
-        case Assign(place, value) | SetLength(place, value):
-            return (value, *(step.index for step in place.steps if isinstance(step, IndexStep)))
-        case For(_, start, stop, _, kept=kept):
-            filtered = () if kept is None else (kept.condition, *(() if kept.count is None else (kept.count,)))
-            return (start, stop, *filtered)
-        case When(condition):
-            return (condition,)
-        case Reject(pieces=pieces):
-            return pieces
-        case SetState(_, value):
-            return (value,)
-        case Default() | Ignore():
-            return ()
-        case _:
-            assert_never(rule)
+    """The expressions that a rule computes itself, and how many rounds of a loop are kept."""
+    count = rule.kept.count if isinstance(rule, For) and rule.kept is not None else None
+    return (*expressions_of(rule), *(() if count is None else (count,)))
 
 
 def kept_values(rules: tuple[Rule, ...]) -> list[tuple[str, Expr]]:
@@ -193,9 +181,9 @@ class _Chosen:
     cut: Callable[[Place], Names]
     owners: dict[Names, frozenset[Wires]]
     waits: dict[Names, Wires]
-    told: dict[int, _Told]
+    told: dict[int, _Nested]
 
-    def of(self, rules: tuple[Rule, ...], around: _Told, come: Wires) -> Iterator[Rule]:
+    def of(self, rules: tuple[Rule, ...], around: _Nested, come: Wires) -> Iterator[Rule]:
         """Those of some rules that run, where the wires that have ``come`` are known to have sent a message."""
         for rule in rules:
             told, own = around.within(rule, self.target), of_wire(rule, self.wire, self.memory)
@@ -213,14 +201,14 @@ class _Chosen:
                 found = (When(self.memory.arrived[each], found, (), rule.span),)
             yield from found
 
-    def is_run(self, rule: Rule, told: _Told) -> bool:
+    def is_run(self, rule: Rule, told: _Nested) -> bool:
         """Whether a rule that is no block runs."""
         if told.wires:
             return self.wire in told.runs_at
         set_ = [self.owners.get(self.cut(place), frozenset[Wires]()) for place in places_in((rule,))]
         return all(len(groups) != 1 or all(self.wire in each for each in groups) for groups in set_)
 
-    def needed(self, rule: Rule, around: _Told) -> Wires:
+    def needed(self, rule: Rule, around: _Nested) -> Wires:
         """The wires without a message of which nothing in a rule runs."""
         told = around.within(rule, self.target)
         match rule:
@@ -256,8 +244,7 @@ def of_wire(rule: Rule, wire: str, memory: Memory = NOTHING_KEPT) -> Rule:
 
     match rule:
         case Assign(place, value) | SetLength(place, value):
-            steps = tuple(replace(step, index=seen(step.index)) if isinstance(step, IndexStep) else step for step in place.steps)
-            return replace(rule, place=_without_wire(replace(place, steps=steps)), value=seen(value))
+            return replace(rule, place=_without_wire(placed(place, seen)), value=seen(value))
         case Default(place) | Ignore(place):
             return replace(rule, place=_without_wire(place))
         case For(_, start, stop, _, kept=kept):
@@ -279,7 +266,7 @@ def value_of_wire(expr: Expr, wire: str, memory: Memory = NOTHING_KEPT) -> Expr:
     known = remembered(expr, wire, memory)
     if known is not None:
         return known
-    found = with_parts(expr, lambda part: value_of_wire(part, wire, memory))
+    found = rebuilt(expr, lambda part: value_of_wire(part, wire, memory))
     match found:
         case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place) | typed.Search(place):
             return replace(found, place=_without_wire(place))
@@ -347,7 +334,7 @@ def wrong_wires(rules: tuple[Rule, ...], target: Side, holder: Message) -> list[
     return problems or (_overlaps(rules, every, holder) if target == "holder" else [])
 
 
-def _overlaps(rules: tuple[Rule, ...], every: list[tuple[Rule, _Told]], holder: Message) -> list[Diagnostic]:
+def _overlaps(rules: tuple[Rule, ...], every: list[tuple[Rule, _Nested]], holder: Message) -> list[Diagnostic]:
     problems: list[Diagnostic] = []
     cut = _cutter(holder)
     shared = [names for names, groups in _owners(rules, cut).items() if len(groups) > 1]

@@ -18,7 +18,7 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language import conversions
 from rosetta_jit.language.arrays.layouts import ARGUMENTS
 from rosetta_jit.language.arrays.orders import is_of_image, is_order, takes_orders, type_order
-from rosetta_jit.language.conversions import as_int64, as_single, convert, describe, in_single, is_single, wrap
+from rosetta_jit.language.conversions import as_int64, as_single, convert, describe, in_single, is_single, same, wrap
 from rosetta_jit.language.function import Numbers, Texts, names, written
 from rosetta_jit.language.functions.texts import constant_named, is_textual, type_texts
 from rosetta_jit.language.groups import function_of, group_functions
@@ -102,7 +102,8 @@ def _conversion(expr: model.Call, target: Type, scope: Scope, type_expr: TypeExp
         return _named(value, target, expr, scope)
     rules = rules_between(value.type, target)
     if not rules:
-        scope.problems.append(words.type_clash(value.span, describe(value.type), describe(target)))
+        how = "leave the conversion out: it is of this type already" if same(value.type, target) else ""
+        scope.problems.append(words.type_clash(value.span, describe(value.type), describe(target), how))
         return None
     rule = _rule(expr, rules, scope)
     return None if rule is None else _converted(value, target, rule, expr, scope)

@@ -9,8 +9,9 @@ from rosetta_jit.errors import ReportError
 from rosetta_jit.language.limits import MAX_MAPPINGS
 from rosetta_jit.language.parameters.bind import bind
 from rosetta_jit.language.parse.mapping import parse
-from rosetta_jit.language.uses import Others
-from rosetta_jit.model.mapping import Assign, For, Relation, Via, When
+from rosetta_jit.language.uses import UsableMappings
+from rosetta_jit.model.mapping import Assign, Relation, Via
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -27,7 +28,7 @@ MAPPING_SUFFIX = ".mapping"
 
 def read_others(
     mapping: model.Mapping, search: SearchPath, reading: Reading, problems: list[Diagnostic], parameters: Mapping[str, object] | None
-) -> Others:
+) -> UsableMappings:
     """Read all mappings that a mapping uses, directly or through others. Of its ``parameters`` they have those that they declare."""
     found: dict[tuple[str, str], model.Mapping] = {}
     imported: dict[str, tuple[str, ...]] = {}
@@ -46,14 +47,14 @@ def read_others(
             if source.name not in read:
                 if len(read) > MAX_MAPPINGS:
                     problems.append(words.many_mappings(span, MAX_MAPPINGS))
-                    return Others(found, imported, (mapping.source.name,))
+                    return UsableMappings(found, imported, (mapping.source.name,))
                 other = _read(source, problems, parameters)
                 if other is None:
                     continue
                 read[source.name] = other
                 pending.append(other)
             found[user.source.name, name] = read[source.name]
-    return Others(found, imported, (mapping.source.name,))
+    return UsableMappings(found, imported, (mapping.source.name,))
 
 
 def _read(source: Source, problems: list[Diagnostic], parameters: Mapping[str, object] | None) -> model.Mapping | None:
@@ -75,13 +76,9 @@ def _named(mapping: model.Mapping) -> Iterator[tuple[str, Span | None]]:
 
 
 def _vias(rules: tuple[Rule, ...]) -> Iterator[Via]:
-    for rule in rules:
+    for rule in every_rule(rules):
         match rule:
             case Assign(by=Via() as via) | Relation(via=Via() as via):
                 yield via
-            case For(body=body):
-                yield from _vias(body)
-            case When(_, then, otherwise):
-                yield from _vias((*then, *otherwise))
             case _:
                 pass

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.algebra.normal_form import rebuilt
 from rosetta_jit.language.conversions import bounds, same
 from rosetta_jit.language.laws.chain import come_back, field_in
 from rosetta_jit.language.typed import Convert
+from rosetta_jit.language.walk import parts
 from rosetta_jit.model.types import Float, Int
 
 if TYPE_CHECKING:
@@ -26,17 +26,12 @@ def may_refuse(value: Expr, of: Callable[[Expr], Expr]) -> bool:
 
 
 def _exact(expr: Expr) -> Iterator[Convert]:
-    if (
-        isinstance(expr, Convert)
-        and expr.rule == "exact"
-        and isinstance(expr.type, Int | Float)
-        and isinstance(expr.operand.type, Int | Float)
-    ):
-        yield expr
-    below: list[Expr] = []
-    rebuilt(expr, lambda part: below.append(part) or part)
-    for part in below:
-        yield from _exact(part)
+    for part in parts(expr):
+        match part:
+            case Convert(operand, Int() | Float(), "exact") if isinstance(operand.type, Int | Float):
+                yield part
+            case _:
+                pass
 
 
 def _fits(conversion: Convert, of: Callable[[Expr], Expr]) -> bool:

@@ -10,7 +10,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.algebra.equality import digit, fact, has_local, reads_other, same_number, same_place, same_ranges, unify
-from rosetta_jit.language.algebra.normal_form import placed, rebuilt, renamed
 from rosetta_jit.language.algebra.quotients import Facts
 from rosetta_jit.language.conversions import adapt, same
 from rosetta_jit.language.laws.chain import come_back, field_in
@@ -42,6 +41,7 @@ from rosetta_jit.language.typed import (
     Unary,
     When,
 )
+from rosetta_jit.language.walk import indices, placed, rebuilt, renamed
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Array, Float, Map, Struct, Union
@@ -248,9 +248,8 @@ class Trip:
     def ordered(self, names: tuple[str, ...], place: Place, *, length: bool) -> Iterator[Expr]:
         """What loops that run in another order set an element to."""
         side: Side = "wire" if place.side == "holder" else "holder"
-        indices = [step.index for step in place.steps if isinstance(step, IndexStep)]
         bounds = [each for bounds in self.ranges for each in bounds]
-        if self.by_round or any(reads_other(each, side) for each in (*indices, *bounds)):
+        if self.by_round or any(reads_other(each, side) for each in (*indices(place), *bounds)):
             return
         facts = self.facts(side)
         for write in self.writes.get(names, []):

@@ -40,7 +40,7 @@ def bind(mapping: Mapping, given: Dictionary[str, object] | None, problems: list
     binder = _Binder(_values(mapping, given, problems), problems)
     blocks = [None if block is None else binder.rules(block, ()) for block in (mapping.rules, mapping.unpack_rules, mapping.pack_rules)]
     state = tuple(replace(each, initial=folded(binder.expr(each.initial))) for each in mapping.state)
-    unused = [parameter for parameter in mapping.parameters if parameter.name not in binder.used]
+    unused = [parameter for parameter in mapping.parameters if parameter.name not in binder.used and parameter.type in SCALARS]
     problems.extend(words.unused(parameter.span, parameter.name) for parameter in unused)
     return replace(mapping, rules=blocks[0], unpack_rules=blocks[1], pack_rules=blocks[2], state=state)
 
@@ -61,7 +61,7 @@ def _values(mapping: Mapping, given: Dictionary[str, object] | None, problems: l
         if parameter.name in values:
             problems.append(words.repeated(parameter.span, parameter.name))
         elif parameter.type not in SCALARS:
-            problems.append(words.unknown_type(parameter.span, parameter.type, SCALARS))
+            problems.append(words.unknown_type(parameter.span, parameter.name, parameter.type, SCALARS))
         else:
             values[parameter.name] = _value(parameter, given, problems)
     return values

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import wires as words
 from rosetta_jit.language.limits import MAX_WIRES
 from rosetta_jit.language.parse.rules import read_string
-from rosetta_jit.model.mapping import Wire
+from rosetta_jit.model.mapping import OF_WIRES, Wire
 from rosetta_jit.parsing.lalr import Token, Tree
 from rosetta_jit.source import Span
 
@@ -51,8 +51,8 @@ def read_wires(statements: list[Tree], source: Source, problems: list[Diagnostic
 
 
 def message_of(wires: tuple[Wire, ...]) -> str:
-    """The name of the struct that has a field for each wire. No IDL can give it to a type."""
-    return f"wires {', '.join(each.name for each in wires)}"
+    """The name of the struct that has a field for each wire."""
+    return f"{OF_WIRES}{', '.join(each.name for each in wires)}"
 
 
 def _name(statement: Tree) -> Token | None:

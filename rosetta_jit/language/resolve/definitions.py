@@ -12,7 +12,7 @@ from rosetta_jit.language.groups import group_functions
 from rosetta_jit.language.parse.definitions import read_definitions
 from rosetta_jit.language.resolve.expressions import type_expr
 from rosetta_jit.language.scope import Scope
-from rosetta_jit.language.uses import Others
+from rosetta_jit.language.uses import UsableMappings
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -38,7 +38,7 @@ def definitions_of(name: str) -> tuple[tuple[str, Expr], ...]:
     function = group_functions()[name]
     values: dict[str, Type] = dict.fromkeys(arguments_in(function), FLOAT64)
     problems: list[Diagnostic] = []
-    scope = Scope({}, {}, Constants({}, {}), "holder", (), problems, set(), {}, Others({}, {}, ()), values=values)
+    scope = Scope({}, {}, Constants({}, {}), "holder", (), problems, set(), {}, UsableMappings({}, {}, ()), values=values)
     found: list[tuple[str, Expr]] = []
     for defined, expression in read_definitions(name, function.definitions):
         typed = type_expr(expression, scope)

@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.catalogue import fields
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language.arrays.parts import is_reduction
 from rosetta_jit.language.constants import constant_of
@@ -130,8 +131,9 @@ def _unnamed(expr: model.Name, several: list[str], scope: Scope) -> Diagnostic:
         return words.ambiguous_name(expr.span, expr.name, several)
     origin = scope.messages[scope.origin]
     if expr.name in members_of(origin.root, origin.schema):
-        return words.undotted_field(expr.span, expr.name)
-    return words.unknown_name(expr.span, expr.name, {*scope.locals, *scope.state, *CONSTANTS, *scope.constants.full})
+        return fields.undotted_field(expr.span, expr.name)
+    known = {*scope.locals, *scope.state, *CONSTANTS, *scope.constants.full}
+    return words.unknown_name(expr.span, expr.name, known, members_of(origin.root, origin.schema))
 
 
 def _length(expr: model.Len, scope: Scope) -> Expr | None:
@@ -144,7 +146,7 @@ def _length(expr: model.Len, scope: Scope) -> Expr | None:
         case Array() | Bytes() | String() | Map():
             return length_there(place, expr.span)
         case other:
-            scope.problems.append(words.no_length(expr.path.span, describe(other)))
+            scope.problems.append(fields.no_length(expr.path.span, describe(other)))
             return None
 
 
@@ -158,7 +160,7 @@ def _presence(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
         asked.append(Has(place, span=span))
     if asked:
         return reduce(lambda left, right: Binary("and", left, right, BOOL, span), asked)
-    scope.problems.append(words.always_there(span, describe(place.type)))
+    scope.problems.append(fields.always_there(span, describe(place.type)))
     return None
 
 

@@ -125,6 +125,8 @@ def _mismatch(value: Expr, target: Type) -> Diagnostic:
             return words.constant_range(value.span, str(number), aim)
         case Const(value=float(number), type=Float()), Float():
             return words.constant_range(value.span, repr(number), aim)
+        case Const(value=str(text), type=String()), Enum(name=name, values=known) if text in dict(known):
+            return words.type_clash(value.span, source, aim, f"`{name}.{text}` is the constant of this name")
         case _ if isinstance(value.type, Bool | Enum) and isinstance(target, Int):
             return words.no_number(value.span, source, aim, word_for(value.type, target))
         case _:

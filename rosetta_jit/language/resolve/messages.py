@@ -14,7 +14,7 @@ from rosetta_jit.model.types import Struct, same_name
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.uses import Others
+    from rosetta_jit.language.uses import UsableMappings
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.types import Schema, Type
@@ -41,7 +41,7 @@ def checked_message(schema: Schema, name: str, span: Span | None, problems: list
     return None
 
 
-def scope_between(messages: dict[Side, Message], mapping: Mapping, others: Others, problems: list[Diagnostic]) -> Scope:
+def scope_between(messages: dict[Side, Message], mapping: Mapping, others: UsableMappings, problems: list[Diagnostic]) -> Scope:
     """What the rules of a mapping that unpack can name."""
     holder, wire = (messages[side].schema for side in ("holder", "wire"))
     constants = constants_of(*((holder,) if holder is wire else (holder, wire)))

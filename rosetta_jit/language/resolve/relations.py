@@ -14,22 +14,21 @@ from rosetta_jit.language.both_ways.directions import in_each_direction
 from rosetta_jit.language.resolve.expressions import type_expr
 from rosetta_jit.language.resolve.messages import message_named, scope_between
 from rosetta_jit.model.expr import Literal
-from rosetta_jit.model.mapping import For, When
+from rosetta_jit.model.mapping import For
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.uses import Others
+    from rosetta_jit.language.uses import UsableMappings
     from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Mapping, Rule
+    from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.types import Schema, Type
 
 FIRST = Literal(0)
 
 
-def derived(mapping: Mapping, schema: Schema, others: Others, problems: list[Diagnostic]) -> Mapping:
+def derived(mapping: Mapping, schema: Schema, others: UsableMappings, problems: list[Diagnostic]) -> Mapping:
     """The mapping with all rules of each direction in the block of that direction.
 
     Expressions whose names are wrong have no type; that is reported when the rules are typed.
@@ -47,13 +46,13 @@ def derived(mapping: Mapping, schema: Schema, others: Others, problems: list[Dia
     return in_each_direction(mapping, type_of, problems)
 
 
-def _scope(mapping: Mapping, schema: Schema, others: Others) -> Scope | None:
+def _scope(mapping: Mapping, schema: Schema, others: UsableMappings) -> Scope | None:
     """What rules that unpack can name, in all loops; None where a side has no message."""
     holder, wire = (message_named(schema, name) for name in (mapping.holder_type, mapping.wire_type))
     if holder is None or wire is None:
         return None
     found = scope_between({"holder": holder, "wire": wire}, mapping, others, [])
-    return replace(found, locals=tuple(_variables(mapping.rules or ())))
+    return replace(found, locals=tuple(rule.variable for rule in every_rule(mapping.rules or ()) if isinstance(rule, For)))
 
 
 def _of_first(expr: Expr) -> Expr:
@@ -64,16 +63,3 @@ def _of_first(expr: Expr) -> Expr:
         return expr
     first: dict[Expr, Expr] = {source: element_at(view, [FIRST] * len(view.axes)) for source, view in views.items()}
     return substituted(expr, first, FIRST)
-
-
-def _variables(rules: tuple[Rule, ...]) -> Iterator[str]:
-    """The variables of all loops."""
-    for rule in rules:
-        match rule:
-            case For(variable=variable, body=body):
-                yield variable
-                yield from _variables(body)
-            case When(then=then, otherwise=otherwise):
-                yield from _variables((*then, *otherwise))
-            case _:
-                pass

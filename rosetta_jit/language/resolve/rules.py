@@ -68,7 +68,7 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.groups import Group
     from rosetta_jit.language.typed import Expr, Rule, StateVariable
-    from rosetta_jit.language.uses import Others, Signature
+    from rosetta_jit.language.uses import Signature, UsableMappings
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.source import Span
@@ -96,7 +96,7 @@ class Resolved:
 
 
 def resolve(
-    mapping: model.Mapping, holder: Schema, wire: Schema, others: Others, state: Mapping[Side, Mapping[str, StateVariable]]
+    mapping: model.Mapping, holder: Schema, wire: Schema, others: UsableMappings, state: Mapping[Side, Mapping[str, StateVariable]]
 ) -> Resolved | tuple[Diagnostic, ...]:
     """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message.
 

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import rules_within
 from rosetta_jit.language.resolve.defaults import has_array
+from rosetta_jit.language.walk import expressions_of, operands
 from rosetta_jit.lowering.codec.wire_fields import EACH
 from rosetta_jit.lowering.rules.bound_fields import BoundFields, Obstacle
 from rosetta_jit.lowering.rules.filters import filtered_arrays
 from rosetta_jit.lowering.rules.rescaling import UINT16
 from rosetta_jit.lowering.rules.wire_side import wire_key
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -48,35 +50,13 @@ def _obstacles(attempt: Codec, rules: tuple[typed.Rule, ...], direction: Directi
     bound = BoundFields(direction, rules)
     yield from bound.message(attempt)
     if direction == "decode":
-        for rule in rules:
-            yield from _of_reading(rule, bound)
+        for rule in every_rule(rules):
+            yield from _of_expressions(expressions_of(rule), bound)
     elif direction == "encode":
         yield from _of_writing(rules, bound)
 
 
 # --- rules that read the wire ------------------------------------------------------------------------------------------------
-
-
-def _of_reading(rule: typed.Rule, bound: BoundFields) -> Iterator[Obstacle]:
-    match rule:
-        case typed.Assign(place, value) | typed.SetLength(place, value):
-            yield from _of_expressions((value, *_indices(place)), bound)
-        case typed.Default(place):
-            yield from _of_expressions(_indices(place), bound)
-        case typed.SetState(_, value):
-            yield from _of_expressions((value,), bound)
-        case typed.For(_, start, stop, body, kept=kept):
-            yield from _of_expressions((start, stop, *(() if kept is None else (kept.condition,))), bound)
-            for each in body:
-                yield from _of_reading(each, bound)
-        case typed.When(condition, then, otherwise):
-            yield from _of_expressions((condition,), bound)
-            for each in (*then, *otherwise):
-                yield from _of_reading(each, bound)
-        case typed.Reject(pieces=pieces):
-            yield from _of_expressions(pieces, bound)
-        case _:
-            pass
 
 
 def _of_expressions(values: tuple[typed.Expr, ...], bound: BoundFields) -> Iterator[Obstacle]:
@@ -92,30 +72,7 @@ def _of_expressions(values: tuple[typed.Expr, ...], bound: BoundFields) -> Itera
                 yield Obstacle(wire_key(place)[0], "whether it is there is known only where the walk stands")
             case _:
                 pass
-        yield from _of_expressions(typed_parts(value), bound)
-
-
-def typed_parts(value: typed.Expr) -> tuple[typed.Expr, ...]:
-    """The parts of an expression, those in indices of places included."""
-    match value:
-        case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place):
-            return _indices(place)
-        case typed.Search(place, _, condition):
-            return (*_indices(place), condition)
-        case typed.Reduce(_, _, count, inner, _, refused):
-            return (count, inner, *(condition for condition, _ in refused))
-        case typed.Unary(_, operand) | typed.Convert(operand):
-            return (operand,)
-        case typed.Binary(_, left, right) | typed.Nearest(left, check=right):
-            return (left, right)
-        case typed.Call(_, arguments) | typed.HostCall(_, arguments) | typed.Given(_, arguments):
-            return arguments
-        case typed.Choice(cases, otherwise, pieces=pieces):
-            return (*(part for case in cases for part in case), *(() if otherwise is None else (otherwise,)), *pieces)
-        case typed.Listed(items, index):
-            return (*items, index)
-        case typed.Const() | typed.Local() | typed.StateVariable():
-            return ()
+        yield from _of_expressions(operands(value), bound)
 
 
 def _of_value(place: typed.Place, type_: Type, bound: BoundFields) -> Iterator[Obstacle]:
@@ -162,10 +119,6 @@ def _of_elements(key: Path, element: Type, bound: BoundFields) -> Iterator[Obsta
         yield Obstacle(key, NESTED)
     elif key.count(EACH) or (*key, EACH) not in bound.regions:
         yield Obstacle((*key, EACH), UNKNOWN)
-
-
-def _indices(place: typed.Place) -> tuple[typed.Expr, ...]:
-    return tuple(step.index for step in place.steps if isinstance(step, typed.IndexStep))
 
 
 # --- rules that write the wire -----------------------------------------------------------------------------------------------

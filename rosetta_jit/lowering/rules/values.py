@@ -26,9 +26,9 @@ from rosetta_jit.kernel.ir import (
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language import typed
-from rosetta_jit.language.algebra.normal_form import rebuilt
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.function import functions
+from rosetta_jit.language.walk import parts
 from rosetta_jit.lowering.arithmetic import COMPARISONS, binary, differ
 from rosetta_jit.lowering.calls import lowered
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
@@ -391,8 +391,7 @@ def _folded(value: Const, target: Scalar) -> Const | None:
 
 def asks_others(value: typed.Expr) -> bool:
     """Whether a value takes a call out of the kernel, or a text that is made: such are computed where they stand."""
-    if isinstance(value, typed.HostCall | typed.Given) or (isinstance(value, typed.Call) and not functions()[value.function].kept):
-        return True
-    found: list[bool] = []
-    rebuilt(value, lambda part: found.append(asks_others(part)) or part)
-    return any(found)
+    return any(
+        isinstance(part, typed.HostCall | typed.Given) or (isinstance(part, typed.Call) and not functions()[part.function].kept)
+        for part in parts(value)
+    )

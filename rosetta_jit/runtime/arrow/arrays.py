@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
-from typing import TYPE_CHECKING, Any, Literal, assert_never, cast
+from typing import TYPE_CHECKING, Any, Literal, assert_never, cast, get_args
 
 import numpy as np
 import pyarrow as pa
@@ -21,9 +21,9 @@ from rosetta_jit.errors import EncodeError
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 from rosetta_jit.runtime.arrow.texts import NoTextError, text_array
-from rosetta_jit.runtime.arrow.times import time_array
+from rosetta_jit.runtime.arrow.times import Unit, time_array
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
-from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, lent, offsets, picked, read, spans
+from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, lent, offsets, picked, read, room_for, spans
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.arrow.times import Unit
+    from rosetta_jit.runtime.handed import Handed
     from rosetta_jit.runtime.holder.record import Entry, Node, ScalarType
     from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.rows import Flags, Indices
@@ -60,11 +60,35 @@ class Form:
         Whether the arrays have memory of their own; otherwise those of numbers and bytes show the lanes, where they lie together there.
     times
         The units of fields that become timestamps, by their names.
+    handed
+        Where the arrays are to have memory of their own: whether they may take that of the lanes.
     """
 
     octets: Octets = "string"
     copies: bool = True
     times: Mapping[str, Unit] = field(default_factory=dict[str, "Unit"])
+    handed: Handed | None = None
+
+    @classmethod
+    def of(cls, octets: Octets, copies: bool, times: Iterable[str] | Mapping[str, Unit], handed: Handed | None = None) -> Form:
+        """As a user says it.
+
+        Raises
+        ------
+        ValueError
+            If there is no such form of strings, or no such unit.
+        TypeError
+            If one name is given instead of several.
+        """
+        if octets not in get_args(Octets):
+            raise ValueError(f'octets is "string" or "binary", not {octets!r}')
+        if isinstance(times, str):
+            raise TypeError(f"times is a list of names, or units by name: times=[{times!r}]")
+        units = units_of(times)
+        unknown = [each for each in units.values() if each not in get_args(Unit)]
+        if unknown:
+            raise ValueError(f'the unit of a time is "s", "ms", "us" or "ns", not {unknown[0]!r}')
+        return cls(octets, copies, units, handed)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -185,8 +209,8 @@ def _distinct(values: NDArray[np.int32]) -> tuple[list[int], NDArray[Any]]:
 
 
 def _texts(node: Text, place: Place, validity: pa.Buffer | None) -> Arrow:
-    starts, counts = spans(place.lanes, node.span, place.rows)
-    data = _kept(picked(_values(place.lanes, node.lane), starts, counts), copies=True)
+    octets, starts, counts = lent(place.lanes, node.lane, *spans(place.lanes, node.span, place.rows))
+    data = _elements(place, node.lane, octets, starts, counts, copies=True)
     if node.type.encoding == "octets" and place.form.octets == "binary":
         return pa.Array.from_buffers(pa.large_binary(), len(counts), [validity, pa.py_buffer(offsets(counts, room)), pa.py_buffer(data)])
     try:
@@ -197,19 +221,22 @@ def _texts(node: Text, place: Place, validity: pa.Buffer | None) -> Arrow:
 
 def _blobs(node: Blob, place: Place, validity: pa.Buffer | None) -> Arrow:
     octets, starts, counts = lent(place.lanes, node.lane, *spans(place.lanes, node.span, place.rows))
-    data = _kept(picked(octets, starts, counts), copies=place.form.copies)
+    data = _elements(place, node.lane, octets, starts, counts, copies=place.form.copies)
     if node.length is None:
         buffers = [validity, pa.py_buffer(offsets(counts, room)), pa.py_buffer(data)]
         return pa.Array.from_buffers(pa.large_binary(), len(counts), buffers)
     return pa.Array.from_buffers(pa.binary(node.length), len(counts), [validity, pa.py_buffer(_padded(data, counts, node.length))])
 
 
-def _kept(values: NDArray[Any], *, copies: bool) -> NDArray[Any]:
-    """Values that are the arrays' own if copies are wanted."""
-    if not copies or values.base is None:
-        return values
-    own = room(-(-values.nbytes // 8)).view(values.dtype)[: values.size]
-    own[:] = values
+def _elements(place: Place, lane: int, values: NDArray[Any], starts: Indices, counts: Indices, *, copies: bool) -> NDArray[Any]:
+    """The values of spans, one after the other: the arrays' own if copies are wanted."""
+    found = picked(values, starts, counts, room)
+    if not copies or not np.may_share_memory(found, values):
+        return found
+    if place.form.handed is not None and place.form.handed.takes(place.lanes, lane, found, room):
+        return found
+    own = room_for(found.size, found.dtype, room)
+    own[:] = found
     return own
 
 
@@ -229,7 +256,7 @@ def _padded(data: NDArray[Any], counts: Indices, length: int) -> NDArray[Any]:
 
 def _numbers(node: Numbers, place: Place, validity: pa.Buffer | None) -> Arrow:
     starts, counts = spans(place.lanes, node.span, place.rows)
-    values = _kept(picked(_values(place.lanes, node.lane), starts, counts), copies=place.form.copies)
+    values = _elements(place, node.lane, _values(place.lanes, node.lane), starts, counts, copies=place.form.copies)
     if node.length is not None:
         return _fixed(node.length, _scalars(node.type, _padded(values, counts, node.length), None), len(counts), validity)
     return _listed(counts, _scalars(node.type, values, None), validity)

@@ -9,7 +9,8 @@ import pyarrow as pa
 from pyarrow.types import is_struct
 
 from rosetta_jit.runtime.arrow.arrays import Place, entry_array, room
-from rosetta_jit.runtime.holder.record import Items, Record
+from rosetta_jit.runtime.holder.paths import entries_to
+from rosetta_jit.runtime.holder.record import Record
 from rosetta_jit.runtime.rows import Rows
 
 if TYPE_CHECKING:
@@ -17,32 +18,20 @@ if TYPE_CHECKING:
 
     from rosetta_jit.errors import DecodeError
     from rosetta_jit.runtime.arrow.arrays import Form
-    from rosetta_jit.runtime.holder.record import Node
     from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.rows import Indices
 
 
 def record_batch(root: Record, lanes: Lanes, count: int, names: Sequence[str], form: Form) -> pa.RecordBatch:
     """Some fields of messages; a field of a nested message is named with dots."""
-    for each in form.times:
-        _demand(root, each)
+    for each in (*form.times, *names):
+        entries_to(root, each)
     rows = Rows.first(count, room)
     if len(names) == len(root.entries):
         rows = rows.reading(lanes, root.lane, root.start, root.end)
     found = [_column(root, Place(lanes, form, rows), name) for name in names]
     fields = [pa.field(name, array.type, nullable) for name, (array, nullable) in zip(names, found, strict=True)]
     return pa.RecordBatch.from_arrays([array for array, _ in found], schema=pa.schema(fields))
-
-
-def _demand(root: Record, name: str) -> None:
-    """KeyError if there is no field of that name, in arrays or not."""
-    node: Node = root
-    for each in name.split("."):
-        while isinstance(node, Items):
-            node = node.element
-        if not isinstance(node, Record) or each not in node.entries:
-            raise KeyError(name)
-        node = node.entries[each].node
 
 
 def table(batch: pa.RecordBatch) -> pa.Table:
@@ -63,7 +52,15 @@ def flat(table: pa.Table) -> pa.Table:
 
 
 def with_errors(table: pa.Table, name: str, errors: Mapping[int, DecodeError], numbers: Iterable[int]) -> pa.Table:
-    """A table with one column more: the errors of messages of such numbers, as text."""
+    """A table with one column more: the errors of messages of such numbers, as text.
+
+    Raises
+    ------
+    ValueError
+        If a field has that name.
+    """
+    if name in table.schema.names:
+        raise ValueError(f"errors={name!r} is the name of a column: give the column of errors another one")
     texts = [str(errors[number]) if number in errors else None for number in numbers]
     return table.append_column(name, pa.array(texts, pa.large_string()))
 
@@ -75,7 +72,7 @@ def _column(root: Record, place: Place, name: str) -> tuple[pa.Array, bool]:
     for each in around:
         entry = record.entries[each]
         if not isinstance(entry.node, Record):
-            raise KeyError(f"{each} of {name} is no message")
+            raise KeyError(f"`{each}` of `{name}` is an array or a map: take it as a whole")
         place = place.at(place.rows.with_field(entry.presence, place.lanes), f"{place.path}.{each}")
         record, nullable = entry.node, nullable or entry.presence is not None
     entry = record.entries[last]

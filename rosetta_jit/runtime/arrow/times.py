@@ -37,14 +37,14 @@ class _Moment:
 
 
 def time_array(node: Node, lanes: Lanes, rows: Rows, unit: Unit, validity: pa.Buffer | None, path: str) -> pa.Array:
-    """Timestamps of integers in a unit, or of structs, in nanoseconds.
+    """Timestamps in a unit, of integers that count it, or of structs.
 
     Raises
     ------
     TypeError
         If the field is no time.
     EncodeError
-        If one is further from 1970 than a timestamp reaches.
+        If one is further from 1970 than a timestamp reaches, or a struct's is between two of them.
     """
     match node:
         case Scalar(_, Int()):
@@ -54,13 +54,22 @@ def time_array(node: Node, lanes: Lanes, rows: Rows, unit: Unit, validity: pa.Bu
             if moment is None:
                 raise _no_time(path)
             seconds, part = _integers(moment.seconds, lanes, rows, path), _integers(moment.part, lanes, rows, path)
-            if _reach(seconds, SECOND_NS) + _reach(part, moment.unit_ns) > _MOST:
-                raise _too_far(path)
-            return stamps_array(seconds * SECOND_NS + part * moment.unit_ns, "ns", validity)
+            return stamps_array(_ticks(seconds, part, moment.unit_ns, unit, path), unit, validity)
         case Scalar() | Text() | Blob() | Numbers() | Items() | Pairs() | Child():
             raise _no_time(path)
         case _:
             assert_never(node)
+
+
+def _ticks(seconds: Indices, part: Indices, part_ns: int, unit: Unit, path: str) -> Indices:
+    """Seconds and a part of one, of so many nanoseconds a unit, as whole numbers of another unit."""
+    unit_ns = UNITS_NS[unit]
+    if _reach(part, part_ns) > _MOST or _reach(seconds, SECOND_NS // unit_ns) + _reach(part, part_ns) // unit_ns > _MOST:
+        raise _too_far(path)
+    whole, rest = np.divmod(part * part_ns, unit_ns)
+    if rest.any():
+        raise EncodeError("range", path, f"time {np.argmax(rest != 0)} is between two timestamps in {unit}: take a finer unit")
+    return seconds * (SECOND_NS // unit_ns) + whole
 
 
 def stamps_array(values: Indices, unit: Unit, validity: pa.Buffer | None = None) -> pa.Array:
@@ -86,7 +95,7 @@ def _no_time(path: str) -> TypeError:
 
 
 def _too_far(path: str) -> EncodeError:
-    return EncodeError("range", path, "a time is further from 1970 than a timestamp reaches")
+    return EncodeError("range", path, "a time is further from 1970 than a timestamp in this unit reaches")
 
 
 def _moment(record: Record) -> _Moment | None:

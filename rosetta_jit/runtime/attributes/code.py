@@ -1,47 +1,42 @@
-"""The accessors as code: the text of LLVM, and the library that it becomes, which the cache keeps."""
+"""The accessors as code: the text of LLVM, and what it becomes, which the cache keeps."""
 
 from __future__ import annotations
 
+import ctypes
 import sys
 import warnings
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
-from string import Template
 from typing import TYPE_CHECKING, Any, cast
 
-from rosetta_jit.runtime.cache.texts import kept
+from rosetta_jit.runtime.attributes.groups import BEGINNING, END, GROUPS, group_of, part_of, symbols
+from rosetta_jit.runtime.cache.texts import kept, known
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.allowed import ForeignCodeError
+from rosetta_jit.runtime.code.lazy import Stubs, is_supported, stubs_text
 from rosetta_jit.runtime.specs import function_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
+    from rosetta_jit.runtime.attributes.groups import Group
     from rosetta_jit.runtime.code.native import Library
 
 FILES = (
-    *("message.ll", "boxes.ll", "content.ll", "nested.ll", "sequence.ll", "writing.ll"),
-    *("making.ll", "ending.ll", "methods.ll", "handing.ll", "sameness.ll", "taking.ll"),
+    *("shared/message.ll", "shared/boxes.ll"),
+    *("fields/content.ll", "fields/nested.ll", "fields/sequence.ll"),
+    *("fields/writing.ll", "fields/writing_numbers.ll", "fields/writing_texts.ll"),
+    *("holders/making.ll", "holders/ending.ll", "holders/sameness.ll"),
+    *("programs/methods.ll", "programs/handing.ll", "objects/taking.ll"),
 )
-READERS = ("get_python", "get_utf8", "get_octets", "get_bytes", "get_numbers", "get_kept")
-WRITERS = ("set_python", "set_utf8", "set_bytes", "set_numbers", "set_texts", "set_attribute")
-FUNCTIONS = ("begin", "bind", "restart", "spawn", "equip", "same", "extend_texts", "take", "take_anew")
-SEQUENCES = ("length", "subscript", "iterate", "itself", "next", "end_iterator")
-METHODS = ("method_encode", "method_write", "method_decode", "method_parse", "method_make", "method_build", "method_turn")
-HANDING = ("hand_in", "hand_out")
-HOLDERS = ("end_holder", "call_class", "call_maker", "get_attribute")
-SYMBOLS = (
-    *(f"{verb}_{scalar}" for scalar in SCALARS for verb in ("get", "set")),
-    *READERS,
-    *WRITERS,
-    *FUNCTIONS,
-    *SEQUENCES,
-    *METHODS,
-    *HANDING,
-    *HOLDERS,
-)
+"""All but the templates."""
+
+FUNCTIONS = (*BEGINNING, "same", "extend_texts", "take", "take_anew")
+"""What Python calls."""
+
+SYMBOLS = tuple(symbols())
 """What the library defines."""
 
 HEAP_TYPE_BYTES: int = cast("Any", type).__basicsize__
@@ -51,16 +46,83 @@ CELLS = {"bool": "i8", "f32": "float", "f64": "double"}
 """LLVM's type of a scalar in memory, where it is not an integer of that size."""
 
 
+class Accessors:
+    """The addresses of the accessors, which are good as long as the process lives.
+
+    What the cache has is loaded at once. All else has the address of a stub (`runtime.code.lazy`), whose first call compiles its group.
+    """
+
+    def __init__(self) -> None:
+        self._loaded: list[Library] = []
+        self._direct: dict[str, int] = {}
+        self._first_end = 0
+        finders = {symbol: partial(self.make, group_of(symbol)) for symbol in SYMBOLS if symbol != END}
+        stubs = kept("accessors", "stubs of accessors", lambda: assembled(stubs_text(tuple(finders)), ()))
+        self._stubs = Stubs(stubs, finders, {name: -1 for name in finders if name.startswith("set_") or name == "length"})
+        for group in GROUPS:
+            image = known(_name(group))
+            if image is not None:
+                self._take(group, image)
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))  # objects that end when Python does still call the code
+
+    def __getitem__(self, symbol: str) -> int:
+        if symbol == END and not self._first_end:
+            self.make(group_of(symbol))
+        return self._direct.get(symbol) or (self._first_end if symbol == END else self._stubs[symbol])
+
+    def make(self, group: Group) -> None:
+        """Compile a group. Threads may do so at once: the code of each of them is as good, and stays."""
+
+        def compiled() -> bytes:
+            return assembled(part_of(text(), group.symbols), group.symbols, hurried=group.hurried)
+
+        self._take(group, kept("accessors", _name(group), compiled))
+
+    def make_all(self) -> None:
+        """Compile what is not loaded yet."""
+        for group in GROUPS:
+            if not self._direct.keys() >= set(group.symbols):
+                self.make(group)
+
+    def _take(self, group: Group, image: bytes) -> None:
+        library = native.load(image, group.symbols)
+        self._loaded.append(library)
+        for symbol in group.symbols:
+            if symbol == END:
+                self._first_end = self._first_end or library[symbol]
+            else:
+                self._stubs.bind(symbol, library[symbol])
+            if not group.hurried:
+                self._direct[symbol] = library[symbol]
+
+
+def _name(group: Group) -> str:
+    """What names a group's code in the cache, whose names depend on our source files besides."""
+    return f"accessors: {group.name}"
+
+
 @cache
-def library() -> Library | None:
+def library() -> Accessors | Library | None:
     """The accessors, loaded; None where Python is none that they know, or its memory cannot be executed."""
     if not is_native():
         return None
     try:
-        return native.load(_image(), SYMBOLS)
+        return Accessors() if is_supported() else whole()
     except ForeignCodeError as error:
         warnings.warn(f"attributes of messages are read in Python, which takes ten times as long: {error}", RuntimeWarning, stacklevel=2)
         return None
+
+
+def make_ready() -> None:
+    """Compile all accessors now, into the cache, so that no later process has to."""
+    code = library()
+    if isinstance(code, Accessors):
+        code.make_all()
+
+
+def whole() -> Library:
+    """All accessors at once, for systems without lazy binding."""
+    return native.load(kept("accessors", "all accessors", lambda: assembled(text(), SYMBOLS)), SYMBOLS)
 
 
 @cache
@@ -71,31 +133,32 @@ def functions() -> Mapping[str, Callable[..., Any]]:
     return {name: function_of(name, code[name]) for name in FUNCTIONS}
 
 
-def _image() -> bytes:
-    whole = text()
-    return kept("attributes", whole, lambda: _assembled(whole))
+def assembled(module: str, exported: Sequence[str], *, hurried: bool = False) -> bytes:
+    """Code of a module; to make it, LLVM is imported."""
+    from rosetta_jit.runtime.code import assembler
+
+    return assembler.assembled(module, exported, hurried=hurried)
 
 
-def _assembled(whole: str) -> bytes:
-    from rosetta_jit.runtime.code.assembler import assembled  # imports LLVM
-
-    return assembled(whole, SYMBOLS)
-
-
+@cache
 def text() -> str:
     """The module."""
-    calling = Template(_read("calling.ll")).substitute(HEAP_TYPE_BYTES=HEAP_TYPE_BYTES, NAMES_AT=HEAP_TYPE_BYTES + 8)
+    from string import Template  # slow to import
+
+    calling = Template(_read("holders/calling.ll")).substitute(HEAP_TYPE_BYTES=HEAP_TYPE_BYTES, NAMES_AT=HEAP_TYPE_BYTES + 8)
     return "\n".join([*(_read(file) for file in FILES), _read(_integers()), calling, *_scalars()])
 
 
 def _integers() -> str:
     """How integers are made: those of the one Python whose layout of them is known are given out again."""
     known = sys.version_info[:2] == (3, 11) and (sys.int_info.bits_per_digit, sys.int_info.sizeof_digit) == (30, 4)
-    return "integers_again.ll" if known else "integers.ll"
+    return "shared/integers_again.ll" if known else "shared/integers.ll"
 
 
 def _scalars() -> Iterator[str]:
-    template = Template(_read("scalar.ll"))
+    from string import Template
+
+    template = Template(_read("fields/scalar.ll"))
     for name in SCALARS:
         yield template.substitute(_conversions(name), NAME=name)
 
@@ -122,4 +185,4 @@ def _conversions(name: str) -> dict[str, str]:
 
 
 def _read(file: str) -> str:
-    return Path(__file__).with_name(file).read_text("utf-8")
+    return (Path(__file__).parent / file).read_text("utf-8")

@@ -29,7 +29,7 @@ ENTRY, HANDING_BYTES = 64, 72
 
 
 class _Handing:
-    """Hands over objects of one class. Compiled code reads all of it, in this order in memory (`handing.ll`)."""
+    """Hands over objects of one class. Compiled code reads all of it, in this order in memory (`programs/handing.ll`)."""
 
     __slots__ = ("decode", "encode", "new", "over", "slow", "spare")
     decode: Callable[..., Any]

@@ -33,7 +33,7 @@ DEALLOC, FLAGS, CLASS_CALL = 48, 168, 400
 
 
 class _Maker:
-    """Makes holders. Compiled code reads all but `plan`, in this order in memory (`calling.ll`)."""
+    """Makes holders. Compiled code reads all but `plan`, in this order in memory (`holders/calling.ll`)."""
 
     __slots__ = ("cell", "holder_type", "plan", "recipe", "seen", "slow")
     cell: list[Plan]

@@ -1,4 +1,4 @@
-"""Attributes of a class by the addresses of their names, for compiled code (`calling.ll`), which need not ask all classes above."""
+"""Attributes of a class by the addresses of their names, for compiled code (`holders/calling.ll`), which need not ask all classes above."""
 
 from __future__ import annotations
 

@@ -11,6 +11,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
+def known(text: str) -> bytes | None:
+    """What a text compiles to, if the cache has it."""
+    entry = Cache.default().get(entry_name(text))
+    return None if entry is None else entry.image
+
+
 def kept(kind: str, text: str, compiled: Callable[[], bytes]) -> bytes:
     """What a text compiles to: from the cache, or made now and put there. ``kind`` says what it is to people who look at the cache."""
     cache, name = Cache.default(), entry_name(text)

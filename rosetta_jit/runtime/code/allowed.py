@@ -45,6 +45,7 @@ ALLOWED = frozenset(
         "PyLong_Type",
         "PyMemoryView_FromObject",
         "PyObject_CallFinalizerFromDealloc",
+        "PyObject_CallNoArgs",
         "PyObject_ClearWeakRefs",
         "PyObject_Free",
         "PyObject_GC_Track",

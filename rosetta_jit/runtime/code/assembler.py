@@ -20,6 +20,7 @@ def target_machine(*, hurried: bool = False) -> binding.TargetMachine:
     """
     binding.initialize_native_target()
     binding.initialize_native_asmprinter()
+    binding.initialize_native_asmparser()
     features = binding.get_host_cpu_features().flatten()
     target = binding.Target.from_default_triple()
     opt = 0 if hurried else 3
@@ -63,19 +64,22 @@ def run_few_passes(module: binding.ModuleRef, machine: binding.TargetMachine, *,
     run_passes(few, module, binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=0)))
 
 
-def assembled(text: str, exported: Sequence[str]) -> bytes:
+def assembled(text: str, exported: Sequence[str], *, hurried: bool = False) -> bytes:
     """Code of a module that a person wrote, for `runtime.code.native`: it says itself what is inlined, and needs few passes."""
-    machine, module = target_machine(), linked([text])
+    machine, module = target_machine(hurried=hurried), linked([text])
     make_private(module, exported)
     run_few_passes(module, machine)
     image = machine.emit_object(module)
     return prelinked(image) or image
 
 
-def object_of(texts: Iterable[str], exported: Sequence[str]) -> bytes:
-    """Code of modules that many programs use, optimised as far as LLVM can, as an object file."""
+def object_of(texts: Iterable[str], exported: Sequence[str], *, thorough: bool = True) -> bytes:
+    """Code of modules that many programs use, as an object file: optimised as far as LLVM can, unless a person wrote it as it should be."""
     machine, module = target_machine(), linked(texts)
     make_private(module, exported)
+    if not thorough:
+        run_few_passes(module, machine)
+        return machine.emit_object(module)
     builder = binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=3))
     run_passes(builder.getModulePassManager(), module, builder)
     return machine.emit_object(module)

@@ -14,6 +14,7 @@ from rosetta_jit.runtime.attributes.names import take_names
 from rosetta_jit.runtime.holder import arena, grid, values
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import Family, Message, View, in_row, place
+from rosetta_jit.runtime.holder.paths import entry_of
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Text
 from rosetta_jit.runtime.lanes import Lanes
 
@@ -147,7 +148,7 @@ class Holder(Message, metaclass=HolderClass):
         TypeError
             If its value is no array of numbers or bytes.
         """
-        return self.lanes_.consistent(lambda entry: _shown(self, entry), self.access_.record.entries[name])
+        return self.lanes_.consistent(lambda entry: _shown(self, entry), entry_of(self.access_.record, name))
 
     def column(self, name: str) -> Any:
         """An array of messages as columns: one numpy view a field, or that of one field alone, ``points.x``; as `Batch.column` has it.
@@ -166,7 +167,7 @@ class Holder(Message, metaclass=HolderClass):
     def has(self, name: str) -> bool:
         """Whether a field is present: KeyError where there is none of that name."""
         lanes, row = place(self)
-        return arena.present(lanes, self.access_.record.entries[name].presence, row)
+        return arena.present(lanes, entry_of(self.access_.record, name).presence, row)
 
     def clear(self, name: str | None = None) -> None:
         """Make a field absent or empty; without a name, all of them."""
@@ -260,7 +261,7 @@ def _listed(holder_type: type[Holder], names: Iterable[str]) -> list[str]:
 def clear(holder: Holder, name: str | None) -> None:
     """Make a field absent or empty, or all of them; a holder whose decode failed becomes valid so."""
     record = holder.access_.record
-    entries = record.entries.values() if name is None else [record.entries[name]]
+    entries = record.entries.values() if name is None else [entry_of(record, name)]
     with holder.lanes_:
         if name is None and not isinstance(holder, View):
             holder.lanes_.reset()

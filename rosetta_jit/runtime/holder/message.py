@@ -221,7 +221,7 @@ def in_row(message: Message, lanes: Lanes, access: Access, row: int) -> bool:
 
 
 def recipe(plan: Plan, array_type: type, access: Access, first: Plan | None = None) -> tuple[Any, ...]:
-    """What a holder of a plan is made of in compiled code (`attributes/making.ll`), which does what `Lanes` and `in_row` do.
+    """What a holder of a plan is made of in compiled code (`attributes/holders/making.ll`), which does what `Lanes` and `in_row` do.
 
     Its memory begins as another plan says, if there is one.
     """

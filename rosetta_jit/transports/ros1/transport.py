@@ -17,6 +17,7 @@ TRANSPORTS = (
         call=f"{HERE}.calls:call",
         serve=f"{HERE}.calls:serve",
         names=f"{HERE}.streaming:topics",
+        check=f"{HERE}.node:graph_name",
         types={"ros1": "ros1"},
         asks=("type", "md5"),
         options={

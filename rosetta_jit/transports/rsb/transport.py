@@ -16,6 +16,7 @@ TRANSPORTS = (
         publish=f"{HERE}.streaming:publish",
         call=f"{HERE}.calls:call",
         serve=f"{HERE}.calls:serve",
+        check=f"{HERE}.scopes:scope_of",
         types={"rsb": "protobuf"},
         options={
             "host": Option("text", "127.0.0.1", "where the bus is; who serves it listens there"),

@@ -28,6 +28,21 @@ def host_port(address: Address) -> tuple[str, int]:
     return host.removeprefix("[").removesuffix("]") or LOOPBACK, int(port)
 
 
+def place(address: Address) -> tuple[str, int] | str:
+    """A path for `unix:`, else a host and a port.
+
+    Raises
+    ------
+    AddressError
+        It is no place of that kind.
+    """
+    if address.scheme != "unix":
+        return host_port(address)
+    if not address.rest or "\0" in address.rest or len(address.rest.encode()) > 107:
+        raise address.wrong("a path of at most 107 bytes", "unix:/run/robot.socket")
+    return address.rest
+
+
 def targets(address: Address, kind: int = socket.SOCK_STREAM) -> list[Target]:
     """Where an address leads: a path for `unix:`, else the addresses of a host.
 
@@ -38,8 +53,5 @@ def targets(address: Address, kind: int = socket.SOCK_STREAM) -> list[Target]:
     TransportError
         Nobody knows the host.
     """
-    if address.scheme == "unix":
-        if not address.rest or len(address.rest.encode()) > 107:
-            raise address.wrong("a path of at most 107 bytes", "unix:/run/robot.socket")
-        return [(int(socket.AF_UNIX), address.rest)]
-    return resolve(*host_port(address), kind)
+    found = place(address)
+    return [(int(socket.AF_UNIX), found)] if isinstance(found, str) else resolve(*found, kind)

@@ -34,7 +34,7 @@ def call(address: Address, options: Mapping[str, Any]) -> Caller:
 
 
 def serve(address: Address, server: Server, options: Mapping[str, Any]) -> None:
-    """Open a port that answers; YARP has no errors: who asks gets no reply where the answer fails."""
+    """Open a port that answers; YARP has no errors: who asks gets an empty bottle where the answer fails."""
     port = Port(port_name(address), name_server(options, address), options, server, take=_not_asked, asked=server.asked)
     server.opened(lambda: port.close(options["linger"]))
 

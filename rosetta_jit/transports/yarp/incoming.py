@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 _GROUP = struct.Struct(">4BH")
 
+NO_ANSWER = struct.pack("<ii", 256, 0)
+"""An empty bottle. Where nothing stands before the acknowledgement, YARP takes that for a bottle, and who asked waits for ever."""
+
 HELLO_S = 10.0
 """How long a connection may say nothing."""
 
@@ -114,6 +117,9 @@ def messages(port: Owner, line: Line | None, sender: str, carrier: str) -> Machi
                 port.asked(message, _reply_to(line, ACK if has_acks else b""))
                 continue
             take(message)
+        elif command == "a" and line is not None:
+            port.administer(to_text(frame.payload, port.dialect), _bottle_to(line, ACK if has_acks else b"", port.dialect))
+            continue
         if has_acks and line is not None:
             line.send(ACK)
         if command == "q":
@@ -122,9 +128,18 @@ def messages(port: Owner, line: Line | None, sender: str, carrier: str) -> Machi
 
 def _reply_to(line: Line, ack: bytes) -> Reply:
     def reply(answer: bytes | None, _: str | None) -> None:
-        line.send((answer or b"") + ack)
+        line.send((answer or NO_ANSWER) + ack)
 
     return reply
+
+
+def _bottle_to(line: Line, ack: bytes, dialect: str) -> Callable[[str], object]:
+    """What answers a command that came as a bottle."""
+
+    def answer(text: str) -> None:
+        line.send(from_text(text, dialect) + ack)
+
+    return answer
 
 
 def _text(port: Owner, line: Line, *, has_acks: bool) -> Machine:

@@ -17,6 +17,7 @@ TRANSPORTS = (
         call=f"{HERE}.calls:call",
         serve=f"{HERE}.calls:serve",
         names=f"{HERE}.names:ports",
+        check=f"{HERE}.names:port_name",
         options={
             "open": Option(
                 ("yes", "no", ""),

@@ -34,6 +34,7 @@ TRANSPORTS = (
         subscribe=f"{HERE}.ros2:subscribe",
         publish=f"{HERE}.ros2:publish",
         names=f"{HERE}.ros2:topics",
+        check="rosetta_jit.transports.ros2_names:topic_of",
         extra=("zenoh", "zenoh"),
         types={"ros2-zenoh": "ros2"},
         options=SESSION

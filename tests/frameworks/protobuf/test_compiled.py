@@ -242,6 +242,23 @@ def test_depth_is_bounded_and_wide_trees_are_not():
     assert encode(decode(wide)) == wide
 
 
+def test_bytes_that_no_rule_reads_stay_in_the_message():
+    """They are checked, and neither copied nor given room."""
+    files = {
+        "a.proto": "syntax = 'proto3'; message M { bytes data = 1; string text = 2; uint32 width = 3; }",
+        "b.proto": "syntax = 'proto2'; message H { required uint32 width = 1; }",
+        "a.mapping": 'import "a.proto"\nimport "b.proto"\ndata-holder: H\nwire-schema: M\nunpack-rules:\n  .width = .width\n',
+    }
+    decode = rj.Decoder("a.mapping", schema=files)
+    assert "copy lane" not in decode.stage("kernel")
+    message = b"\x0a\x83\x00abc" + b"\x12\x02\xc3\xa9" + b"\x18\x07" + b"\x20\x01"
+    assert decode(message).width == 7
+    for broken, kind in ((message[:5], "truncated"), (b"\x12\x01\xff" + message, "text")):
+        with pytest.raises(rj.DecodeError) as caught:
+            decode(broken)
+        assert caught.value.kind == kind
+
+
 def _varint(value):
     out = bytearray()
     while value >= 128:

@@ -13,6 +13,7 @@ from rosetta_jit.kernel.ir import (
     Fill,
     Get,
     HostCall,
+    HostValue,
     If,
     IsText,
     Let,
@@ -25,7 +26,6 @@ from rosetta_jit.kernel.ir import (
     Routine,
     SetField,
     Store,
-    Told,
     Used,
     Wire,
 )
@@ -324,7 +324,12 @@ CASES.add(
 )
 CASES.add("an argument of a function", "bytes beyond the end of the message", (HostCall("f", (Load("u8", BEGIN),), i64("x"), fail(1)),))
 CASES.add("where a function fails", "bytes beyond the end of the message", (HostCall("f", (), i64("x"), fail(1, Load("i64", BEGIN))),))
-CASES.add("what the host tells", "a row that may be negative", (SetField(Place(1, Told("number")), index(1)),), (Let("x", Told("number")),))
+CASES.add(
+    "what the host tells",
+    "a row that may be negative",
+    (SetField(Place(1, HostValue("number")), index(1)),),
+    (Let("x", HostValue("number")),),
+)
 CASES.accept(
     "a function that fills another lane",
     (*rows(1), ROW_EXISTS, HostCall("f", (), i64("x"), fail(1), (Extent(Place(1, i64("c")), index(8)),), Extent(HERE, index(8)))),

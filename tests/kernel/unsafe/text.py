@@ -14,6 +14,7 @@ from rosetta_jit.kernel.ir import (
     Fill,
     For,
     HostCall,
+    HostValue,
     If,
     Kernel,
     Let,
@@ -23,7 +24,6 @@ from rosetta_jit.kernel.ir import (
     Reserve,
     Return,
     Routine,
-    Told,
     Used,
     Wire,
 )
@@ -122,7 +122,7 @@ for what, stmt in {
     "an Advance": Advance(0, index(0)),
     "a HostCall": HostCall("f", (), i64("x"), fail(1)),
     "a used length": Let("x", Used(0)),
-    "what the host tells": Let("x", plus(Told("now"), 1)),
+    "what the host tells": Let("x", plus(HostValue("now"), 1)),
 }.items():
     routine_case(f"{what} in a routine", ONLY_BODIES, (skip(body=(If(TRUE, (stmt,)), need(AT, 1), Let("next", add(AT, 1)))),), None)
 CASES.accept("a capacity in a routine", (CALL,), (skip(body=(Let("x", Capacity(0)), need(AT, 1), Let("next", add(AT, 1)))),))

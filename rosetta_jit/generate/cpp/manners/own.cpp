@@ -7,7 +7,9 @@ $at.has_value()
 $at.reset();
 
 /* == optional make == */
-$at.emplace();
+if (!$at.has_value()) {
+    $at.emplace();
+}
 
 /* == optional value == */
 (*$at)

@@ -81,12 +81,14 @@
   (make-array (length words) :element-type 'i64 :initial-contents words))
 
 (defstruct (codec-state (:copier nil) (:predicate nil))
-  "What all codecs have: the last failure and the farthest one, what the mapping asks of its host, its state, and results of routines."
+  "What all codecs have: the last failure and the farthest one, what the mapping asks of its host, its state, what
+forgets rows that messages have left, and results of routines."
   (failure (make-failure) :type failure)
   (farthest (make-failure) :type failure)
   (most 0 :type i64)
   (kept-f64 0d0 :type f64)
   (kept-f32 0f0 :type f32)
+  (forget 'identity :type symbol)
   (now 0 :type i64)
   (number 0 :type i64)
   (first-registers (registers) :type registers)
@@ -107,6 +109,7 @@
   "Forget all messages: the mapping's state becomes what it is at first."
   (replace (codec-state-unpack-registers codec) (codec-state-first-registers codec))
   (replace (codec-state-pack-registers codec) (codec-state-first-registers codec))
+  (funcall (codec-state-forget codec) codec)
   codec)
 
 (defun fail (codec site at &optional (index-1 0) (index-2 0) (index-3 0) (index-4 0) (index-5 0) (index-6 0))

@@ -39,6 +39,11 @@
       (let ((more (make-array (* stride (max wanted (min most (* 2 (floor (length octets) stride))))) :element-type 'u8)))
         (replace more octets)))))
 
+(defun saved (spare octets)
+  "A copy of octets, in SPARE where that has their length."
+  (declare (type octets spare octets))
+  (if (= (length spare) (length octets)) (replace spare octets) (copy-seq octets)))
+
 (defmacro reserve ((rows place stride) used count codec full)
   "Room for COUNT more rows in ROWS, which PLACE keeps for the next message; or FULL."
   (let ((missing (gensym "MISSING")) (more (gensym "MORE")))

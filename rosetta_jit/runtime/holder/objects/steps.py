@@ -1,4 +1,4 @@
-"""Tables of steps: how compiled code takes the objects of one class, or dicts, into messages (`attributes/taking.ll`).
+"""Tables of steps: how compiled code takes the objects of one class, or dicts, into messages (`attributes/objects/taking.ll`).
 
 A table is made after one object, whose attributes tell the classes of the messages in it. It is for objects whose every attribute is a
 value that lies in the message's own row, or in a lane of its own: there is none where there are arrays of messages, maps or unions.

@@ -231,6 +231,27 @@ template <class Row> struct lane {
     std::int64_t used = 0;
     std::int64_t room = 0; /* of the memory */
     std::unique_ptr<Row[]> memory;
+    std::unique_ptr<Row[]> saved;
+    std::int64_t saved_room = 0;
+
+    /* Copies the rows in use, which `restore` brings back. */
+    void save()
+    {
+        if (saved_room < used) {
+            saved.reset(new Row[static_cast<std::size_t>(capacity)]);
+            saved_room = capacity;
+        }
+        if (used > 0) {
+            std::memcpy(static_cast<void *>(saved.get()), rows, static_cast<std::size_t>(used) * sizeof(Row));
+        }
+    }
+
+    void restore()
+    {
+        if (used > 0) {
+            std::memcpy(static_cast<void *>(rows), saved.get(), static_cast<std::size_t>(used) * sizeof(Row));
+        }
+    }
 
     /* No rows, and its own memory. */
     void reset()

@@ -16,7 +16,7 @@ KEY = re.compile(r"\s*([A-Za-z0-9_-]+|\"[^\"]*\"|'[^']*')\s*=\s*(?P<value>[^#\n]
 Path = tuple[str | int, ...]
 
 
-class Places:
+class TomlSpans:
     """The places of a file's keys, by their paths: ``("route", 0, "source")`` is `source` in the first `[[route]]`."""
 
     def __init__(self, source: Source) -> None:

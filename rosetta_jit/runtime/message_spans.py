@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Places:
+class MessageSpans:
     """Message i is bytes ``begins[i]`` to ``ends[i]``; between messages there may be other bytes.
 
     Attributes
@@ -71,7 +71,7 @@ def _address_of(numbers: NDArray[np.int64]) -> int:
     return address_of(numbers) if numbers.size and numbers.flags.writeable else numbers.ctypes.data
 
 
-def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | memoryview, Places]:
+def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | memoryview, MessageSpans]:
     """Messages in one buffer, and where each of them lies in it.
 
     Raises
@@ -82,7 +82,7 @@ def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | 
         The offsets are of another type or shape.
     """
     if offsets is not None:
-        return source_of(messages), Places.of(offsets)
+        return source_of(messages), MessageSpans.of(offsets)
     try:
         memoryview(messages)
     except TypeError:
@@ -90,7 +90,7 @@ def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | 
     else:
         raise TypeError("messages in one buffer take offsets, which say where each begins; without them, give a list of messages")
     sizes = [len(each) if type(each) is bytes else memoryview(each).nbytes for each in pieces]
-    return b"".join(pieces), Places.of(np.cumsum([0, *sizes], dtype=np.int64))
+    return b"".join(pieces), MessageSpans.of(np.cumsum([0, *sizes], dtype=np.int64))
 
 
 def source_of(message: Any) -> bytes | memoryview:

@@ -1,0 +1,192 @@
+"""What to write instead of a token that the grammar does not have there."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import habits
+from rosetta_jit.catalogue.blocks import unclosed
+from rosetta_jit.catalogue.names import shorten
+from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.typeset import plain
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.source import Span
+
+STARTS_VALUE = frozenset({"START", "NAME", "QUALIFIED", "INTEGER", "REAL", "STRING", "LPAR", "LSQB"})
+COMPARISONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
+OPERATORS = frozenset("+-*/%")
+BRACKETS = {"RPAR": ")", "RSQB": "]", "RBRACE": "}"}
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """Where a token stands that is not expected.
+
+    Attributes
+    ----------
+    found, ahead
+        The token, and its line from there on.
+    before
+        What stands before it in its line, without blanks at its ends.
+    touches
+        What stands before it without a blank between.
+    line
+        What stands before it in its line, or else the line before.
+    """
+
+    span: Span
+    kind: str
+    expected: frozenset[str]
+    found: str
+    ahead: str
+    before: str
+    touches: str
+    line: str
+
+    @property
+    def is_behind_value(self) -> bool:
+        """Whether an operator may stand here."""
+        return "STAR" in self.expected
+
+
+def instead(span: Span, kind: str, expected: frozenset[str]) -> str:
+    """What to write instead of a token that is not expected; empty where nothing explains it."""
+    place = _place(span, kind, expected)
+    found = (_of_character(place), *(each(place) for each in (_of_sign, _of_number, _of_bracket, _of_statement, _of_word)))
+    return next((each for each in found if each), "")
+
+
+def _place(span: Span, kind: str, expected: frozenset[str]) -> _Place:
+    text = span.source.text
+    start = text.rfind("\n", 0, span.start) + 1
+    before = text[start : span.start]
+    last = text[text.rfind("\n", 0, max(0, start - 1)) + 1 : start].strip()
+    ahead = text[span.start :].partition("\n")[0]
+    return _Place(span, kind, expected, text[span.start : span.end], ahead, before.strip(), before[-1:].strip(), before.strip() or last)
+
+
+def _of_character(place: _Place) -> str:
+    """Of characters that are not plain: the one that is not expected, or the one behind a dot."""
+    return plain(place.ahead[:1]) or (plain(place.ahead[1:2]) if place.found == "." else "")
+
+
+def _of_sign(place: _Place) -> str:
+    found, ahead, expected = place.found, place.ahead, place.expected
+    pair = place.touches + ahead[:1]
+    sign = next((help_ for each, help_ in habits.SIGNS if ahead.startswith(each) or each == pair), "")
+    if sign or found[:1] in habits.CHARACTERS:
+        return sign or habits.CHARACTERS[found[:1]]
+    if ("RBRACE" in expected or re.search(r"\{[^}]*$", place.before)) and (found == ":" or pair == "=>"):
+        return 'a key and its value stand so: `"key" = value`'
+    if expected & {"EQUAL", "RELATES"} and place.kind != "RELATES" and (found == "==" or ahead[:2] in ("->", "<-", ":=")):
+        return "a place is related to a value by `<->`" if "RELATES" in expected else "a place is set by `=`"
+    if place.kind == "EQUAL" and "FOR" in expected:
+        return "values are compared by `==`; a rule sets one place by `=`"
+    if found in OPERATORS and expected & {"EQUAL", "RELATES"}:
+        return f"left of `{'<->' if 'RELATES' in expected else '='}` stands a place alone: compute on the right"
+    if found in COMPARISONS and "FOR" in expected:
+        return "comparisons do not chain: `a < x and x < b`"
+    return ""
+
+
+def _of_number(place: _Place) -> str:
+    """Of what stands behind a digit, or before one."""
+    found, ahead = place.found, place.ahead
+    if found == "." and ahead[1:2].isdigit():
+        return "a digit stands before the point: `0.5`"
+    if not re.search(r"(?<![\w.])(0[xX])?[0-9.]+$", place.before):
+        return ""
+    if found == "." and place.touches:
+        return "a digit stands behind the point: `1.0`"
+    if found == "," and ahead[1:2].isdigit():
+        return "decimals stand behind a point: `1.5`"
+    if place.kind == "NAME" and place.touches:
+        together = re.match(r"[_0-9]+\b", found)
+        return "the digits of a number stand together: `1000`" if together else "a number ends with its digits: `float32(1.0)`, `int64(10)`"
+    return ""
+
+
+def _of_bracket(place: _Place) -> str:
+    found, expected, before = place.found, place.expected, place.before
+    open_ = next((each for kind, each in BRACKETS.items() if kind in expected), "")
+    if open_ and not before and place.kind in ("START", "NAME", "IGNORE", "DEFAULT", "REJECT", "FOR", "WHEN", "LEN", "_SAME", "$END"):
+        return f"a bracket is not closed: `{open_}` is missing before"
+    if open_ and "COMMA" in expected and place.kind in STARTS_VALUE and not habits.ITEMS.get(found):
+        return "a comma is missing before it"
+    if found in BRACKETS.values() and before.endswith(","):
+        return "leave out the comma before it"
+    if "RSQB" in expected and found == ":":
+        return "`.a[0 to 3]` are the first three elements"
+    if "RSQB" in expected and found == "=" and (key := re.search(r"\[\s*([A-Za-z_]\w*)$", before)):
+        return f"a field begins with a dot: `.{shorten(key[1])}`"
+    if found == "(" and (called := re.search(r"(?<!\w)(\.[\w.]+)\.([A-Za-z_]\w*)$", before)):
+        return f"what a function takes stands in its brackets: `{called[2]}({shorten(called[1])})`"
+    if found == "[" and before.endswith(")"):
+        return '`part(x, "/", 0)` is the first part of a text; of other arrays, only fields have elements'
+    if place.kind == "STRING" and place.touches == "f":
+        return 'texts are joined by `+`: `"joint " + text(.n)`'
+    return ""
+
+
+def _of_statement(place: _Place) -> str:
+    """What the statement or rule tells in which the token stands."""
+    found, expected, before = place.found, place.expected, place.before
+    if "END" in expected and place.kind in ("$END", "RULES", "UNPACK_RULES", "PACK_RULES"):
+        return unclosed(place.span.source.text, place.span.start)
+    if found in ("in", "=") and "FROM" in expected:
+        return "a loop counts: `for i from 0 to len(.a)`"
+    if re.match(r"(if|elif|else if)\b", place.line) and "ELSE" in expected:
+        return "rules that depend on a condition stand in a block: `when condition`, the rules, `end`"
+    if found == "," and re.match(r"(ignore|default)\b", before):
+        return f"each field has its own: `{before} {before.split()[0]} .b`"
+    if before.startswith("reject") and (found == "if" or ("STRING" in expected and found == "when")):
+        return '`reject "why" when condition`'
+    if "STRING" in expected and place.kind != "UNCLOSED" and (word := re.search(r"(?<![\w.])(import|via)$", before)):
+        return f'write `{word[1]} "{shorten(place.ahead.strip())}"`'
+    if found == "state" and "IMPORT" in expected:
+        return "a state variable has a type: `state n: int64 = 0`"
+    return _of_colon(place) if expected == frozenset(("COLON",)) or place.ahead.startswith("[") else ""
+
+
+def _of_colon(place: _Place) -> str:
+    if place.found == "[" and place.before.endswith("list"):
+        return "a list says of what it is: `list of float64`"
+    if "COLON" not in place.expected:
+        return ""
+    if (declared := re.match(r"(parameter|state)\s+(\w+)$", place.before)) is not None:
+        return f"it has a type: `{declared[1]} {shorten(declared[2])}: float64{' = 0.0' if declared[1] == 'state' else ''}`"
+    if (typed := re.match(r"(data-holder|wire-schema)\s+(\S+)$", place.before + place.ahead.strip())) is not None and place.before:
+        return f"a colon is missing: `{typed[1]}: {shorten(typed[2])}`"
+    word = re.search(r"([\w-]+)\s*$", place.span.source.text[: place.span.start][-200:])
+    return f"a colon is missing: `{word[1]}:`" if word else ""
+
+
+def _of_word(place: _Place) -> str:
+    """A word of another language, or one of ours that is misspelt."""
+    if place.found in habits.ITEMS and ("RBRACE" in place.expected or re.search(r"\{[^}]*$", place.before)):
+        return habits.ITEMS[place.found]
+    if "RSQB" in place.expected and place.found == "for":
+        return "a rule with `[]` holds for each element: `.a[] = f(.b[])`"
+    if place.kind != "NAME":
+        return ""
+    known = habits.WORDS_BEHIND_VALUES if place.is_behind_value and place.before else habits.WORDS
+    return known.get(place.found, "") or _misspelt(place)
+
+
+def _misspelt(place: _Place) -> str:
+    found = re.match(r"[A-Za-z_][\w-]*(?=(:?))", place.ahead[:40])
+    if found is None:
+        return ""
+    if place.before:
+        known = habits.BEHIND_VALUES if place.is_behind_value else ()
+    else:
+        rules = () if "FOR" not in place.expected or found[1] else habits.RULES
+        known = (*(habits.STATEMENTS if "IMPORT" in place.expected else ()), *rules)
+    word = found[0].replace("_", "-")
+    near = closest(word, [each.removesuffix(":") for each in known])
+    near = near or next((each.removesuffix(":") for each in known if len(word) > 3 and word in each), None)
+    meant = next((each for each in known if near is not None and each.removesuffix(":") == near), None)
+    return "" if meant is None else f"did you mean `{meant}`?"

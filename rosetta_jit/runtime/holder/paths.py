@@ -1,0 +1,66 @@
+"""Fields by their names: with dots those of nested messages, of the elements of arrays, and of the values of maps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rosetta_jit.runtime.holder.record import Entry, Node
+
+
+def entry_of(record: Record, name: str) -> Entry:
+    """The field of one name.
+
+    Raises
+    ------
+    KeyError
+        If there is none; it says which one may have been meant.
+    """
+    entry = record.entries.get(name)
+    if entry is None:
+        raise KeyError(_unknown(record, name))
+    return entry
+
+
+def entries_to(record: Record, path: str, *, through_arrays: bool = True) -> Sequence[Entry]:
+    """The fields on the way to one, itself the last.
+
+    Raises
+    ------
+    KeyError
+        If there is no such field; or if it lies in an array or a map, and is to be one of a message.
+    """
+    found: list[Entry] = []
+    for name in path.split("."):
+        if found:
+            record = _inside(found[-1], through_arrays=through_arrays)
+        found.append(entry_of(record, name))
+    return found
+
+
+def _inside(entry: Entry, *, through_arrays: bool) -> Record:
+    node: Node = entry.node
+    if not through_arrays and isinstance(node, Items | Pairs):
+        raise KeyError(f"`{entry.name}` has many elements, and no one field of them")
+    while isinstance(node, Items | Pairs):
+        node = node.element if isinstance(node, Items) else node.value.node
+    match node:
+        case Record():
+            return node
+        case Child():
+            return node.record
+        case Scalar() | Text() | Blob() | Numbers():
+            raise KeyError(f"`{entry.name}` is no message, and has no fields")
+        case _:
+            assert_never(node)
+
+
+def _unknown(record: Record, name: str) -> str:
+    from rosetta_jit.catalogue.spelling import closest
+
+    near = closest(name, record.entries)
+    return f"{record.struct or 'the record'} has no field `{name}`{f'; did you mean `{near}`?' if near else ''}"

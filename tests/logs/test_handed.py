@@ -1,0 +1,106 @@
+"""Tables take the memory of large arrays, and keep their values while the batch is filled again."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.runtime.handed import SPARE, Handed
+
+SCHEMA = b"string name\nuint8[] data\nfloat64[4] fixed\nuint16[] numbers"
+NUMBERS = {"data", "fixed", "numbers"}
+IN_A_PART = 8
+
+
+def message(number: int, size: int) -> bytes:
+    """As CDR has it: the header, and each array behind its length, at a multiple of its size."""
+    name = f"{number:03d}".encode() + b"\0"
+    body = len(name).to_bytes(4, "little") + name + size.to_bytes(4, "little") + bytes([number]) * size
+    body += bytes(-len(body) % 8) + np.full(4, number, "<f8").tobytes()
+    return b"\0\1\0\0" + body + (3).to_bytes(4, "little") + np.full(3, number, "<u2").tobytes()
+
+
+def channel(path, sizes, is_bad=lambda _: False):
+    from mcap.writer import Writer
+
+    with path.open("wb") as file:
+        writer = Writer(file, chunk_size=3000)
+        writer.start()
+        topic = writer.register_channel("/x", "cdr", writer.register_schema("t/msg/X", "ros2msg", SCHEMA))
+        for number, size in enumerate(sizes):
+            data = message(number, size)
+            writer.add_message(topic, log_time=number, publish_time=number, data=data[:20] if is_bad(number) else data)
+        writer.finish()
+    return rj.open(path)["/x"]
+
+
+def rows_of(sizes, first=0):
+    return [
+        {"name": f"{number:03d}", "data": bytes([number]) * size, "fixed": [number] * 4, "numbers": [number] * 3}
+        for number, size in enumerate(sizes, first)
+    ]
+
+
+def address(table, name: str) -> int:
+    return table[name].chunk(0).buffers()[-1].address
+
+
+def lane_of(part, name: str):
+    """The memory of a field's elements."""
+    return part.batch.lanes.buffers[part.batch.family_.tree.root.entries[name].node.lane]
+
+
+@pytest.fixture
+def small_parts(monkeypatch):
+    monkeypatch.setattr("rosetta_jit.logs.parts.MESSAGES", IN_A_PART)
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_memory_is_taken(tmp_path):
+    sizes = [500] * 5 * IN_A_PART
+    topic, tables, taken = channel(tmp_path / "x.mcap", sizes), [], []
+    for part, table in topic.tables_of_parts(clocks=()):
+        taken.append({name for name in NUMBERS if address(table, name) == lane_of(part, name).ctypes.data})
+        tables.append(table)
+    assert taken == [set(), *[NUMBERS] * 4]
+    assert [row for table in tables for row in table.to_pylist()] == rows_of(sizes)
+    assert len({address(table, "data") for table in tables}) == 5
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_parts_of_other_sizes(tmp_path):
+    """Parts that outgrow the memory, that have nothing, and that would leave most of what they take empty."""
+    sizes = [size for size in (200, 200, 5000, 10, 0, 4000, 4900) for _ in range(IN_A_PART)]
+    topic, taken = channel(tmp_path / "x.mcap", sizes), []
+    assert topic.to_arrow(clocks=()).to_pylist() == rows_of(sizes)
+    for number, (part, table) in enumerate(topic.tables_of_parts(clocks=())):
+        first = number * IN_A_PART
+        assert table.to_pylist() == rows_of(sizes[first : first + IN_A_PART], first)
+        if number != 4:
+            taken.append(address(table, "data") == lane_of(part, "data").ctypes.data)
+    assert taken == [False, True, False, False, False, True]
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_messages_that_are_left_out(tmp_path):
+    """The arrays of the others do not lie together."""
+    sizes = [300] * 4 * IN_A_PART
+    topic = channel(tmp_path / "x.mcap", sizes, lambda number: number % 5 == 3)
+    found = topic.to_arrow(clocks=(), on_error="skip").to_pylist()
+    assert found == [row for number, row in enumerate(rows_of(sizes)) if number % 5 != 3]
+
+
+def test_a_table_outlives_the_next_filling():
+    """Of a batch that hands its memory over, whichever way it is filled again."""
+    decoder = rj.Decoder.of("t/msg/X", encoding="cdr", schema=SCHEMA.decode())
+    batch, tables = decoder.many([message(0, 100)] * 2), []
+    batch.handed_ = Handed()
+    for number in range(1, 4):
+        decoder.many([message(number, 100)] * 2, into=batch)
+        tables.append(batch.to_arrow())
+    batch.reset(2)
+    for each in batch:
+        each.data = np.full(100, 9, np.uint8)
+    assert [table["data"].to_pylist() for table in tables] == [[bytes([number]) * 100] * 2 for number in (1, 2, 3)]
+    assert batch.lanes.buffers[batch.family_.tree.root.entries["data"].node.lane].size <= 200 + 200 // SPARE + 8
