@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING
@@ -73,8 +74,9 @@ class Lines:
         return cls(written, direction, target, by_span(rules), used, around=(written.source.name,))
 
     def lines(self, rules: tuple[Untyped, ...], depth: int = 0) -> Iterator[Line]:
+        several = Counter(span_of(rule.span) for rule in rules)
         for rule in rules:
-            yield from self.rule(rule, depth)
+            yield from self.rule(rule, depth, is_whole=several[span_of(rule.span)] == 1)
 
     def of_used(self, rule: Untyped, depth: int) -> Iterator[Line]:
         """The rules of the mapping by which a rule is made, below it."""
@@ -99,7 +101,9 @@ class Lines:
         outer = () if self.inside is None else names_of(self.inside.place)
         return names_of(place)[: len(outer)] == outer
 
-    def rule(self, rule: Untyped, depth: int) -> Iterator[Line]:
+    def rule(self, rule: Untyped, depth: int, *, is_whole: bool = True) -> Iterator[Line]:
+        """The lines of a rule, which ``is_whole`` unless it is one of several that a rule of the text becomes."""
+        written = self.text(rule.span) if is_whole else ""
         match rule:
             case For(variable, start, stop, body):
                 yield self.line(rule, f"for {variable} from {self.expr(start)} to {self.expr(stop)}", depth)
@@ -122,10 +126,10 @@ class Lines:
                     yield from self.opened(use, depth)
             case Assign(place, value, by=way):
                 text = f"{show_expr(place)} = {_expr(value)}{_by(way)}"
-                yield self.line(rule, self.text(rule.span) or text, depth)
+                yield self.line(rule, written or text, depth)
                 yield from self.of_used(rule, depth)
             case SetLength(place, value):
-                yield self.line(rule, self.text(rule.span) or f"len({show_expr(place)}) = {_expr(value)}", depth)
+                yield self.line(rule, written or f"len({show_expr(place)}) = {_expr(value)}", depth)
             case SetState(variable, value):
                 yield self.line(rule, self.text(rule.span) or f"state {variable} = {_expr(value)}", depth)
             case Ignore(place) | Default(place):
