@@ -112,10 +112,18 @@ def __dir__() -> list[str]:
     return ["__doc__", "__version__", *__all__]
 
 
-def check(mapping: str, *, search_path: Iterable[str] = (), parameters: Mapping[str, object] | None = None) -> CheckedMapping:
+def check(
+    mapping: str,
+    *,
+    search_path: Iterable[str] = (),
+    parameters: Mapping[str, object] | None = None,
+    encoding: str | None = None,
+    framework: str | None = None,
+) -> CheckedMapping:
     """Check a mapping in both directions without compiling it; returns its ``warnings`` and ``laws``.
 
-    Without ``parameters``, it is checked for all values that its parameters may get.
+    Without ``parameters``, it is checked for all values that its parameters may get. ``encoding`` or ``framework`` says whose an imported
+    file is that several frameworks can read: a `.msg` file beside the mapping is one of ROS 2, if nothing says otherwise.
 
     Raises
     ------
@@ -124,7 +132,7 @@ def check(mapping: str, *, search_path: Iterable[str] = (), parameters: Mapping[
     """
     from rosetta_jit.pipeline.build import check_mapping
 
-    return check_mapping(mapping, search_path, parameters)
+    return check_mapping(mapping, search_path, parameters, encoding=encoding, framework=framework)
 
 
 def infer(messages: Iterable[bytes], *, name: str, encoding: str = "yarp") -> str:

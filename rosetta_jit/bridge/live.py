@@ -279,4 +279,4 @@ class LiveRoute:
             self._sink.close()
         if self._caller is not None:
             self._caller.close()
-        self.problem = "closed"
+        self.problem = self.problem or "closed"

@@ -73,4 +73,4 @@ class LiveService:
             self.server.close()
         if self.caller is not None:
             self.caller.close()
-        self.problem = "closed"
+        self.problem = self.problem or "closed"

@@ -8,7 +8,7 @@ from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
 _READ = "what is whole is read"
 
@@ -184,6 +184,16 @@ def no_type(name: str, topic: str, details: str) -> Diagnostic:
 def unknown_encoding(name: str, topic: str, encoding: str) -> Diagnostic:
     """Messages in an encoding that no framework has."""
     return Diagnostic("error", "log-encoding", f"{name}: the messages of `{topic}` are encoded as `{encoding}`, which no framework reads")
+
+
+def several_encodings(name: str, encodings: Sequence[str]) -> Diagnostic:
+    """A log whose messages are in several encodings, or in one that it does not say."""
+    message = (
+        f"{name}: its messages are in {len(encodings)} encodings: {', '.join(encodings)}"
+        if encodings
+        else f"{name} does not say how its messages are encoded"
+    )
+    return Diagnostic("error", "log-encoding", message, help="name the one that is meant: `--encoding`")
 
 
 def no_writer(name: str, suffixes: Iterable[str]) -> Diagnostic:

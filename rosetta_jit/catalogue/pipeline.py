@@ -9,14 +9,32 @@ from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from rosetta_jit.source import Span
 
 
-def unknown_encoding(name: str, framework: str, known: Sequence[str]) -> Diagnostic:
-    """An encoding that the framework of the wire's type does not have."""
-    return Diagnostic("error", "unknown-encoding", f"{framework} has no encoding `{name}`", help=f"choose one of {', '.join(known)}")
+def unknown_encoding(name: str, framework: str, known: Sequence[str], frameworks: Mapping[str, Collection[str]]) -> Diagnostic:
+    """An encoding that the framework of the wire's type does not have. The name of a framework is taken for one sometimes."""
+    message = f"{framework} has no encoding `{name}`"
+    if name in frameworks and name != framework:
+        message = f"`{name}` is the name of a framework, and no encoding"
+        known = tuple(frameworks[name])
+    return Diagnostic("error", "unknown-encoding", message, help=f"choose one of {', '.join(known)}")
+
+
+def no_encoding(name: str, known: Sequence[str]) -> Diagnostic:
+    """An encoding that no framework has."""
+    return Diagnostic("error", "unknown-encoding", f"there is no encoding `{name}`", help=f"choose one of {', '.join(known)}")
+
+
+def other_framework(mapping: str, framework: str) -> Diagnostic:
+    """A mapping with mistakes, and without them if its files are those of another framework."""
+    message = f"{mapping} has no mistakes where the files that it imports are read as those of {framework}"
+    help_ = (
+        f"`--framework {framework}` checks it so; decoders take `framework=` or `encoding=`, and logs know the encoding of their messages"
+    )
+    return Diagnostic("note", "other-framework", message, help=help_)
 
 
 def ambiguous_encoding(name: str, known: Sequence[str]) -> Diagnostic:

@@ -14,6 +14,7 @@ from rosetta_jit.language.places import shown_fields
 from rosetta_jit.model.expr import Member, Path
 from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, SameNames, SetLength, SetState, Via, When
 from rosetta_jit.model.printer import show_expr
+from rosetta_jit.model.walk import every_rule
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -224,15 +225,7 @@ def _is_filter(rule: Rule) -> bool:
 
 def _set_by(rule: Rule) -> list[Place]:
     """The places that a rule sets, those of its blocks included."""
-    match rule:
-        case typed.Assign(place) | typed.SetLength(place):
-            return [place]
-        case typed.For(body=body):
-            return [place for each in body for place in _set_by(each)]
-        case typed.When(then=then, otherwise=otherwise):
-            return [place for each in (*then, *otherwise) for place in _set_by(each)]
-        case _:
-            return []
+    return [each.place for each in every_rule((rule,)) if isinstance(each, typed.Assign | typed.SetLength)]
 
 
 def _head(rule: Rule) -> object:

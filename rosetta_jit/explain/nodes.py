@@ -6,6 +6,7 @@ from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.language import typed
+from rosetta_jit.model.walk import rules_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -51,7 +52,7 @@ def by_span(rules: Iterable[Rule]) -> dict[Key, list[Rule]]:
     pending = list(rules)
     while pending:
         rule = pending.pop(0)
-        inside = [each for each in _blocks(rule) if span_of(each.span) != span_of(rule.span)]
+        inside = [each for each in rules_in(rule) if span_of(each.span) != span_of(rule.span)]
         found.setdefault(span_of(rule.span), []).append(rule)
         pending += inside
     return found
@@ -60,13 +61,3 @@ def by_span(rules: Iterable[Rule]) -> dict[Key, list[Rule]]:
 def span_of(span: Span | None) -> Key:
     """The key of a place in a text."""
     return ("", -1, -1) if span is None else (span.source.name, span.start, span.end)
-
-
-def _blocks(rule: Rule) -> tuple[Rule, ...]:
-    match rule:
-        case typed.For():
-            return rule.body
-        case typed.When():
-            return (*rule.then, *rule.otherwise)
-        case _:
-            return ()

@@ -20,7 +20,8 @@ r"""The kernel: one small typed function from a message to a holder, or back. Th
 of one holder, each an array of rows of `stride` bytes with a capacity and a used length, both in rows. Nothing else can be
 addressed, nothing is allocated. Used lengths are what the state says, but a kernel that decodes into row 0 starts with all lanes
 behind lane 0 empty, unless it keeps them. The last lanes may be **hidden**: the holder has no fields there, a kernel always starts with
-them empty, and what it leaves there is gone. Scalars in lanes are native and aligned as the layout says; scalars in the message have
+them empty, and what it leaves there is gone, but for what a size kernel leaves: the encoder runs on the same lanes, and finds lengths in
+their rows. Scalars in lanes are native and aligned as the layout says; scalars in the message have
 the byte order that the access names, and no alignment.
 
 **Parameters** are the locals `begin`, `end` and `row`, all i64: where the message begins and ends in the buffer (0 <= begin <=

@@ -19,7 +19,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.language.function import GROUPS
+from rosetta_jit.language.function import GROUPS, family_of
 from rosetta_jit.model.expr import Call, Choice, Held, Item, List, Literal
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
@@ -126,7 +126,9 @@ def group_functions() -> Mapping[str, GroupFunction]:
 
 def function_of(expr: Expr) -> GroupFunction | None:
     """The function of several values that an expression calls."""
-    return group_functions().get(expr.function) if isinstance(expr, Call) and expr.function.isidentifier() else None
+    if isinstance(expr, Call) and expr.function.isidentifier() and family_of(expr.function) in GROUPS:
+        return group_functions().get(expr.function)
+    return None
 
 
 def group_of(expr: Expr) -> Group | None:

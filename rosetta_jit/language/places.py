@@ -5,10 +5,11 @@ A place is shown as a mapping names it: a case of a union as a field of what is 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING
 
-from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, For, Ignore, IndexStep, Reject, SetLength, SetState, When
+from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, For, IndexStep, SetLength, When
 from rosetta_jit.model.types import Array, Field, Struct, Union
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -25,33 +26,12 @@ def field_names(place: Place) -> tuple[str, ...]:
 
 def places_in(rules: tuple[Rule, ...]) -> list[Place]:
     """All places that rules set, those within blocks included."""
-    return [place for rule in rules for place in _places(rule)]
+    return [rule.place for rule in every_rule(rules) if isinstance(rule, Assign | SetLength | Default)]
 
 
 def rules_within(rules: tuple[Rule, ...]) -> Iterator[Rule]:
     """The rules in all blocks, without the blocks."""
-    for rule in rules:
-        match rule:
-            case For(body=body):
-                yield from rules_within(body)
-            case When(_, then, otherwise):
-                yield from rules_within((*then, *otherwise))
-            case _:
-                yield rule
-
-
-def _places(rule: Rule) -> list[Place]:
-    match rule:
-        case Assign(place) | SetLength(place) | Default(place):
-            return [place]
-        case For():
-            return places_in(rule.body)
-        case When():
-            return places_in((*rule.then, *rule.otherwise))
-        case Reject() | Ignore() | SetState():
-            return []
-        case _:
-            assert_never(rule)
+    return (rule for rule in every_rule(rules) if not isinstance(rule, For | When))
 
 
 # --- as text -----------------------------------------------------------------------------------------------------------

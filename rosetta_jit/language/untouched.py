@@ -8,8 +8,9 @@ from rosetta_jit.language import typed
 from rosetta_jit.language.counters import counters_of
 from rosetta_jit.language.places import field_names, places_in, value_inside
 from rosetta_jit.language.typed import FieldStep
-from rosetta_jit.language.walk import expressions_of, rules_in, within
+from rosetta_jit.language.walk import expressions_of, parts
 from rosetta_jit.model.types import Field, Optional, Ref, Struct, Union
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -75,12 +76,11 @@ def _field(struct: Struct | Union, name: str) -> Field:
 
 
 def _read(rules: tuple[Rule, ...]) -> Iterator[Place]:
-    for rule in rules:
+    for rule in every_rule(rules):
         if isinstance(rule, typed.Ignore):
             yield rule.place
         for expr in expressions_of(rule):
             yield from places_read(expr)
-        yield from _read(rules_in(rule))
 
 
 def asks_arrival(value: Expr) -> bool:
@@ -94,6 +94,6 @@ def asks_arrival(value: Expr) -> bool:
 
 def places_read(value: Expr) -> Iterator[Place]:
     """The places that an expression looks at, those of its indices included; of a search, what its condition looks at."""
-    for part in within(value):
+    for part in parts(value):
         if isinstance(part, typed.Access | typed.LenOf | typed.IsText | typed.Has) and not asks_arrival(part):
             yield part.place

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.typed import Expr, Place, Rule
 
 
-def parts(expr: Expr) -> tuple[Expr, ...]:
+def operands(expr: Expr) -> tuple[Expr, ...]:
     """The expressions that an expression is made of, the indices in its place first."""
     match expr:
         case Access(place) | LenOf(place) | IsText(place) | Has(place):
@@ -70,11 +70,11 @@ def parts(expr: Expr) -> tuple[Expr, ...]:
             assert_never(expr)
 
 
-def within(expr: Expr) -> Iterator[Expr]:
-    """An expression, its parts, and theirs."""
+def parts(expr: Expr) -> Iterator[Expr]:
+    """Every part of an expression, itself first, those within indices included."""
     yield expr
-    for part in parts(expr):
-        yield from within(part)
+    for part in operands(expr):
+        yield from parts(part)
 
 
 def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
@@ -144,14 +144,3 @@ def expressions_of(rule: Rule) -> tuple[Expr, ...]:
             return ()
         case _:
             assert_never(rule)
-
-
-def rules_in(rule: Rule) -> tuple[Rule, ...]:
-    """The rules within a block; none of another rule."""
-    match rule:
-        case For(body=body):
-            return body
-        case When(_, then, otherwise):
-            return (*then, *otherwise)
-        case _:
-            return ()

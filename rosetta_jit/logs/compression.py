@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 STEP = 1 << 16
 """Bytes that are decompressed at once where a stream is damaged, so that those before the damage are kept."""
 
+MOST_OF_LZ4 = 256
+"""Bytes that one byte of LZ4 stands for, and one more than can be: it counts at most 255 bytes of a copy."""
 
 AT_ONCE = 3
 """Chunks that are in memory at once: one that is decoded, one that waits, one that is decompressed (`rosetta_jit.logs.ahead`)."""
@@ -32,6 +34,12 @@ class Scratch:
     def __init__(self) -> None:
         self._contents = [np.empty(0, np.uint8) for _ in range(AT_ONCE)]
         self._records = [np.empty(0, np.uint8) for _ in range(AT_ONCE)]
+        self._zstd: Any = None
+
+    def zstd(self, zstandard: Any) -> Any:
+        """What decompresses one frame after another: to make it takes as long as to decompress some kilobytes."""
+        self._zstd = self._zstd or zstandard.ZstdDecompressor(max_window_size=MAX_RECORD_BYTES)
+        return self._zstd
 
     def room(self, size: int) -> Bytes:
         """So many bytes for the content of a chunk; what was there three chunks before is gone."""
@@ -78,7 +86,7 @@ def _zstd(name: str, body: memoryview, size: int, scratch: Scratch) -> tuple[Byt
     def read(step: int) -> tuple[Bytes, str]:
         filled = 0
         try:
-            with zstandard.ZstdDecompressor(max_window_size=MAX_RECORD_BYTES).stream_reader(body) as stream:
+            with scratch.zstd(zstandard).stream_reader(body) as stream:
                 while filled < size and (count := stream.readinto(target.data[filled : filled + step])):
                     filled += count
         except (zstandard.ZstdError, MemoryError) as error:
@@ -101,6 +109,7 @@ def zstd_size(data: memoryview) -> int:
 
 def _lz4(name: str, body: memoryview, size: int, _: Scratch) -> tuple[Bytes, str]:
     frame = _package("lz4.frame", name)
+    size = min(size, MOST_OF_LZ4 * (len(body) + 1))  # for all of which the package takes memory at once
     return _pieces(frame.LZ4FrameDecompressor, body, size, (RuntimeError, EOFError, MemoryError))
 
 

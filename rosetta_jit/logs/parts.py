@@ -139,7 +139,8 @@ class Collector:
         filling = self._filling = self._filling or self._decoder.filling_(self._likely(rows), self._batch, self._on_error)
         self._batch, first = filling.batch, filling.count
         count = first + len(rows)
-        self._rows[:, first:count] = rows.begins, rows.ends, rows.log_ns, rows.publish_ns
+        for own, given in zip(self._rows, (rows.begins, rows.ends, rows.log_ns, rows.publish_ns), strict=True):
+            own[first:count] = given
         try:
             with filling.batch.lanes as lanes:
                 self._decoder.fill_(filling, block.data, self._spans, count)

@@ -7,6 +7,7 @@ that record and walks on behind it.
 from __future__ import annotations
 
 import ctypes
+import threading
 from enum import IntEnum
 from functools import cache
 from pathlib import Path
@@ -102,9 +103,21 @@ def walk(records: Literal["mcap", "lcm", "bag"], data: NDArray[np.uint8], at: in
     assert 0 <= at <= data.size
     state = np.array([at, 0, 0, seed], np.uint64)
     room = min(ROOM, (data.size - at) // _LEAST[records] + 1)
-    rows = np.empty((5, room), np.int64)
+    rows = _rows(room)
     count = _function(records)(data.ctypes.data, data.size, state.ctypes.data, rows.ctypes.data, room)
-    return Rows.of(rows[:, :count]), Stop(int(state[0]), Why(int(state[1])), int(state[2]))
+    return Rows.of(rows[:, :count].copy()), Stop(int(state[0]), Why(int(state[1])), int(state[2]))
+
+
+_SCRATCH = threading.local()
+"""Of each thread the memory that walks write to. Fresh memory for as many messages as there could be would take as long as the walk."""
+
+
+def _rows(room: int) -> NDArray[np.int64]:
+    """Shape (5, room): what was there before is gone."""
+    memory: NDArray[np.int64] | None = getattr(_SCRATCH, "memory", None)
+    if memory is None or memory.size < 5 * room:
+        memory = _SCRATCH.memory = np.empty(5 * room, np.int64)
+    return memory[: 5 * room].reshape(5, room)
 
 
 _LEAST = {"mcap": 31, "lcm": 28, "bag": 8}

@@ -256,3 +256,9 @@ class Schema:
     def resolve(self, type_: Type) -> Type:
         """The declared type behind a reference; every other type is itself."""
         return self.types[type_.name] if isinstance(type_, Ref) else type_
+
+    def struct(self, name: str) -> Struct:
+        """The struct of a name that is known to be one's."""
+        found = self.types[name]
+        assert isinstance(found, Struct)
+        return found

@@ -6,7 +6,7 @@ The depth of an expression is bounded by the parser, so that walks may be recurs
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, TypeVar, assert_never, cast
 
 from rosetta_jit.model import mapping
 from rosetta_jit.model.expr import (
@@ -72,19 +72,6 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
             assert_never(expr)
 
 
-def every_rule(rules: tuple[Rule, ...]) -> Iterator[Rule]:
-    """Rules, and those within them."""
-    for rule in rules:
-        yield rule
-        match rule:
-            case mapping.For(body=body):
-                yield from every_rule(body)
-            case mapping.When(then=then, otherwise=otherwise):
-                yield from every_rule((*then, *otherwise))
-            case _:
-                pass
-
-
 def with_expressions(rule: Rule, change: Callable[[Expr], Expr]) -> Rule:
     """A rule with the expressions changed that it has itself; the rules within it are as they were."""
     match rule:
@@ -122,6 +109,27 @@ def expressions_of(rule: Rule) -> list[Expr]:
     found: list[Expr] = []
     with_expressions(rule, lambda expr: found.append(expr) or expr)
     return found
+
+
+RuleT = TypeVar("RuleT")
+"""A rule of a mapping as it is written, or a typed one."""
+
+
+def rules_in(rule: RuleT) -> tuple[RuleT, ...]:
+    """The rules of a block; none of another rule."""
+    if isinstance(rule, mapping.For):
+        return cast("mapping.For[RuleT, object]", rule).body
+    if isinstance(rule, mapping.When):
+        block = cast("mapping.When[RuleT, object]", rule)
+        return (*block.then, *block.otherwise)
+    return ()
+
+
+def every_rule(rules: tuple[RuleT, ...]) -> Iterator[RuleT]:
+    """Rules, and those within their blocks: a block comes before what is in it."""
+    for rule in rules:
+        yield rule
+        yield from every_rule(rules_in(rule))
 
 
 def _with_indices(place: Field | List, change: Callable[[Expr], Expr]) -> Field | List:

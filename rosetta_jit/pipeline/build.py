@@ -16,7 +16,6 @@ from rosetta_jit.catalogue.wires import single as single_wire
 from rosetta_jit.catalogue.wires import unknown as unknown_wire
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework
-from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError
@@ -33,7 +32,7 @@ from rosetta_jit.model.types import Ref, Schema, Struct
 from rosetta_jit.pipeline.checked_mapping import CheckedMapping
 from rosetta_jit.pipeline.declared import declared_types, files_of, of_a_size, readers_of, report
 from rosetta_jit.pipeline.kept import kept_of
-from rosetta_jit.pipeline.request import ByteOrder
+from rosetta_jit.pipeline.request import ByteOrder, Request
 from rosetta_jit.pipeline.stages import shown
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.pipeline.user_functions import called_functions, check_compiled, check_given
@@ -52,7 +51,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Kernel, Site
     from rosetta_jit.language.typed import Rule
     from rosetta_jit.lowering.writer import References
-    from rosetta_jit.pipeline.request import GivenFunction, Request
+    from rosetta_jit.pipeline.request import GivenFunction
     from rosetta_jit.pipeline.stages import Made
     from rosetta_jit.source import Span
     from rosetta_jit.wire.codec import Encoding
@@ -90,7 +89,8 @@ class Build:
         framework = self.wire_framework
         name = self.request.encoding or next(iter(framework.encodings))
         if name not in framework.encodings:
-            raise report(self.request, words.unknown_encoding(name, framework.name, tuple(framework.encodings)))
+            every = {each.name: each.encodings for each in readers_of(self.request).frameworks.values()}
+            raise report(self.request, words.unknown_encoding(name, framework.name, tuple(framework.encodings), every))
         encoding = framework.encoding(name)(self.types.wire, self.types.schema, name, self._choices(framework, name))
         if self.request.direction == "encode" and encoding.written is None:
             raise report(self.request, words.ambiguous_encoding(name, tuple(each for each in framework.encodings if each != name)))
@@ -297,10 +297,22 @@ def within_stack() -> Generator[None]:
 
 
 @within_stack()
-def check_mapping(path: str, folders: Iterable[str] = (), parameters: Mapping[str, object] | None = None) -> CheckedMapping:
+def check_mapping(
+    path: str,
+    folders: Iterable[str] = (),
+    parameters: Mapping[str, object] | None = None,
+    *,
+    encoding: str | None = None,
+    framework: str | None = None,
+) -> CheckedMapping:
     """What is known of a mapping; raises MappingError with all that is wrong."""
     search, reading = SearchPath.of(folders), Reading()
-    return CheckedMapping(check(parse_mapping(search.open(path)), Readers(installed()), search, reading, parameters))
+    request = Request("decode", mapping=path, encoding=encoding, framework=framework)
+    readers = readers_of(request)
+    known = [name for each in readers.frameworks.values() for name in each.encodings]
+    if encoding is not None and encoding not in known:
+        raise report(request, words.no_encoding(encoding, known))
+    return CheckedMapping(check(parse_mapping(search.open(path)), readers, search, reading, parameters))
 
 
 def _mapped_types(build: Build) -> Types:

@@ -12,12 +12,10 @@ from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.attributes.methods import turning
 from rosetta_jit.runtime.callable import FAILED, THREAD
 from rosetta_jit.runtime.filling import Filling
-from rosetta_jit.runtime.joining import NOT_WHOLE, broken_wires, joining
 from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.runtime.message_spans import laid_out, source_of
 from rosetta_jit.runtime.program import Loaded, Program, is_foreign
 from rosetta_jit.runtime.room import roomier
-from rosetta_jit.runtime.whole_objects import decoding, decoding_whole
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
@@ -111,6 +109,8 @@ class DecoderBase(Program):
         self._refuse_part("to a new object")
         family = self._loaded.holder_type.family_
         if types is None and not self._loaded.borrow and len(self._quick) < MAX_CLASSES:
+            from rosetta_jit.runtime.whole_objects import decoding, decoding_whole
+
             whole = family.wholes[object_type]
             if whole is None:
                 self._quick[object_type] = decoding(self.builtin, self.new, family.givers.maker(object_type))
@@ -252,6 +252,8 @@ class DecoderBase(Program):
 
     def _join(self, data: NDArray[np.uint8], holder: Holder, wire: int) -> None:
         """One message into its part of a holder."""
+        from rosetta_jit.runtime.joining import broken_wires, joining
+
         words = self._context[1]
         has_failed, words[FAILED] = bool(words[FAILED]), 0
         broken = broken_wires(self._owners.setdefault("broken", WeakKeyDictionary()), holder)
@@ -271,6 +273,8 @@ class DecoderBase(Program):
     def _refuse_part(self, how: str) -> None:
         """Where a message has to fill a whole holder."""
         if self._loaded.wire is not None:
+            from rosetta_jit.runtime.joining import NOT_WHOLE
+
             raise ValueError(NOT_WHOLE.format(how))
 
     def _becomes_mine(self) -> bool:

@@ -17,7 +17,6 @@ from rosetta_jit.runtime.holder.message import Message, place
 from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.runtime.message_spans import MessageSpans
 from rosetta_jit.runtime.program import Loaded, Program, is_foreign, one_by_one
-from rosetta_jit.runtime.whole_objects import encoding, encoding_by_steps
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
@@ -234,6 +233,8 @@ class EncoderBase(Program):
         if isinstance(value, Message):
             is_row = value.access_ is self._loaded.holder_type.family_.root and value.parent_ is None
             return self._of_row(value, *more) if is_row else self._of_foreign(value, self, *more)
+        from rosetta_jit.runtime.whole_objects import encoding, encoding_by_steps
+
         whole = self._loaded.holder_type.family_.wholes[type(value)]
         steps = self._loaded.holder_type.family_.takers.steps(value) if whole is None else None
         if whole is not None:

@@ -8,13 +8,17 @@ from typing import TYPE_CHECKING, Self
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.terminal import printable
-from rosetta_jit.transports.limits import MAX_REASON, MAX_REASONS
+from rosetta_jit.transports.limits import MAX_ALIKE, MAX_REASON, MAX_REASONS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from types import TracebackType
 
     Lost = Callable[[str, int], object]
+
+
+ALIKE_WORDS = 3
+"""By which reasons are alike: `a message of …`. What a peer said stands behind them."""
 
 
 class End:
@@ -72,11 +76,18 @@ class End:
         """Count messages that are lost, and say why; for transports. A reason may hold what a peer said."""
         reason = printable(reason[:MAX_REASON])
         with self._lock:
-            if reason not in self.lost and len(self.lost) >= MAX_REASONS:
-                reason = "other reasons"
+            if reason not in self.lost:
+                reason = self._bounded(reason)
             self.lost[reason] += count
         if self._tell is not None:
             self._tell(reason, count)
+
+    def _bounded(self, reason: str) -> str:
+        """A new reason, or the one of all that begin alike: a peer that is wrong in ever new ways hides no other reasons."""
+        head = " ".join(reason.split(" ", ALIKE_WORDS)[:ALIKE_WORDS])
+        if sum(each.startswith(head) for each in self.lost) >= MAX_ALIKE:
+            reason = f"{head} …"
+        return reason if reason in self.lost or len(self.lost) < MAX_REASONS else "other reasons"
 
     def close(self) -> None:
         """Stop."""

@@ -25,6 +25,9 @@ MAX_CONNECTIONS = 512
 MAX_REASONS = 50
 """reasons of refusals that an end counts apart"""
 
+MAX_ALIKE = 4
+"""of these, reasons that begin with the same three words; further ones of them are counted together"""
+
 MAX_REASON = 400
 """characters of such a reason"""
 

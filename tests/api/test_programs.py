@@ -323,6 +323,8 @@ def test_errors_of_making_programs():
         rj.Decoder("no/such.mapping")
     with pytest.raises(rj.MappingError, match="unknown-encoding"):
         rj.Decoder(TORSO, encoding="yarp5")
+    with pytest.raises(rj.SchemaError, match=r"`ros2` is the name of a framework, and no encoding\n.*choose one of cdr, cdr2"):
+        rj.Decoder.of("std_msgs/String", encoding="ros2")
     with pytest.raises(rj.MappingError, match="ambiguous-encoding"):
         rj.Encoder(TORSO)
     with pytest.raises(rj.SchemaError, match="unknown-type"):

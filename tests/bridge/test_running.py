@@ -1,60 +1,22 @@
-"""Routes that run, over sockets of this machine: what arrives, what is dropped, what is said, and what is left behind."""
+"""Routes that run, over sockets of this machine: what arrives, what targets are told, other files, and what comes back."""
 
 from __future__ import annotations
 
-import socket
 import struct
 import threading
-import time
-import urllib.request
 
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.bridge import metrics as asking
 from rosetta_jit.bridge.announcing import announced
 from rosetta_jit.bridge.checking import checked
-from rosetta_jit.bridge.counting import WINDOW_S, Latencies, RouteCounts
-from rosetta_jit.bridge.limits import MAX_CAUSES
-from rosetta_jit.bridge.metrics import MetricsServer, text
-from rosetta_jit.bridge.running import Running
+from rosetta_jit.bridge.metrics import text
 from rosetta_jit.bridge.table import rows
 from rosetta_jit.bridge.translating import Bridged, Unchanged
+from tests.bridge.routes import MAPPED, route
 from tests.transports.free import free_port, until
 from tests.transports.name_server import NameServer
 from tests.transports.ros_master import Master
-
-TORSO = "yarp/icub/torso_state.mapping"
-
-
-@pytest.fixture(scope="module")
-def bottles():
-    encode = rj.Encoder(TORSO, encoding="yarp4")
-    return [encode({"angles": [float(number), 0.0, 1.0]}) for number in range(100)]
-
-
-@pytest.fixture
-def run(tmp_path):
-    """Runs a file, given as text, until the test ends; gives the bridge and what it has said."""
-    bridges = []
-
-    def start(configuration):
-        (tmp_path / "bridge.toml").write_text(configuration)
-        said = []
-        bridges.append(Running(checked(str(tmp_path / "bridge.toml")), said.append))
-        bridges[-1].start()
-        return bridges[-1], said
-
-    yield start
-    for each in bridges:
-        each.stop(0.2)
-
-
-def route(source, target, *lines):
-    return "\n".join(["[[route]]", f'source = "tcp:{source}"', f'target = "tcp:{target}"', *lines, ""])
-
-
-MAPPED = f'mapping = "{TORSO}"\ndecode = {{ encoding = "yarp4" }}'
 
 
 def test_messages_are_translated(run, bottles):
@@ -222,188 +184,6 @@ def test_what_an_address_says_goes_first(target, told):
     assert announced(target, Unchanged()) == {}
 
 
-def test_a_rate(run):
-    source, target = free_port(), free_port()
-    with rj.subscribe(f"tcp:{target}"):
-        bridge, said = run(route(source, target, "rate = 20"))
-        with rj.publish(f"tcp:{source}") as robot:
-            begun = time.monotonic()
-            while time.monotonic() < begun + 0.5:
-                robot.send(b"x")
-                time.sleep(0.002)
-        until(lambda: bridge.snapshot()[0]["taken"] == robot.messages)
-        found = bridge.snapshot()[0]
-        assert 8 <= found["sent"] <= 13
-        assert found["dropped"] == {"above its rate": found["taken"] - found["sent"]}
-        assert any("dropped: above its rate" in line for line in said)
-
-
-class Refuses:
-    """A target that takes messages when it is told to."""
-
-    def __init__(self):
-        self.takes, self.got, self.lost, self.connections = False, [], None, 0
-
-    def send(self, data, **_):
-        if self.takes:
-            self.got.append(bytes(data))
-        else:
-            self.lost("nobody listens", 1)
-        return self.takes
-
-    def flush(self, _):
-        return True
-
-    def close(self):
-        pass
-
-
-@pytest.mark.parametrize(("full", "kept"), [("oldest", range(5, 9)), ("newest", range(5))])
-def test_what_is_dropped_when_the_queue_is_full(run, monkeypatch, full, kept):
-    target = Refuses()
-
-    def publish(address, *, lost):
-        target.lost = lost
-        return target
-
-    monkeypatch.setattr("rosetta_jit.bridge.running.publish", publish)
-    source = free_port()
-    bridge, said = run(route(source, 1, "queue = 4", f'full = "{full}"'))
-    live = next(iter(bridge.live.values()))
-    live.deliver(message(0))
-    until(lambda: live._held)  # the queue's thread has it
-    for number in range(1, 9):
-        live.deliver(message(number))
-    assert live.waiting == 5
-    assert live.counts.dropped == {"queue full (nobody listens)": 4}
-    assert any("1 dropped: queue full" in line for line in said)
-    target.takes = True
-    until(lambda: len(target.got) == 5)
-    assert target.got == [bytes([number]) for number in ([0, *kept] if full == "oldest" else kept)]
-    live.deliver(message(99))
-    assert target.got[-1] == bytes([99])  # at once: nothing waits
-
-
-def test_a_queue_holds_few_large_messages(run, monkeypatch):
-    monkeypatch.setattr("rosetta_jit.bridge.live.MAX_QUEUE_BYTES", 5)
-    bridge, _ = run(route(free_port(), f"{free_port()}?wait=no", "queue = 4"))
-    live = next(iter(bridge.live.values()))
-    live.deliver(message(0))
-    until(lambda: live._held)
-    for each in (b"12", b"34", b"5", b"67", b"123456789"):
-        live.deliver(message(0, each))
-    assert [item[0] for item in live._waiting] == [b"123456789"]
-    assert sum(live.counts.dropped.values()) == 4
-
-
-def message(number, data=b""):
-    from rosetta_jit.transports.base import Message
-
-    return Message(data or bytes([number]), "a", time=1)
-
-
-def test_a_message_that_is_refused_for_ever_holds_up_no_others(run, monkeypatch):
-    target = Refuses()
-    target.connections, target.send = 1, lambda data, **_: bytes(data) != b"\x05" and not target.got.append(bytes(data))
-
-    def publish(address, *, lost):
-        return target
-
-    monkeypatch.setattr("rosetta_jit.bridge.running.publish", publish)
-    bridge, _ = run(route(free_port(), 1, "timeout = 0.1"))
-    live = next(iter(bridge.live.values()))
-    for number in range(4, 8):
-        live.deliver(message(number))
-    until(lambda: len(target.got) == 3)
-    assert target.got == [b"\x04", b"\x06", b"\x07"]
-    assert sum(live.counts.dropped.values()) == 1
-
-
-def test_what_was_taken_is_sent_before_it_stops(run):
-    """The target comes when the bridge has been told to stop."""
-    source, target = free_port(), free_port()
-    bridge, _ = run(route(source, target))
-    with rj.publish(f"tcp:{source}") as robot:
-        for number in range(50):
-            robot.send(bytes([number]))
-        until(lambda: bridge.snapshot()[0]["taken"] == 50)
-    with rj.subscribe(f"tcp:{target}") as late:
-        bridge.stop(5)
-        assert [late.take(5).data for _ in range(50)] == [bytes([number]) for number in range(50)]
-
-
-def test_what_was_not_sent_is_counted(run, monkeypatch):
-    target = Refuses()
-
-    def publish(address, *, lost):
-        target.lost = lost
-        return target
-
-    monkeypatch.setattr("rosetta_jit.bridge.running.publish", publish)
-    bridge, said = run(route(free_port(), 1))
-    live = next(iter(bridge.live.values()))
-    for number in range(3):
-        live.deliver(message(number))
-    bridge.stop(0.1)
-    assert sum(live.counts.dropped.values()) == 3
-    assert any("nobody listens" in line for line in said)
-
-
-def test_a_peer_that_is_too_slow_costs_its_own_messages_and_is_counted(run):
-    """One of two takes nothing. What the other one got is sent, and what the first one did not get is dropped."""
-    source, target = free_port(), free_port()
-    bridge, said = run(f'[[route]]\nsource = "tcp:{source}"\ntarget = "rsb:/big?port={target}&type=bytes&linger=0.1"\n')
-    live = next(iter(bridge.live.values()))
-    until(lambda: live.target is not None)
-    with (
-        rj.subscribe(f"rsb:/big?host=localhost&port={target}&role=client", queue=100) as quick,
-        socket.create_connection(("127.0.0.1", target)),
-    ):
-        until(lambda: live.target.connections == 2)
-        with rj.publish(f"tcp:{source}") as robot:
-            for _ in range(30):
-                robot.send(bytes(1 << 20))
-                assert quick.take(5)
-        until(lambda: bridge.snapshot()[0]["sent"] == 30)
-        too_slow = live.counts.dropped["the peer is too slow"]
-        assert too_slow > 5
-        assert any("1 dropped: the peer is too slow" in line for line in said)
-        bridge.stop(0.1)
-        assert 10 <= live.counts.dropped["closed before it was sent"] <= 30 - too_slow
-
-
-def test_many_targets_that_take_nothing_are_closed_side_by_side(run):
-    targets = [free_port() for _ in range(8)]
-    bridge, _ = run("".join(route(free_port(), f"{each}?wait=no", f'name = "{each}"') for each in targets))
-    for each in bridge.live.values():
-        each.deliver(message(0))
-    begun = time.monotonic()
-    bridge.stop(0.5)
-    assert time.monotonic() - begun < 3.0
-    assert all(sum(each.counts.dropped.values()) == 1 for each in bridge.live.values())
-
-
-def test_each_message_for_a_target_that_takes_nothing_is_counted_once(run):
-    source, target = free_port(), free_port()
-    with socket.create_server(("127.0.0.1", target)) as stuck:
-        bridge, _ = run(route(source, f"{target}?timeout=0.05&linger=0.05", "queue = 5"))
-        live = next(iter(bridge.live.values()))
-        peer, _ = stuck.accept()
-        with peer, rj.publish(f"tcp:{source}") as robot:
-            for _ in range(40):
-                robot.send(bytes(1 << 20))
-            until(lambda: live.counts.taken == 40)
-            bridge.stop(0.1)
-            peer.setblocking(False)
-            arrived = 0
-            while piece := peer.recv(1 << 20):
-                arrived += len(piece)
-        dropped = live.counts.dropped
-        assert live.counts.sent == dropped["closed before it was sent"] + arrived // ((1 << 20) + 4)
-        assert live.counts.sent + sum(dropped.values()) - dropped["closed before it was sent"] == 40
-        assert dropped["closed before it was sent"] > 4
-
-
 def test_services(run, bottles):
     """An answer that goes through, one that cannot be translated, and messages that ask."""
     outer, inner, source = free_port(), free_port(), free_port()
@@ -486,6 +266,16 @@ def test_what_cannot_be_opened_is_tried_again(run):
         assert any("taken" in line for line in said)
         in_the_way.close()
         until(lambda: not bridge.snapshot()[0]["problem"])
+        bridge.stop(0.2)
+        assert bridge.snapshot()[0]["problem"] == "closed"
+
+
+def test_why_a_route_never_ran_is_said_at_the_end(run):
+    source = free_port()
+    with rj.subscribe(f"tcp:{source}"):
+        bridge, _ = run(route(source, free_port()))
+        bridge.stop(0.2)
+    assert "taken" in bridge.snapshot()[0]["problem"]
 
 
 def test_channels_are_found(run):
@@ -523,84 +313,3 @@ def test_a_target_that_comes_back(run):
         until(lambda: bridge.snapshot()[0]["taken"] == 21)
         with rj.subscribe(f"tcp:{target}") as again:
             assert [again.take(10).data for _ in range(20)] == [bytes([number]) for number in range(20)]
-
-
-def test_causes_are_bounded():
-    counts = RouteCounts()
-    for number in range(10_000):
-        counts.fail(f"cause {number}")
-    assert len(counts.failed) == MAX_CAUSES + 1
-    assert sum(counts.failed.values()) == 10_000
-
-
-def test_latencies():
-    latencies = Latencies()
-    assert latencies.quantile(0.5) is None
-    for number in [*range(1, 1000), 10**15]:
-        latencies.add(number)
-    for part in (0.1, 0.5, 0.9):
-        assert latencies.quantile(part) == pytest.approx(1000 * part, rel=0.13)
-    assert latencies.quantile(1.0) == pytest.approx(10**15, rel=0.13)
-    assert (latencies.total, latencies.total_ns) == (1000, 499_500 + 10**15)
-
-
-def test_latencies_are_those_of_the_last_minutes():
-    latencies, begun = Latencies(), time.monotonic()
-    latencies.add(10**6)
-    latencies.forget(begun + 1)
-    assert latencies.quantile(0.5) is not None
-    latencies.forget(begun + WINDOW_S + 1)
-    latencies.add(10**3)
-    assert latencies.quantile(0.99) == pytest.approx(10**6, rel=0.13)
-    latencies.forget(begun + 2 * WINDOW_S + 2)
-    assert latencies.quantile(0.99) == pytest.approx(10**3, rel=0.13)
-    latencies.forget(begun + 4 * WINDOW_S + 3)  # nothing came, and nobody looked
-    assert latencies.quantile(0.99) is None
-    assert latencies.total == 2
-
-
-def test_the_table_and_the_metrics(run):
-    source, target = free_port(), free_port()
-    with rj.subscribe(f"tcp:{target}") as there:
-        bridge, _ = run(route(source, target, 'name = "a \\"b\\"\\u001b[2J"'))
-        with rj.publish(f"tcp:{source}") as robot:
-            robot.send(b"12345")
-            assert there.take(5)
-        next(iter(bridge.live.values())).lost("evil\x1b[2J reason\n")
-        table = "\n".join(rows(bridge.snapshot()))
-        assert "\x1b" not in table
-        assert "dropped 1: evil" in table
-        metrics = MetricsServer("0", bridge.snapshot)
-        try:
-            with urllib.request.urlopen(f"http://127.0.0.1:{metrics.port}/metrics") as answer:
-                found = answer.read().decode()
-        finally:
-            metrics.close()
-        assert found.split("\n")[0].startswith("# HELP")
-        assert 'rosetta_jit_bridge_bytes_sent_total{route="a \\"b\\"?[2J"} 5' in found
-        assert 'reason="evil?[2J reason?"} 1' in found
-        assert 'rosetta_jit_bridge_latency_seconds_count{route="a \\"b\\"?[2J"} 1\n' in found
-        assert 'rosetta_jit_bridge_connections{route="a \\"b\\"?[2J",end="target"} 1' in found
-        assert 'rosetta_jit_bridge_reconnects_total{route="a \\"b\\"?[2J",end="source"} 0' in found
-        assert all(line.startswith("#") or line.count("{") == 1 for line in text(bridge.snapshot()).splitlines())
-
-
-def test_who_asks_for_metrics_and_says_nothing_holds_up_nobody(monkeypatch):
-    monkeypatch.setattr(asking, "MAX_ASKING", 2)
-    monkeypatch.setattr(asking, "ASKING_S", 0.3)
-    metrics = MetricsServer("0", list)
-    try:
-        with socket.create_connection(("127.0.0.1", metrics.port)), socket.create_connection(("127.0.0.1", metrics.port)):
-            with socket.create_connection(("127.0.0.1", metrics.port)) as third:
-                assert third.recv(1) == b""
-            until(lambda: is_answered(metrics.port))
-    finally:
-        metrics.close()
-
-
-def is_answered(port):
-    try:
-        with urllib.request.urlopen(f"http://127.0.0.1:{port}/metrics") as answer:
-            return answer.read().startswith(b"# HELP")
-    except OSError:
-        return False

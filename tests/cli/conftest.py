@@ -59,7 +59,9 @@ class StubEncoder(StubDecoder):
 def library(monkeypatch):
     calls = SimpleNamespace(inferred=None)
 
-    def check(mapping):
+    def check(mapping, *, encoding=None, framework=None):
+        assert encoding is None
+        assert framework is None or mapping == "wrong.mapping"
         if mapping == "wrong.mapping":
             raise MappingError((MISTAKE,))
         return SimpleNamespace(warnings=(DOUBT,) if mapping == "doubtful.mapping" else (), notes=())

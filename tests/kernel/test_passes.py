@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rosetta_jit.kernel.ir import (
+    Advance,
     Copy,
     Expect,
     Fill,
@@ -27,6 +28,7 @@ from rosetta_jit.kernel.ir import (
     Routine,
     SetField,
     Store,
+    Used,
     Wire,
 )
 from rosetta_jit.kernel.passes import order as passes
@@ -245,3 +247,12 @@ def test_a_long_run_is_cut_for_processors_and_a_vast_one_is_one_loop():
 
     assert [int(size.value) for _, _, size in copies(join(run(37)))] == [128, 128, 40]
     assert [int(size.value) for _, _, size in copies(join(run(1000)))] == [8000]
+
+
+def test_what_a_size_kernel_leaves_is_not_forgotten():
+    """The encoder runs on the same lanes, and reads the lengths there."""
+    taken = (ROW_EXISTS, Reserve(2, index(1)), Let("first", Used(2)), Advance(2, index(1)))
+    body = (*taken, SetField(Place(2, i64("first")), index(5)), Return(BEGIN))
+    sizes, encoder = (replace(kernel(body, strides=(64, 8, 16), direction=direction), hidden=1) for direction in ("size", "encode"))
+    assert forget(sizes) is sizes
+    assert not any(isinstance(stmt, SetField) for stmt in forget(encoder).bodies[0])

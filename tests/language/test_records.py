@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from importlib import import_module
 
 import pytest
 
-from rosetta_jit.language.function import SEVERAL, Affine, NotFollowed, Numbers, Texts, Undone, functions, shipped
+from rosetta_jit.language.function import GROUPS, OURS, SEVERAL, Affine, NotFollowed, Numbers, Texts, Undone, functions, shipped
 
 RECORDS = pytest.mark.parametrize("function", shipped(), ids=lambda each: each.name)
 
@@ -50,6 +51,29 @@ def test_what_it_names_is_there(function):
         assert set(function.law.by) <= functions().keys()
     if function.whole is not None:
         assert function.whole.rest in functions()
+
+
+@pytest.mark.parametrize("family", OURS)
+def test_the_table_says_which_module_has_which_functions(family):
+    module = import_module(f"rosetta_jit.functions.{family}")
+    groups = module.GROUP_FUNCTIONS if family in GROUPS else ()
+    names = {each.name.partition(".")[0] for each in (*module.FUNCTIONS, *groups)}
+    assert names == set(OURS[family])
+    assert all(functions()[each.name] is each for each in module.FUNCTIONS)
+
+
+def test_a_family_is_imported_when_one_of_its_functions_is_looked_up():
+    program = """
+import sys
+from rosetta_jit.language.function import functions, written
+def imported():
+    return {name.rpartition(".")[2] for name in sys.modules if name.startswith("rosetta_jit.functions.")}
+assert written("sine") is None and "nothing" not in functions() and not imported()
+assert written("crc").name == "crc" and "checksums" in imported() and not {"utm", "angles"} & imported()
+assert "euler.roll" in functions() and "euler.rol" not in functions() and "rotations" in imported()
+assert len(functions()) == len(list(functions())) and "utm" in imported()
+"""
+    subprocess.run([sys.executable, "-c", program], check=True)
 
 
 def test_no_two_have_one_name():

@@ -8,7 +8,7 @@ import pytest
 
 from rosetta_jit.language import typed
 from rosetta_jit.language.typed import BOOL, INT64, Const, IndexStep, Local, Place
-from rosetta_jit.language.walk import parts, rebuilt, renamed, within
+from rosetta_jit.language.walk import operands, parts, rebuilt, renamed
 from rosetta_jit.model.types import Array, Int
 
 A, B, C, D = (Local(name) for name in "abcd")
@@ -43,9 +43,9 @@ def test_every_kind_of_expression_is_here():
 @pytest.mark.parametrize("kind", EXPRESSIONS, ids=lambda kind: kind.__name__)
 def test_parts_are_what_is_rebuilt(kind):
     expr, names = EXPRESSIONS[kind]
-    inside = [part for each in parts(expr) for part in within(each)]
+    inside = [part for each in operands(expr) for part in parts(each)]
     assert [part.name for part in inside if isinstance(part, Local)] == list(names)
     moved = renamed(expr, {name: Local(name.upper()) for name in names}) if kind is not Local else expr
-    inside = [part for each in parts(moved) for part in within(each)]
+    inside = [part for each in operands(moved) for part in parts(each)]
     assert [part.name for part in inside if isinstance(part, Local)] == list(names.upper())
     assert rebuilt(expr, lambda part: part) == expr

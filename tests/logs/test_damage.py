@@ -26,12 +26,13 @@ def logs(tmp_path_factory):
         "loose.mcap": write_mcap(folder / "loose.mcap", COUNT, chunked=False).read_bytes(),
         "a.bag": write_bag(folder / "a.bag", COUNT).read_bytes(),
         "bz2.bag": write_bag(folder / "bz2.bag", COUNT, "bz2").read_bytes(),
+        "lz4.bag": write_bag(folder / "lz4.bag", COUNT, "lz4").read_bytes(),
         "old.bag": write_old_bag(folder / "old.bag", COUNT).read_bytes(),
         "a.lcmlog": write_lcm(folder / "a.lcmlog", COUNT).read_bytes(),
     }
 
 
-KINDS = ("chunked.mcap", "lz4.mcap", "loose.mcap", "a.bag", "bz2.bag", "old.bag", "a.lcmlog")
+KINDS = ("chunked.mcap", "lz4.mcap", "loose.mcap", "a.bag", "bz2.bag", "lz4.bag", "old.bag", "a.lcmlog")
 
 
 def read(path, data):

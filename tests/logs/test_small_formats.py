@@ -151,3 +151,14 @@ def test_damaged_bags_of_version_1_2(tmp_path):
         assert len(messages) >= before
         before = len(messages)
     assert before == len(everything)
+
+
+def test_a_bag_of_version_1_2_without_the_last_record(tmp_path):
+    """The index of one topic is whole, and that of the other is missing."""
+    data, path = write_old_bag(tmp_path / "old.bag", 6).read_bytes(), tmp_path / "cut.bag"
+    for size in range(data.rindex(b"op=\4") - 60, len(data)):
+        path.write_bytes(data[:size])
+        found = []
+        assert len(list(rj.open(path, on_problem=found.append).messages(raw=True))) == 8
+        assert {each.code for each in found} <= {"log-cut", "log-index"}
+        assert found

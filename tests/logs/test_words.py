@@ -17,6 +17,7 @@ EXAMPLES = {
     "known": ["/imu", "/tf"],
     "suffixes": [".mcap", ".bag"],
     "encoding": "cdr",
+    "encodings": ["cdr", "json"],
     "details": " (fingerprint 0x0123)",
     "carried": "messages of ROS 1 alone",
     "why": "it is cut short",

@@ -292,3 +292,73 @@ def test_members_in_any_order(backend, encoding):
     message = write(write.holder_type.from_dict({"turns": 3, "name": "left"}))
     assert decode(message).to_dict() == {"turns": 6, "name": "left"}
     assert encode(decode(message)) == message
+
+
+SEEN = """syntax = "proto3"; package lab;
+message Point { double x = 1; double y = 2; string name = 3; repeated string tags = 4; }
+message Seen {
+  bytes data = 1;
+  uint32 width = 2;
+  string word = 3;
+  repeated Point points = 4;
+  repeated sint64 numbers = 5;
+  map<string, Point> places = 6;
+}
+message Width { uint32 width = 1; string first = 2; }
+"""
+WIDTH = """import "lab.proto"
+data-holder: lab.Width
+wire-schema: lab.Seen
+unpack-rules:
+  ignore rest
+  .width = .width
+  .first = .points[0].name if len(.points) > 0 else ""
+"""
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_what_no_rule_reads_is_checked_and_not_copied(backend):
+    schema = {"lab.proto": SEEN, "width.mapping": WIDTH}
+    decode = rj.Decoder("width.mapping", schema=schema, backend=backend)
+    encode = rj.Encoder.of("lab.Seen", schema={"lab.proto": SEEN}, imports=["lab.proto"])
+    points = [{"x": 1.0, "name": "é", "tags": ["a", "b"]}, {"name": "z"}]
+    fields = {"data": bytes(300_000), "width": 7, "word": "ž", "points": points, "numbers": [-1, 2**40], "places": {"k": points[0]}}
+    message = bytes(encode(fields))
+    assert decode(message).to_dict() == {"width": 7, "first": "é"}
+    unknown = b"\xfa\x01\x03abc"
+    assert decode(unknown + message + unknown).width == 7
+    whole = rj.Decoder.of("lab.Seen", schema={"lab.proto": SEEN}, imports=["lab.proto"])
+    for broken in (
+        message.replace("ž".encode(), b"\xff\xff"),
+        message.replace(b"\x22\x01b", b"\x22\x01\xff"),
+        message[:-1],
+        message + b"\x1a\x05abc",
+        message + b"\x2a\x01\x80",
+        message + b"\x0f",
+    ):
+        kinds: list[str] = []
+        for program in (decode, whole):
+            with pytest.raises(rj.DecodeError) as caught:
+                program(broken)
+            kinds.append(caught.value.kind)
+        assert kinds[0] == kinds[1]
+
+
+def test_what_no_rule_reads_takes_no_statements():
+    text = rj.Decoder("width.mapping", schema={"lab.proto": SEEN, "width.mapping": WIDTH}).stage("kernel").partition("body 0")[2]
+    copies = [line.strip() for line in text.splitlines() if line.strip().startswith("copy")]
+    assert len(copies) == 2  # a name, into the hidden lane of names and out of it
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_lengths_that_are_measured_first(backend):
+    """What stands in front of a packed array is known to the measuring kernel, and written by the encoder."""
+    files = {
+        "t/In.msg": "int32[] ks\n",
+        "t/out.proto": 'syntax = "proto3"; package t; message Out { repeated int64 small = 1; repeated sint32 turned = 2; }',
+        "m.mapping": 'import "t/In.msg" import "t/out.proto" data-holder: t/In wire-schema: t.Out '
+        "pack-rules: .small[] = .ks[] where .ks[] > 3 .turned = permuted(.ks, [1, 0])",
+    }
+    encode = rj.Encoder("m.mapping", schema=files, encoding="protobuf", backend=backend)
+    for ks, message in (([1, 2], b"\x12\x02\x04\x02"), ([5, -300], b"\x0a\x01\x05\x12\x03\xd7\x04\x0a")):
+        assert encode({"ks": ks}) == message

@@ -257,6 +257,17 @@ def test_reasons_are_few_short_and_printable():
     assert all(each.isprintable() and len(each) <= 403 for each in source.lost)
 
 
+def test_a_peer_that_is_wrong_in_ever_new_ways_hides_no_other_reasons():
+    source = Source("here", None, None)
+    for number in range(1000):
+        source.lose(f"a message of {number} bytes, more than max_message=1")
+        source.lose(f"another md5 sum: {number}")
+    source.lose("queue full")
+    assert source.lost["queue full"] == 1
+    assert (source.lost["a message of …"], source.lost["another md5 sum: …"]) == (996, 996)
+    assert len(source.lost) == 11
+
+
 def test_peers_that_vanish_are_noticed():
     """Half-open connections: the kernel asks after a silence, and gives up on what is not acknowledged, within half a minute."""
     one, two = socket.create_server(("127.0.0.1", 0)), socket.socket()

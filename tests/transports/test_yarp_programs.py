@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 from contextlib import contextmanager
-from functools import cache
-from pathlib import Path
 
 import pytest
 
@@ -17,16 +14,9 @@ from rosetta_jit.transports.yarp.admin import ask_port
 from rosetta_jit.transports.yarp.bottles import from_text, to_text
 from rosetta_jit.transports.yarp.names import NameServer
 from tests.transports.free import answers, free_port, running, until
+from tests.transports.real_yarp import dialect, program
 
-BUILT = str(Path(os.environ.get("YARP_DIR", ""), "bin")) if os.environ.get("YARP_DIR") else None
-YARP, SERVER = (shutil.which(name, path=f"{BUILT}:{os.environ['PATH']}" if BUILT else None) for name in ("yarp", "yarpserver"))
-
-
-@cache
-def dialect():
-    """How these programs write numbers: nothing that they send says it."""
-    said = subprocess.run([YARP, "version"], capture_output=True, text=True, check=True, timeout=10).stdout
-    return "yarp4" if int(said.split()[-1].split(".")[0]) >= 4 else "yarp3"
+YARP, SERVER = program("yarp"), program("yarpserver")
 
 
 def bottle(text):

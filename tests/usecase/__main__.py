@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.bridge.checking import checked
 from rosetta_jit.bridge.running import Running
+from tests.transports.real_yarp import dialect, program
 from tests.usecase.component import Seen, run
 from tests.usecase.page import write
 
@@ -41,10 +42,10 @@ def play(seconds: float, build: Path | None) -> tuple[Seen, list[dict[str, Any]]
         else:
             env = _name_server_environment(folder, yarp)
             arguments = ["--read", "--socket", str(yarp), "--portdb", ":memory:", "--subdb", ":memory:"]
-            stack.enter_context(_program([_yarp("yarpserver"), *arguments], env=env))
+            stack.enter_context(_program([program("yarpserver"), *arguments], env=env))
             _until_it_answers(yarp)
             stack.enter_context(_program([str(build / "simulator")], env=env))
-        bridge = _bridge(folder, yarp, rsb)
+        bridge = _bridge(folder, yarp, rsb, "yarp3" if build is None else dialect())
         stack.callback(bridge.stop, 1.0)
         _until_it_runs(bridge)
         seen = run(rsb, seconds, POSES)
@@ -53,7 +54,7 @@ def play(seconds: float, build: Path | None) -> tuple[Seen, list[dict[str, Any]]
 
 def built(folder: Path) -> Path | None:
     """The folder of the simulator on the real YARP; None where YARP is not there."""
-    if not _yarp("yarpserver") or shutil.which("cmake") is None:
+    if not program("yarpserver") or shutil.which("cmake") is None:
         return None
     folder.mkdir(parents=True, exist_ok=True)
     try:
@@ -65,19 +66,13 @@ def built(folder: Path) -> Path | None:
     return folder
 
 
-def _yarp(program: str) -> str:
-    """A program of YARP, where it was built or installed."""
-    own = Path(os.environ.get("YARP_DIR", "/nowhere"), "bin", program)
-    return str(own) if own.exists() else shutil.which(program) or ""
-
-
 def _name_server_environment(folder: Path, port: int) -> dict[str, str]:
     (folder / "yarp.conf").write_text(f"127.0.0.1 {port} yarp\n")
     return {**os.environ, **dict.fromkeys(("YARP_CONFIG_HOME", "YARP_DATA_HOME", "YARP_CONF", "HOME"), str(folder))}
 
 
-def _bridge(folder: Path, yarp: int, rsb: int) -> Running:
-    text = (HERE / "bridge.toml").read_text().replace("{yarp}", str(yarp)).replace("{rsb}", str(rsb))
+def _bridge(folder: Path, yarp: int, rsb: int, written: str) -> Running:
+    text = (HERE / "bridge.toml").read_text().replace("{yarp}", str(yarp)).replace("{rsb}", str(rsb)).replace("yarp3", written)
     (folder / "bridge.toml").write_text(text)
     bridge = Running(checked(str(folder / "bridge.toml")), lambda line: print(line, file=sys.stderr))
     bridge.start()

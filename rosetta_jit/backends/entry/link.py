@@ -250,7 +250,7 @@ def _surroundings(modules: Sequence[binding.ModuleRef], kernels: Sequence[Kernel
 
 @cache
 def _entries(*texts: str) -> bytes:
-    return kept("entries", "\n".join(texts), lambda: object_of(texts, (*SYMBOLS["encode"], REST_SYMBOL)))
+    return kept("entries", "\n".join(texts), lambda: object_of(texts, (*SYMBOLS["encode"], REST_SYMBOL), thorough=False))
 
 
 @cache

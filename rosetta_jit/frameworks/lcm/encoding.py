@@ -42,7 +42,7 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
     writing = _Fields(schema, recursive_structs(Ref(struct.name), schema), strict="bool" not in choices.lenient)
     first = Constant((), fingerprint(struct, schema), "u64", ">")
     root = Seq((first, *writing.fields(struct, ())))
-    nested = {each: Seq(writing.fields(_struct(schema, each), ())) for each in sorted(writing.recursive)}
+    nested = {each: Seq(writing.fields(schema.struct(each), ())) for each in sorted(writing.recursive)}
     spare = ANY if "trailing" in choices.lenient else 0
     return Encoding(name, (root,), root, nested=(nested,) if nested else (), spare=spare, forgivable=ANY)
 
@@ -103,9 +103,3 @@ def _told(length: int | expr.Expr | None, around: Path) -> Count:
         return Count(None, value=expr.Path("wire", (*map(expr.Member, around), *length.steps)))
     assert length is not None
     return Count(None, value=length)
-
-
-def _struct(schema: Schema, name: str) -> Struct:
-    struct = schema.types[name]
-    assert isinstance(struct, Struct)
-    return struct

@@ -76,10 +76,10 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
     for order in orders[choices.byte_order]:
         rules = _Rules(schema, name, order, recursive, choices.lenient)
         attempts.append(rules.message(struct))
-        nested += [{each: rules.settled(rules.struct(_struct(schema, each), ()), ANYWHERE) for each in sorted(recursive)}]
+        nested += [{each: rules.settled(rules.struct(schema.struct(each), ()), ANYWHERE) for each in sorted(recursive)}]
     for each in recursive:
         if any(open_sizes(codecs[each]) > MAX_OPEN_SIZES for codecs in nested):
-            raise SchemaError((words.deep_recursion(_struct(schema, each).span, each, MAX_OPEN_SIZES),))
+            raise SchemaError((words.deep_recursion(schema.struct(each).span, each, MAX_OPEN_SIZES),))
     origin = 0 if name == "cdr-giop" else HEADER_BYTES
     spare = PADDING_OF_PAYLOADS if "trailing" in choices.lenient else 0
     recursion = tuple(nested) if recursive else ()
@@ -346,12 +346,6 @@ def _extensibility(struct: Struct) -> str:
     """As the IDL says; idlc and rosidl take a struct for final where it does not."""
     found = struct.option("extensibility")
     return found if isinstance(found, str) else "final"
-
-
-def _struct(schema: Schema, name: str) -> Struct:
-    struct = schema.types[name]
-    assert isinstance(struct, Struct)
-    return struct
 
 
 def _name(type_: Type) -> str:

@@ -50,7 +50,7 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
     if name == DUMPED:
         items = _without_end(items)
     root = Seq(items)
-    nested = {each: Seq(objects.members(_struct(schema, each), ())) for each in sorted(objects.recursive)}
+    nested = {each: Seq(objects.members(schema.struct(each), ())) for each in sorted(objects.recursive)}
     return Encoding(name, (root,), root, nested=(nested,) if nested else ())
 
 
@@ -152,9 +152,3 @@ def _leaves(type_: Type, schema: Schema, known: dict[str, int]) -> int:
             return known[name]
         case _:
             return 1
-
-
-def _struct(schema: Schema, name: str) -> Struct:
-    struct = schema.types[name]
-    assert isinstance(struct, Struct)
-    return struct

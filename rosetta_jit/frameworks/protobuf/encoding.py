@@ -35,7 +35,7 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
     """The encoding of a message type."""
     messages = _Messages(schema, recursive_structs(Ref(struct.name), schema), partial=name == PARTIAL)
     root = messages.message(struct, (), delimited=False)
-    reached = {each: messages.message(_struct(schema, each), (), delimited=True) for each in sorted(messages.recursive)}
+    reached = {each: messages.message(schema.struct(each), (), delimited=True) for each in sorted(messages.recursive)}
     return Encoding(name, (root,), root, reached)
 
 
@@ -112,12 +112,6 @@ class _Messages:
                 raise AssertionError(type_)
             case _:
                 assert_never(type_)
-
-
-def _struct(schema: Schema, name: str) -> Struct:
-    struct = schema.types[name]
-    assert isinstance(struct, Struct)
-    return struct
 
 
 def _number(field: Field) -> int:

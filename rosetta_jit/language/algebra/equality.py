@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language.algebra.polynomial import TooComplexError, polynomial_of
 from rosetta_jit.language.algebra.quotients import NOTHING, are_same, mentions, only_atom
 from rosetta_jit.language.typed import BOOL, Access, Binary, Const, Convert, Has, IndexStep, LenOf, Local, Nearest, StateVariable
-from rosetta_jit.language.walk import parts, renamed, within
+from rosetta_jit.language.walk import operands, parts, renamed
 from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
@@ -51,22 +51,22 @@ def _matches(pattern: Expr, expr: Expr, bound: dict[str, Expr]) -> bool:
 
 def reads_other(value: Expr, side: Side) -> bool:
     """Whether an expression reads what lies between the two directions: nothing is known of that."""
-    return any(isinstance(part, Access | LenOf | Has) and part.place.side != side for part in within(value))
+    return any(isinstance(part, Access | LenOf | Has) and part.place.side != side for part in parts(value))
 
 
 def has_local(expr: Expr) -> bool:
     """Whether an expression depends on the round of a loop."""
-    return any(isinstance(part, Local) for part in within(expr))
+    return any(isinstance(part, Local) for part in parts(expr))
 
 
 def has_state(expr: Expr) -> bool:
     """Whether an expression depends on what earlier messages have left."""
-    return any(isinstance(part, StateVariable) for part in within(expr))
+    return any(isinstance(part, StateVariable) for part in parts(expr))
 
 
 def is_part(part: Expr, expr: Expr) -> bool:
     """Whether an expression has another one within it, or is it."""
-    return any(each == part for each in within(expr))
+    return any(each == part for each in parts(expr))
 
 
 def fact(expr: Expr, value: Expr) -> Fact | None:
@@ -116,7 +116,7 @@ def _outermost_nearest(expr: Expr) -> Iterator[Nearest]:
     if isinstance(expr, Nearest):
         yield expr
         return
-    for part in parts(expr):
+    for part in operands(expr):
         yield from _outermost_nearest(part)
 
 

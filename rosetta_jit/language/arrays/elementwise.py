@@ -29,7 +29,7 @@ from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Liter
 from rosetta_jit.model.mapping import Arranged, Assign, For, Reject, SetLength, Via, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union
-from rosetta_jit.model.walk import parts
+from rosetta_jit.model.walk import every_rule, parts
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ Lengths = dict[Path, "Expr"]
 
 def elementwise(rules: tuple[Rule, ...], scope: Scope, broken: list[tuple[str, ...]]) -> tuple[Rule, ...]:
     """The rules of a block with loops in place of those about many elements; what fails is reported, and its field is ``broken``."""
-    names = frozenset(_names(rules)) | {*scope.constants.full, *scope.locals}
+    names = frozenset(rule.variable for rule in every_rule(rules) if isinstance(rule, For)) | {*scope.constants.full, *scope.locals}
     return _Expansion(scope, broken, names, count(1)).block(rules, {}, 0)
 
 
@@ -357,18 +357,6 @@ def _whole(value: Expr) -> Path | Call:
     if isinstance(value, Path | Call):
         return value
     raise LayoutError(words.scalar_needs_each(value.span) if isinstance(value, Literal) else words.not_an_array(value.span))
-
-
-def _names(rules: tuple[Rule, ...]) -> Iterator[str]:
-    for rule in rules:
-        match rule:
-            case For(variable, _, _, body):
-                yield variable
-                yield from _names(body)
-            case When(_, then, otherwise):
-                yield from _names((*then, *otherwise))
-            case _:
-                pass
 
 
 def _many(rule: Assignment) -> Diagnostic:

@@ -19,9 +19,10 @@ from rosetta_jit.language.groups import component
 from rosetta_jit.language.limits import MAX_CONDITIONS
 from rosetta_jit.model.expr import Len, List, Path
 from rosetta_jit.model.mapping import Arranged, Assign, For, Relation, SameNames, SetLength, When
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.both_ways.inverse import TypeOf
@@ -56,7 +57,7 @@ def derive(mapping: model.Mapping, type_of: TypeOf, problems: list[Diagnostic], 
 
 def _conditional(rules: tuple[Rule, ...], packing: Packing) -> frozenset[Span | None]:
     """The relations that choose among fields which are parts of one value: unpacking checks such fields block by block."""
-    written = set(_relations(rules))
+    written = {id(rule) for rule in every_rule(rules) if isinstance(rule, Relation)}  # others are made of these
     checked = (each for each in packing.known.beside.values() if each.side == "wire" and each.digits)
     return frozenset(each.rule.span for each in checked if id(each.rule) not in written)
 
@@ -74,20 +75,6 @@ def _by_blocks(rule: Rule, conditional: frozenset[Span | None]) -> Rule:
             return replace(rule, then=first, otherwise=second)
         case _:
             return rule
-
-
-def _relations(rules: tuple[Rule, ...]) -> Iterator[int]:
-    """The relations that the mapping writes down; others were made of these."""
-    for rule in rules:
-        match rule:
-            case Relation():
-                yield id(rule)
-            case For(body=body):
-                yield from _relations(body)
-            case When(then=then, otherwise=otherwise):
-                yield from _relations((*then, *otherwise))
-            case _:
-                pass
 
 
 def _set(place: Path | Len | List, value: Expr, span: Span | None, via: Via | None) -> tuple[Rule, ...]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language import typed
 from rosetta_jit.language.typed import FieldStep
 from rosetta_jit.language.untouched import asks_arrival, places_read
-from rosetta_jit.language.walk import parts, within
+from rosetta_jit.language.walk import operands, parts
 from rosetta_jit.model.types import Bool, Float, Int
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -50,7 +50,7 @@ def wires_read(exprs: Iterable[Expr]) -> Wires:
 
 def asked_for(exprs: Iterable[Expr]) -> Wires:
     """The wires of which expressions ask whether a message has arrived: what reads them does not wait for one."""
-    asked = [part for expr in exprs for part in within(expr) if asks_arrival(part)]
+    asked = [part for expr in exprs for part in parts(expr) if asks_arrival(part)]
     return frozenset[str]().union(*(wire_of(part.place) for part in asked if isinstance(part, typed.Has)))
 
 
@@ -99,7 +99,7 @@ def _can_be_known(expr: Expr, wire: str, found: list[Expr]) -> bool:
         return True
     if isinstance(expr, typed.Access | typed.LenOf | typed.IsText | typed.Has | typed.Search) and wire not in wire_of(expr.place):
         return False
-    return all(_can_be_known(part, wire, found) for part in parts(expr))
+    return all(_can_be_known(part, wire, found) for part in operands(expr))
 
 
 def _is_kept(expr: Expr) -> bool:
@@ -115,7 +115,7 @@ def _is_kept(expr: Expr) -> bool:
         case typed.Choice() | typed.Listed() | typed.Binary("and" | "or"):
             return True
         case _:
-            return any(type_name(part) is None for part in parts(expr))
+            return any(type_name(part) is None for part in operands(expr))
 
 
 def _looks_elsewhere(expr: Expr) -> bool:
@@ -124,7 +124,7 @@ def _looks_elsewhere(expr: Expr) -> bool:
         isinstance(each, typed.StateVariable | typed.HostCall)
         or (isinstance(each, typed.Call) and not each.arguments)
         or asks_arrival(each)
-        for each in within(expr)
+        for each in parts(expr)
     )
 
 
@@ -132,5 +132,5 @@ def _free(expr: Expr) -> set[str]:
     """The loop variables that an expression does not choose itself."""
     if isinstance(expr, typed.Local):
         return {expr.name}
-    inner = set[str]().union(*map(_free, parts(expr)))
+    inner = set[str]().union(*map(_free, operands(expr)))
     return inner - {expr.variable.name} if isinstance(expr, typed.Reduce | typed.Search | typed.Nearest) else inner

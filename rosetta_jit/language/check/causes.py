@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import fields as words
-from rosetta_jit.model.mapping import For, Relation, When
+from rosetta_jit.model.mapping import Relation
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -43,20 +44,7 @@ OF_INVERSES = frozenset(("no-inverse",))
 
 def relations_of(rules: tuple[Rule, ...]) -> list[Span]:
     """Where relations stand, those in blocks included, in the order of the text."""
-    return [span for span in _spans(rules) if span is not None]
-
-
-def _spans(rules: tuple[Rule, ...]) -> Iterator[Span | None]:
-    for rule in rules:
-        match rule:
-            case Relation(span=span):
-                yield span
-            case For(body=body):
-                yield from _spans(body)
-            case When(then=then, otherwise=otherwise):
-                yield from _spans((*then, *otherwise))
-            case _:
-                pass
+    return [rule.span for rule in every_rule(rules) if isinstance(rule, Relation) and rule.span is not None]
 
 
 def unclear(problems: Iterable[Diagnostic], relations: list[Span]) -> bool:

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import rest as words
 from rosetta_jit.language.places import field_names
-from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, For, SetLength, When
+from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, SetLength
 from rosetta_jit.model.types import Array, Bytes, Int, Struct
-from rosetta_jit.model.walk import fields_of, names_of, path_of
+from rosetta_jit.model.walk import every_rule, fields_of, names_of, path_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,30 +33,19 @@ def defaulted_counts(rules: tuple[Rule, ...], target: Message) -> list[Diagnosti
 
 
 def _defaults(rules: tuple[Rule, ...]) -> Iterator[Default[Place]]:
-    for rule in rules:
-        match rule:
-            case Default(place) if isinstance(place.type, Int) and isinstance(place.steps[-1], FieldStep):
-                yield rule
-            case For(body=body):
-                yield from _defaults(body)
-            case When(then=then, otherwise=otherwise):
-                yield from _defaults((*then, *otherwise))
-            case _:
-                pass
+    for rule in every_rule(rules):
+        if isinstance(rule, Default) and isinstance(rule.place.type, Int) and isinstance(rule.place.steps[-1], FieldStep):
+            yield rule
 
 
 def _filled(rules: tuple[Rule, ...]) -> Iterator[Place]:
     """Arrays that rules assign, or give a length that is not written down as 0."""
-    for rule in rules:
+    for rule in every_rule(rules):
         match rule:
             case Assign(place) if isinstance(place.type, Array | Bytes):
                 yield place
             case SetLength(place, value) if not (isinstance(value, Const) and value.value == 0):
                 yield place
-            case For(body=body):
-                yield from _filled(body)
-            case When(then=then, otherwise=otherwise):
-                yield from _filled((*then, *otherwise))
             case _:
                 pass
 

@@ -8,7 +8,8 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language.conversions import describe, is_single, rounded_constant, same, widens
 from rosetta_jit.language.typed import Assign, Binary, Const, Convert, For, Rescale, SetLength, When
 from rosetta_jit.language.units.wholes import inserted
-from rosetta_jit.language.walk import within
+from rosetta_jit.language.walk import expressions_of, parts
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -19,24 +20,19 @@ if TYPE_CHECKING:
 
 def rounded(rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
     """Warnings of one direction."""
-    for rule in rules:
+    for rule in every_rule(rules):
         match rule:
             case Assign(value=value) | SetLength(value=value):
                 yield from _constants(value)
                 yield from _by_unit(rule)
-            case For(_, start, stop, body, kept=kept):
-                asked = () if kept is None else (kept.condition,)
-                yield from (each for bound in (start, stop, *asked) for each in _constants(bound))
-                yield from rounded(body)
-            case When(condition, then, otherwise):
-                yield from _constants(condition)
-                yield from rounded((*then, *otherwise))
+            case For() | When():
+                yield from (each for expr in expressions_of(rule) for each in _constants(expr))
             case _:
                 pass
 
 
 def _constants(expr: Expr) -> Iterator[Diagnostic]:
-    for part in within(expr):
+    for part in parts(expr):
         if isinstance(part, Const) and (single := rounded_constant(part)) is not None:
             yield words.rounded(part.span, float(part.value), single)
 

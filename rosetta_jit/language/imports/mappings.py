@@ -10,7 +10,8 @@ from rosetta_jit.language.limits import MAX_MAPPINGS
 from rosetta_jit.language.parameters.bind import bind
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.language.uses import UsableMappings
-from rosetta_jit.model.mapping import Assign, For, Relation, Via, When
+from rosetta_jit.model.mapping import Assign, Relation, Via
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -75,13 +76,9 @@ def _named(mapping: model.Mapping) -> Iterator[tuple[str, Span | None]]:
 
 
 def _vias(rules: tuple[Rule, ...]) -> Iterator[Via]:
-    for rule in rules:
+    for rule in every_rule(rules):
         match rule:
             case Assign(by=Via() as via) | Relation(via=Via() as via):
                 yield via
-            case For(body=body):
-                yield from _vias(body)
-            case When(_, then, otherwise):
-                yield from _vias((*then, *otherwise))
             case _:
                 pass

@@ -16,8 +16,9 @@ from rosetta_jit.language.laws.roundtrip import Result, Trip
 from rosetta_jit.language.laws.writes import FILTERED
 from rosetta_jit.language.limits import MAX_WORK
 from rosetta_jit.language.places import field_names, shown_names, shown_place
-from rosetta_jit.language.typed import Access, Const, For, IndexStep, LenOf, Local, When
+from rosetta_jit.language.typed import Access, Const, For, IndexStep, LenOf, Local
 from rosetta_jit.language.untouched import untouched
+from rosetta_jit.model.walk import every_rule
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -110,16 +111,7 @@ def _law(first: tuple[Rule, ...], second: tuple[Rule, ...], message: Message) ->
 
 
 def _size(rules: tuple[Rule, ...]) -> int:
-    total = 0
-    for rule in rules:
-        match rule:
-            case For(body=body):
-                total += _size(body)
-            case When(_, then, otherwise):
-                total += 1 + _size(then) + _size(otherwise)
-            case _:
-                total += 1
-    return total
+    return sum(not isinstance(rule, For) for rule in every_rule(rules))
 
 
 def _worse(left: Rounding, right: Rounding) -> Rounding:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language.conversions import bounds, same
 from rosetta_jit.language.laws.chain import come_back, field_in
 from rosetta_jit.language.typed import Convert
-from rosetta_jit.language.walk import within
+from rosetta_jit.language.walk import parts
 from rosetta_jit.model.types import Float, Int
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def may_refuse(value: Expr, of: Callable[[Expr], Expr]) -> bool:
 
 
 def _exact(expr: Expr) -> Iterator[Convert]:
-    for part in within(expr):
+    for part in parts(expr):
         match part:
             case Convert(operand, Int() | Float(), "exact") if isinstance(operand.type, Int | Float):
                 yield part

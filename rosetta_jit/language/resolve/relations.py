@@ -15,7 +15,7 @@ from rosetta_jit.language.both_ways.directions import in_each_direction
 from rosetta_jit.language.resolve.expressions import type_expr
 from rosetta_jit.language.resolve.messages import message_named, scope_between
 from rosetta_jit.model.expr import Call, Literal, Member, Path
-from rosetta_jit.model.mapping import For, When
+from rosetta_jit.model.mapping import For
 from rosetta_jit.model.walk import every_rule, expressions_of, parts
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.language.uses import UsableMappings
     from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Mapping, Rule
+    from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.types import Schema, Type
 
 FIRST = Literal(0)
@@ -70,7 +70,7 @@ def _scope(mapping: Mapping, schema: Schema, others: UsableMappings) -> Scope | 
     if holder is None or wire is None:
         return None
     found = scope_between({"holder": holder, "wire": wire}, mapping, others, [])
-    return replace(found, locals=tuple(_variables(mapping.rules or ())))
+    return replace(found, locals=tuple(rule.variable for rule in every_rule(mapping.rules or ()) if isinstance(rule, For)))
 
 
 def _of_first(expr: Expr) -> Expr:
@@ -81,16 +81,3 @@ def _of_first(expr: Expr) -> Expr:
         return expr
     first: dict[Expr, Expr] = {source: element_at(view, [FIRST] * len(view.axes)) for source, view in views.items()}
     return substituted(expr, first, FIRST)
-
-
-def _variables(rules: tuple[Rule, ...]) -> Iterator[str]:
-    """The variables of all loops."""
-    for rule in rules:
-        match rule:
-            case For(variable=variable, body=body):
-                yield variable
-                yield from _variables(body)
-            case When(then=then, otherwise=otherwise):
-                yield from _variables((*then, *otherwise))
-            case _:
-                pass

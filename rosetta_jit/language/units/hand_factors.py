@@ -10,9 +10,10 @@ import math
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import units as words
-from rosetta_jit.language.typed import Access, Assign, Binary, Const, Convert, For, When
+from rosetta_jit.language.typed import Access, Assign, Binary, Const, Convert
 from rosetta_jit.language.units.dimensions import conversion
 from rosetta_jit.language.units.places import unit_at
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -28,16 +29,9 @@ ANGLES = {"degree": "radian", "radian": "degree"}
 
 def wrong_factors(rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
     """Reports of all factors that convert the wrong way."""
-    for rule in rules:
-        match rule:
-            case Assign(place, value):
-                yield from _of_assignment(place, value)
-            case For(body=body):
-                yield from wrong_factors(body)
-            case When(_, then, otherwise):
-                yield from wrong_factors((*then, *otherwise))
-            case _:
-                pass
+    for rule in every_rule(rules):
+        if isinstance(rule, Assign):
+            yield from _of_assignment(rule.place, rule.value)
 
 
 def _of_assignment(place: Place, value: Expr) -> Iterator[Diagnostic]:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.storage import Storage
 
 MAGIC = b"#ROSBAG V1.2\n"
-DEFINITION, MESSAGE = 1, 2
+DEFINITION, MESSAGE, INDEX = 1, 2, 4
 WINDOW = 1 << 20
 """Bytes that are read at once."""
 
@@ -54,17 +54,20 @@ class OldBagReader:
         self._storage, self._tell = storage, tell
         self._definitions: dict[tuple[bytes, bytes], bytes] = {}
         self._numbers: dict[tuple[bytes, bytes, bytes], int] = {}
-        self._check_index()
+        self._indexed, self._is_whole = set[bytes](), False
+        has_index = self._has_index()
         self.extent: Extent | None = None
         self.facts, self.pieces = {"version": "1.2"}, (Piece(storage.size),)
         counts = dict[int, int]()
         for channel, time_ns, _, _ in self._messages():
             counts[channel] = counts.get(channel, 0) + 1
             self.extent = widened(self.extent, time_ns, time_ns)
+        if has_index and self._is_whole and any(topic not in self._indexed for topic, _, _ in self._numbers):
+            self._tell(words.bad_index(storage.name, "it has not all topics"))
         self.connections = {each: replace(self._defined(key), count=counts[each]) for key, each in self._numbers.items()}
 
-    def _check_index(self) -> None:
-        """Say if the bag has none of the index that its first record tells of: its writer was stopped, or it is cut."""
+    def _has_index(self) -> bool:
+        """Whether the bag has an index where its first record tells; says if not: its writer was stopped, or it is cut."""
         first = next(self._records(), None)
         try:
             at = number(first.fields, b"index_pos", "<Q") if first is not None else 0
@@ -74,6 +77,7 @@ class OldBagReader:
             self._tell(words.unfinished(self._storage.name))
         elif at >= self._storage.size:
             self._tell(words.bad_index(self._storage.name, "it is outside of the file"))
+        return 0 < at < self._storage.size
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         return blocks_of(
@@ -87,7 +91,9 @@ class OldBagReader:
         for record in self._records():
             try:
                 key = record.fields.get(b"topic", b""), record.fields.get(b"type", b""), record.fields.get(b"md5", b"")
-                if record.op == DEFINITION:
+                if record.op == INDEX:
+                    self._indexed.add(key[0])
+                elif record.op == DEFINITION:
                     self._definitions.setdefault(key[1:], record.fields.get(b"def", b""))
                 elif record.op == MESSAGE:
                     time_ns = number(record.fields, b"sec") * 10**9 + number(record.fields, b"nsec")
@@ -116,6 +122,7 @@ class OldBagReader:
                 return
             yield record
             at = record.end
+        self._is_whole = True
 
     def _record(self, at: int, data: bytes) -> _Record | None:
         """The record that begins so; None where the header does not end there, or is none."""

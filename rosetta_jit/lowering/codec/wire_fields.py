@@ -15,6 +15,7 @@ from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.codec.fields import Stored, scalar_name
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
 from rosetta_jit.model import expr
+from rosetta_jit.model.walk import names_of, parts
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Blob, Choice, Codec, Computed, Number, Path, Repeat, Seq, Table
 from rosetta_jit.wire.size import fixed_size
@@ -260,22 +261,7 @@ def numbers_of_counts(codec: Codec) -> Iterator[Path]:
         case Seq(items):
             for item in items:
                 yield from numbers_of_counts(item)
-        case Repeat(_, count, _) | Blob(_, count, _, _):
-            yield from _named_in(count.value)
-        case _:
-            pass
-
-
-def _named_in(value: object) -> Iterator[Path]:
-    match value:
-        case expr.Path(_, steps):
-            yield tuple(step.name for step in steps if isinstance(step, expr.Member))
-        case expr.Unary(_, operand):
-            yield from _named_in(operand)
-        case expr.Binary(_, left, right):
-            yield from (*_named_in(left), *_named_in(right))
-        case expr.Call(_, arguments):
-            for each in arguments:
-                yield from _named_in(each)
+        case Repeat(_, count, _) | Blob(_, count, _, _) if count.value is not None and not isinstance(count.value, int):
+            yield from (names_of(part) for part in parts(count.value) if isinstance(part, expr.Path))
         case _:
             pass

@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import rules_within
 from rosetta_jit.language.resolve.defaults import has_array
-from rosetta_jit.language.walk import expressions_of, parts, rules_in
+from rosetta_jit.language.walk import expressions_of, operands
 from rosetta_jit.lowering.codec.wire_fields import EACH
 from rosetta_jit.lowering.rules.bound_fields import BoundFields, Obstacle
 from rosetta_jit.lowering.rules.filters import filtered_arrays
 from rosetta_jit.lowering.rules.rescaling import UINT16
 from rosetta_jit.lowering.rules.wire_side import wire_key
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -49,19 +50,13 @@ def _obstacles(attempt: Codec, rules: tuple[typed.Rule, ...], direction: Directi
     bound = BoundFields(direction, rules)
     yield from bound.message(attempt)
     if direction == "decode":
-        for rule in rules:
-            yield from _of_reading(rule, bound)
+        for rule in every_rule(rules):
+            yield from _of_expressions(expressions_of(rule), bound)
     elif direction == "encode":
         yield from _of_writing(rules, bound)
 
 
 # --- rules that read the wire ------------------------------------------------------------------------------------------------
-
-
-def _of_reading(rule: typed.Rule, bound: BoundFields) -> Iterator[Obstacle]:
-    yield from _of_expressions(expressions_of(rule), bound)
-    for each in rules_in(rule):
-        yield from _of_reading(each, bound)
 
 
 def _of_expressions(values: tuple[typed.Expr, ...], bound: BoundFields) -> Iterator[Obstacle]:
@@ -77,7 +72,7 @@ def _of_expressions(values: tuple[typed.Expr, ...], bound: BoundFields) -> Itera
                 yield Obstacle(wire_key(place)[0], "whether it is there is known only where the walk stands")
             case _:
                 pass
-        yield from _of_expressions(parts(value), bound)
+        yield from _of_expressions(operands(value), bound)
 
 
 def _of_value(place: typed.Place, type_: Type, bound: BoundFields) -> Iterator[Obstacle]:

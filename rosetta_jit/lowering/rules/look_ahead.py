@@ -11,26 +11,25 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Const
 from rosetta_jit.language import typed
-from rosetta_jit.language.walk import expressions_of, rules_in, within
+from rosetta_jit.language.walk import expressions_of, parts
 from rosetta_jit.lowering.evaluation import Awaited
 from rosetta_jit.lowering.rules.reductions import zero_of
 from rosetta_jit.model.expr import COMPARISONS, LOGIC
 from rosetta_jit.model.types import Float
+from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.lowering.evaluation import Evaluation
 
 
 def look_ahead(rules: tuple[typed.Rule, ...], values: Evaluation) -> None:
     """Before a loop over rules."""
-    look_ahead_of(tuple(_in_rules(rules)), values)
+    look_ahead_of(tuple(expr for rule in every_rule(rules) for expr in expressions_of(rule)), values)
 
 
 def look_ahead_of(asked: tuple[typed.Expr, ...], values: Evaluation) -> None:
     """Before a loop that computes some expressions."""
-    for each in (part for expr in asked for part in within(expr)):
+    for each in (part for expr in asked for part in parts(expr)):
         if not all(name in values.variables for name in _free_variables(each)):
             continue
         if isinstance(each, typed.Search) and _finds(each):
@@ -96,13 +95,6 @@ def _is_plain(place: typed.Place) -> bool:
 
 def _free_variables(expr: typed.Expr) -> set[str]:
     """The loop variables that an expression depends on."""
-    found = list(within(expr))
+    found = list(parts(expr))
     bound = {each.variable for each in found if isinstance(each, typed.Search | typed.Reduce)}
     return {each.name for each in found if isinstance(each, typed.Local) and each not in bound}
-
-
-def _in_rules(rules: tuple[typed.Rule, ...]) -> Iterator[typed.Expr]:
-    """The expressions that rules compute."""
-    for rule in rules:
-        yield from expressions_of(rule)
-        yield from _in_rules(rules_in(rule))

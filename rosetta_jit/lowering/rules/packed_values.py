@@ -10,11 +10,12 @@ from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.functions.texts import is_textual
-from rosetta_jit.language.walk import parts
+from rosetta_jit.language.walk import expressions_of, operands
 from rosetta_jit.lowering.rules.values import constant, scalar_type
 from rosetta_jit.lowering.rules.wire_side import wire_key
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Union
+from rosetta_jit.model.walk import every_rule
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -168,18 +169,14 @@ def look_up_arrays(rules: tuple[typed.Rule, ...], holder: HolderSide, values: Va
 
 def _array_places(rules: tuple[typed.Rule, ...]) -> Iterator[typed.Place]:
     """Every place whose length or elements rules read."""
-    for rule in rules:
+    for rule in every_rule(rules):
         match rule:
             case typed.Assign(_, typed.Access(place)) if isinstance(place.type, Array | String | Bytes):
                 yield place
             case typed.Assign(_, value) | typed.SetLength(_, value) | typed.SetState(_, value):
                 yield from _read(value)
-            case typed.For(_, start, stop, body, kept=kept):
-                yield from _read(start, stop, *(() if kept is None else (kept.condition,)))
-                yield from _array_places(body)
-            case typed.When(condition, then, otherwise):
-                yield from _read(condition)
-                yield from _array_places((*then, *otherwise))
+            case typed.For() | typed.When():
+                yield from _read(*expressions_of(rule))
             case _:
                 pass
 
@@ -203,7 +200,7 @@ def _read_by(expr: typed.Expr) -> list[typed.Place]:
             texts = [each.place for each in arguments if isinstance(each, typed.Access) and is_textual(each.type)]
             return texts + _read(*arguments)
         case _:
-            return _read(*parts(expr))
+            return _read(*operands(expr))
 
 
 def _indexed(place: typed.Place) -> list[typed.Place]:

@@ -28,7 +28,7 @@ from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.function import functions
-from rosetta_jit.language.walk import within
+from rosetta_jit.language.walk import parts
 from rosetta_jit.lowering.arithmetic import COMPARISONS, binary, differ
 from rosetta_jit.lowering.calls import lowered
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
@@ -393,5 +393,5 @@ def asks_others(value: typed.Expr) -> bool:
     """Whether a value takes a call out of the kernel, or a text that is made: such are computed where they stand."""
     return any(
         isinstance(part, typed.HostCall | typed.Given) or (isinstance(part, typed.Call) and not functions()[part.function].kept)
-        for part in within(value)
+        for part in parts(value)
     )

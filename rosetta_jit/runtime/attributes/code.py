@@ -7,7 +7,6 @@ import sys
 import warnings
 from functools import cache, partial
 from pathlib import Path
-from string import Template
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.runtime.attributes.groups import BEGINNING, END, GROUPS, group_of, part_of, symbols
@@ -144,6 +143,8 @@ def assembled(module: str, exported: Sequence[str], *, hurried: bool = False) ->
 @cache
 def text() -> str:
     """The module."""
+    from string import Template  # slow to import
+
     calling = Template(_read("holders/calling.ll")).substitute(HEAP_TYPE_BYTES=HEAP_TYPE_BYTES, NAMES_AT=HEAP_TYPE_BYTES + 8)
     return "\n".join([*(_read(file) for file in FILES), _read(_integers()), calling, *_scalars()])
 
@@ -155,6 +156,8 @@ def _integers() -> str:
 
 
 def _scalars() -> Iterator[str]:
+    from string import Template
+
     template = Template(_read("fields/scalar.ll"))
     for name in SCALARS:
         yield template.substitute(_conversions(name), NAME=name)

@@ -7,7 +7,6 @@ many they are, and of each its offset in the message, what it is (`Kept`), and t
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -28,7 +27,7 @@ Getter = Callable[[Any], Any]
 Setter = Callable[[Any, Any], None]
 
 
-class Place(IntEnum):
+class Place:
     """The words of a place.
 
     Offsets are in bytes: those of fields in their row, those of lanes in the state, those of what is kept in the message.
@@ -75,7 +74,7 @@ class Place(IntEnum):
     """How many bytes each text of an array may have."""
 
 
-class Kept(IntEnum):
+class Kept:
     """What a message keeps of a field: members are made with it, the others when they are first asked for."""
 
     MEMBER = 0
@@ -85,7 +84,7 @@ class Kept(IntEnum):
     ARRAY = 4
 
 
-class Shown(IntEnum):
+class Shown:
     """What a field, or an element of it, is shown as: `Place.KIND`."""
 
     RECORD = 0
@@ -269,7 +268,7 @@ def _children(entries: list[Entry], kept: KeptFields, table: int) -> NDArray[np.
     return np.array([len(found), *(word for child in found for word in child)], np.int64)
 
 
-def _kind(entry: Entry) -> Kept:
+def _kind(entry: Entry) -> int:
     match entry.node:
         case Record():
             return Kept.MESSAGE

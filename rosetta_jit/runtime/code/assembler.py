@@ -73,10 +73,13 @@ def assembled(text: str, exported: Sequence[str], *, hurried: bool = False) -> b
     return prelinked(image) or image
 
 
-def object_of(texts: Iterable[str], exported: Sequence[str]) -> bytes:
-    """Code of modules that many programs use, optimised as far as LLVM can, as an object file."""
+def object_of(texts: Iterable[str], exported: Sequence[str], *, thorough: bool = True) -> bytes:
+    """Code of modules that many programs use, as an object file: optimised as far as LLVM can, unless a person wrote it as it should be."""
     machine, module = target_machine(), linked(texts)
     make_private(module, exported)
+    if not thorough:
+        run_few_passes(module, machine)
+        return machine.emit_object(module)
     builder = binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=3))
     run_passes(builder.getModulePassManager(), module, builder)
     return machine.emit_object(module)

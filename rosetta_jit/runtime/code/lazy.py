@@ -6,7 +6,6 @@ import ctypes
 import os
 import sys
 from pathlib import Path
-from string import Template
 from typing import TYPE_CHECKING
 
 from rosetta_jit.runtime.code import native
@@ -32,6 +31,8 @@ def is_supported() -> bool:
 
 def stubs_text(names: Sequence[str]) -> str:
     """Stubs of functions as an LLVM module."""
+    from string import Template  # slow to import
+
     stubs = "\n".join(STUB.format(name=name, offset=8 * number, number=number) for number, name in enumerate(names))
     template = Template(Path(__file__).with_name("lazy_x86_64.s").read_text("utf-8"))
     lines = template.substitute(stubs=stubs, size=8 * len(names), functions=f"{len(names)} functions").splitlines()

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
+from typing import Literal
 
 LEAVES = range(16)
 """Answers to CPUID that glibc keeps, by its own numbers; there are fewer, and behind the last are zeros."""
@@ -16,8 +17,8 @@ LEAVES = range(16)
 OF_THE_MACHINE = ((0, 1), (5, 2))
 """Leaf and word: the core that was asked (CPUID 1, EBX), and how many there are (0x80000008, ECX); not what the processor can do."""
 
-USABLE_ECX = 6
-"""Where the text has what can be used of the third word of leaf 0."""
+USABLE_ECX, USABLE_EBX_7, USABLE_ECX_7 = 6, 13, 14
+"""Where the text has what can be used of glibc's leaf 0 (CPUID 1), third word, and of its leaf 1 (CPUID 7), second and third word."""
 
 _WORDS = ctypes.c_uint32 * 8
 """Four words that the processor gave, and four of them with what can be used of it."""
@@ -34,12 +35,20 @@ def processor() -> str:
     return " ".join((llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()))
 
 
-def multiplies_without_carries() -> bool:
-    """Whether it is of x86-64 and has PCLMULQDQ (CPUID 1, ECX, bit 1)."""
+def carryless_bits() -> Literal[0, 128, 512]:
+    """How wide the registers are that it multiplies without carries, of x86-64; 0 where it cannot.
+
+    128 bits take PCLMULQDQ (CPUID 1, ECX, bit 1), 512 AVX-512 F (CPUID 7, EBX, bit 16) and VPCLMULQDQ (CPUID 7, ECX, bit 10) besides.
+    """
     known = processor()
     if "+" in known:
-        return known.startswith("x86_64") and "+pclmul" in known
-    return bool(int(known.split(" ")[USABLE_ECX], 16) & 2)
+        has_128 = known.startswith("x86_64") and "+pclmul" in known
+        has_512 = "+vpclmulqdq" in known and "+avx512f" in known
+    else:
+        words = [int(each, 16) for each in known.split(" ")]
+        has_128 = bool(words[USABLE_ECX] & 1 << 1)
+        has_512 = bool(words[USABLE_EBX_7] & 1 << 16 and words[USABLE_ECX_7] & 1 << 10)
+    return 512 if has_128 and has_512 else 128 if has_128 else 0
 
 
 def _asked_of_glibc() -> str:

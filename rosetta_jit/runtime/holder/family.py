@@ -17,7 +17,6 @@ from rosetta_jit.model.types import Ref, Struct
 from rosetta_jit.runtime.attributes import descriptors
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.makers import make_quickly, set_recipe
-from rosetta_jit.runtime.attributes.sameness import Sameness
 from rosetta_jit.runtime.holder.access import getter, setter
 from rosetta_jit.runtime.holder.classes import Holder, HolderClass
 from rosetta_jit.runtime.holder.manners import PLAIN, Manners, manners_at
@@ -40,6 +39,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.runtime.attributes.places import KeptFields, OfSequences
+    from rosetta_jit.runtime.attributes.sameness import Sameness
     from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.objects.foreign import Foreign
     from rosetta_jit.runtime.holder.objects.giving import Givers
@@ -69,7 +69,6 @@ class Family:
         self._views: dict[str, type[View]] = {}
         self._shown_of: dict[int, frozenset[str]] = {}
         self._recipes: dict[int, tuple[Any, ...]] = {}
-        self._sameness = Sameness()
         self.latest: tuple[Any, Any, Any] = None, None, None
         self._begins_alike, self._offered = False, None
         self._fresh: tuple[Plan | None, Callable[[], Any]] = None, object
@@ -176,8 +175,14 @@ class Family:
 
     @property
     def sameness(self) -> Sameness:
-        """What tells whether two messages are the same."""
+        """What tells whether two messages are the same; one, however many threads ask for it at once."""
         return self._sameness
+
+    @cached_property
+    def _sameness(self) -> Sameness:
+        from rosetta_jit.runtime.attributes.sameness import Sameness
+
+        return Sameness()
 
     @property
     def foreign(self) -> Foreign:

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
 NO_MESSAGES = (str, bytes, bytearray, memoryview, int, float, complex, list, tuple, set, frozenset, type(None))
 """Values that are never messages."""
-_NAME = re.compile(r"[A-Za-z_][\w.]*")
 
 
 def is_message_like(value: object) -> bool:
@@ -83,7 +82,7 @@ def class_in(said: Any, owner: type) -> type | None:
     """The class of messages, or the enum, that an annotation names, itself or as what a list or an optional value has."""
     if isinstance(said, str):
         scope = vars(sys.modules[owner.__module__]) if owner.__module__ in sys.modules else {}
-        named = (class_in(_at(scope, name), owner) for name in _NAME.findall(said))
+        named = (class_in(_at(scope, name), owner) for name in re.findall(r"[A-Za-z_][\w.]*", said))
         return next((each for each in named if each is not None), None)
     if isinstance(said, type) and not typing.get_args(said):
         found = cast("type[Any]", said)
