@@ -11,7 +11,7 @@ from rosetta_jit.explain.nodes import by_span, names_of, places, span_of
 from rosetta_jit.explain.notes import Note, notes
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import shown_fields
-from rosetta_jit.model.expr import Member, Path
+from rosetta_jit.model.expr import Index, Literal, Member, Path
 from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, SameNames, SetLength, SetState, Via, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.walk import every_rule
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.typed import Place, Rule
     from rosetta_jit.language.uses import Use
     from rosetta_jit.model.expr import Expr, Side
-    from rosetta_jit.model.mapping import Mapping, Way
+    from rosetta_jit.model.mapping import Assignment, Mapping, Way
     from rosetta_jit.model.mapping import Rule as Untyped
     from rosetta_jit.source import Span
 
@@ -211,11 +211,21 @@ def _own(rule: Untyped, found: list[Rule]) -> list[Rule]:
         case Assign(Path(steps=steps)) | SetLength(Path(steps=steps)):
             wanted = tuple(step.name for step in steps if isinstance(step, Member))
             own = [each for each in found if _is_filter(each) or any(names_of(place)[-len(wanted) :] == wanted for place in _set_by(each))]
+            own = [each for each in own if _is_item(rule, each)] or own
         case Reject():
             own = [each for each in found if not _set_by(each)]
         case _:
             own = found
     return own or found
+
+
+def _is_item(rule: Assignment | SetLength[Path, Expr], found: Rule) -> bool:
+    """Whether a typed rule sets the length, or the very element, that a rule does."""
+    if isinstance(rule, SetLength) or not isinstance(found, typed.Assign):
+        return isinstance(rule, SetLength) and isinstance(found, typed.SetLength)
+    numbers = [step.index.value for step in rule.place.steps if isinstance(step, Index) and isinstance(step.index, Literal)]
+    indices = [step.index for step in found.place.steps if isinstance(step, typed.IndexStep)]
+    return numbers == [each.value for each in indices if isinstance(each, typed.Const)]
 
 
 def _is_filter(rule: Rule) -> bool:
