@@ -146,7 +146,7 @@ def _of_statement(place: _Place) -> str:
         return "a loop counts: `for i from 0 to len(.a)`"
     if re.match(r"(if|elif|else if)\b", place.line) and "ELSE" in expected:
         return "rules that depend on a condition stand in a block: `when condition`, the rules, `end`"
-    if re.search(r"\bif\b", place.line) and "ELSE" in expected:
+    if re.search(r"\bif\b", place.line) and "ELSE" in expected and place.kind != "NAME":
         return "a choice has two values, `a if condition else b`; a rule that is left out otherwise stands in a `when`"
     if found in ("*", ".") and (word := re.match(r"(ignore|default)\s*(\.[\w.]*)?", before)):
         return f"`{word[1]} {shorten(word[2])}` is said of all of it" if word[2] else f"`{word[1]} rest` is said of all others"
