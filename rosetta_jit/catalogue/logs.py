@@ -75,7 +75,8 @@ def log_cut(name: str, at: int) -> Diagnostic:
 
 def file_cut(name: str, size: int, promised: int) -> Diagnostic:
     """A file that is shorter than its header says."""
-    return Diagnostic("warning", "log-cut", f"{name} is cut short: it has {size} bytes of {promised}", help=_READ)
+    help_ = "what is there is read; bytes that are missing of the last page are taken as zeros, also within messages and their times"
+    return Diagnostic("warning", "log-cut", f"{name} is cut short: it has {size} bytes of {promised}", help=help_)
 
 
 def damaged(name: str, at: int) -> Diagnostic:

@@ -124,7 +124,7 @@ def test_databases_cut_at_each_byte(database, tmp_path):
 
 
 def cut_databases(database, tmp_path, sizes):
-    """What is read of a shorter file is in the whole one, and where it is less, that is said."""
+    """Where what is read is not all, or not the same, it is said that the file is cut."""
     everything = {(each.time, each.topic, each.message) for each in read(tmp_path / "a.db3", database)[0]}
     assert everything
     for size in sizes:
@@ -132,8 +132,8 @@ def cut_databases(database, tmp_path, sizes):
             messages, found = read(tmp_path / "a.db3", database[:size])
         except LogError:
             continue
-        assert {(each.time, each.topic, each.message) for each in messages} <= everything
-        assert found or len(messages) == len(everything), size
+        assert len(messages) <= len(everything)
+        assert {(each.time, each.topic, each.message) for each in messages} == everything or "log-cut" in codes(found), size
 
 
 def test_a_cut_folder_of_yarpdatadumper(tmp_path):
