@@ -89,7 +89,8 @@ def undetermined(span: Span | None, place: str, *, holds: bool) -> Diagnostic:
     """A block in which a field of its condition may have any value but some."""
     which = "where the condition holds" if holds else "where the condition does not hold"
     message = f"to pack, nothing says what `{shorten(place)}` is {which}"
-    help_ = f"relate it to the holder outside of the `when`, or in its block; or {_by_hand([place])}"
+    one = f"or ask for one value there, `when {shorten(place)} == 0`"
+    help_ = f"relate it to the holder outside of the `when`, or in its block, {one}; or {_by_hand([place])}"
     return error("undetermined-field", message, span, "the condition reads it", help_=help_)
 
 

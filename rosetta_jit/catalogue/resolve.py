@@ -231,6 +231,8 @@ def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
     hint = f"convert it first: `int64({written_at(span)})`" if convertible else "only numbers can be computed with"
     if found.startswith("float"):
         hint = OF_FLOATS.get(operator, hint)
+    if found == "int64":  # which is refused where a float is needed
+        hint = f"say that it may be rounded: `float64({written_at(span)})`"
     if found == "text":
         hint = f"`number({written_at(span)})` is the number that a text spells"
     if found.startswith("an array of") and found.removeprefix("an array of ").startswith(NUMBERS):

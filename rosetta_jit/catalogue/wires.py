@@ -103,3 +103,11 @@ def not_here(span: Span | None, what: str) -> Diagnostic:
 def _listed(names: Sequence[str], word: str = "and") -> str:
     shown = [f"`{shorten(each)}`" for each in names]
     return f"{', '.join(shown[:-1])} {word} {shown[-1]}" if len(shown) > 1 else "".join(shown)
+
+
+def arrival_to_pack(span: Span | None) -> Diagnostic:
+    """A relation that depends on whether a message of a wire has arrived."""
+    message = "whether a message of a wire has arrived is known where messages are unpacked"
+    return error(
+        "wire-arrival", message, span, "in rules to pack", help_="write the rule in `unpack-rules:`, and in `pack-rules:` what is packed"
+    )

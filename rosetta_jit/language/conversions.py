@@ -11,7 +11,7 @@ import struct
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.typed import INT64, Const, Convert
+from rosetta_jit.language.typed import INT64, Binary, Const, Convert, LenOf, Local, Reduce
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Type
 
 FLOAT64 = Float(64)
+SMALL = 2**32
+"""Where a loop may begin, and what may be added to a number of elements, so that a float64 holds what comes of it."""
+
 EXACT_BITS = {32: 24, 64: 53}
 """Bits of an integer that a float of so many bits always holds: IEEE 754, table 3.5, precision p."""
 
@@ -130,7 +133,29 @@ def convert(value: Expr, target: Type) -> Expr | None:
         return adapt(value, target)
     if same(value.type, target):
         return value
+    if isinstance(target, Float) and target.bits == 64 and counts(value):
+        return Convert(value, target, "nearest", value.span)
     return Convert(value, target, "widen", value.span) if widens(value.type, target) else None
+
+
+def counts(value: Expr) -> bool:
+    """Whether an int64 is a number of elements or rounds, or a sum of some: none is beyond 2**47, as addresses are not, so that the sum of
+    as many as an expression can have is exact in float64.
+    """
+    match value:
+        case LenOf():
+            return True
+        case Local():
+            return value.counts
+        case Reduce(function="count"):
+            return True
+        case Binary("+" | "-", left, right):
+            return all(
+                counts(each) or (isinstance(each, Const) and isinstance(each.value, int) and abs(each.value) <= SMALL)
+                for each in (left, right)
+            )
+        case _:
+            return False
 
 
 def adapt(value: Const, target: Type) -> Const | None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.catalogue import fields as words
 from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue.resolve import nearest
-from rosetta_jit.language.conversions import describe
+from rosetta_jit.language.conversions import SMALL, describe
 from rosetta_jit.language.typed import Const, FieldStep, IndexStep, Place
 from rosetta_jit.model.expr import Each, Index, Keyed, Member, Pick, Slice
 from rosetta_jit.model.layout import map_entry
@@ -49,7 +49,7 @@ class Scope:
     ``suffix`` tells its loop variables from those around. ``values`` are the types of what else has a name:
     `model.expr.NEAREST`, and what the definitions of a function of several values name.
     ``rounds`` is whether the mapping says that float64 is rounded where float32 is set, ``is_old`` that it is one of 2012.
-    ``state`` has the direction's state variables.
+    ``state`` has the direction's state variables, ``counting`` the loop variables that are not larger than rounds can be.
     """
 
     messages: Mapping[Side, Message]
@@ -67,9 +67,13 @@ class Scope:
     rounds: bool = False
     state: Mapping[str, StateVariable] = field(default_factory=dict["str", "StateVariable"])
     is_old: bool = False
+    counting: frozenset[str] = frozenset()
 
-    def inside(self, variable: str) -> Scope:
-        return replace(self, locals=(*self.locals, variable))
+    def inside(self, variable: str, start: Expr | None = None) -> Scope:
+        """Within a loop, which begins at ``start``."""
+        counts = isinstance(start, Const) and abs(int(start.value)) <= SMALL
+        counting = self.counting | {variable} if counts else self.counting - {variable}
+        return replace(self, locals=(*self.locals, variable), counting=counting)
 
     @property
     def origin(self) -> Side:

@@ -79,11 +79,12 @@ class Const:
 
 @dataclass(frozen=True, slots=True)
 class Local:
-    """A loop variable, int64."""
+    """A loop variable, int64; ``counts`` where the loop begins at a small constant, so that its rounds tell how large it can become."""
 
     name: str
     type: Type = INT64
     span: Span | None = field(default=None, compare=False, repr=False)
+    counts: bool = field(default=False, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

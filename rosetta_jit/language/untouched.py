@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language import typed
 from rosetta_jit.language.counters import counters_of
 from rosetta_jit.language.places import field_names, places_in, value_inside
+from rosetta_jit.language.typed import FieldStep
 from rosetta_jit.language.walk import expressions_of, parts
-from rosetta_jit.model.types import Optional, Struct, Union
+from rosetta_jit.model.types import Field, Optional, Ref, Struct, Union
 from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.language.scope import Message
     from rosetta_jit.language.typed import Expr, Place, Rule
-    from rosetta_jit.model.types import Field
 
 Names = tuple[str, ...]
 
@@ -83,8 +83,17 @@ def _read(rules: tuple[Rule, ...]) -> Iterator[Place]:
             yield from places_read(expr)
 
 
+def asks_arrival(value: Expr) -> bool:
+    """Whether an expression asks if a message of a wire has arrived: every other message that is asked for can be absent."""
+    match value:
+        case typed.Has(typed.Place(side="wire", steps=(FieldStep(Field(type=Ref())),))):
+            return True
+        case _:
+            return False
+
+
 def places_read(value: Expr) -> Iterator[Place]:
     """The places that an expression looks at, those of its indices included; of a search, what its condition looks at."""
     for part in parts(value):
-        if isinstance(part, typed.Access | typed.LenOf | typed.IsText | typed.Has):
+        if isinstance(part, typed.Access | typed.LenOf | typed.IsText | typed.Has) and not asks_arrival(part):
             yield part.place

@@ -306,6 +306,8 @@ def location(scope: Scope, address: Address) -> tuple[str, str]:
             start = _scaled(scope, row, stride)
             if offset:
                 start = str(offset) if start == "0" else f"{start} + {offset}"
+            if lane in scope.lanes.addressed:
+                return f"reinterpret_cast<const unsigned char *>(static_cast<std::uintptr_t>({start}))", "0"
             return scope.rows(lane), start
         case _:
             assert_never(address)

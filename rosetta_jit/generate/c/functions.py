@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.unit import Role
     from rosetta_jit.kernel.ir import Direction, Kernel, Routine
 
-SHARED = ("holder", "bytes", "end", "failure")
+SHARED = ("holder", "given_row", "bytes", "end", "failure")
 """The parameters that all functions of a kernel may have, in order."""
 
 
@@ -153,6 +153,7 @@ def _tables(writer: Writer, scope: Scope) -> None:
 def _declared(parameters: tuple[str, ...], direction: Direction, lanes: Lanes) -> list[str]:
     kinds = {
         "holder": f"{'' if direction == 'decode' or lanes.dialect == 'c++' else 'const '}{lanes.prefix}_holder *holder",
+        "given_row": f"const {lanes.type(0)} &given_row",
         "bytes": f"{'' if direction == 'encode' else 'const '}unsigned char *restrict bytes",
         "end": "int64_t end",
         "failure": "struct failure *failure",

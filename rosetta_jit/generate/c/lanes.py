@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
     from rosetta_jit.generate.c.rows import Element
 
-OWN_WORDS = frozenset({"message", "now", "number", "state", "scratch", "holder", "bytes", "end", "failure", "size", "error", "problem"})
+OWN_WORDS = frozenset(
+    {"message", "now", "number", "state", "scratch", "holder", "bytes", "end", "failure", "size", "error", "problem", "given_row"}
+)
 """What the functions call their parameters, and the holder its other members."""
 
 Dialect = Literal["c", "c++"]
@@ -42,12 +44,17 @@ class Lane:
 
 @dataclass(frozen=True, slots=True)
 class Lanes:
-    """Those of a kernel; ``prefix`` begins the names of the header, ``own`` are not hidden. Those of C++ make room for themselves."""
+    """Those of a kernel; ``prefix`` begins the names of the header, ``own`` are not hidden. Those of C++ make room for themselves.
+
+    The rows of ``addressed`` lanes are bytes anywhere in memory, by their addresses. ``row``: the functions are given the message's row.
+    """
 
     prefix: str
     all: tuple[Lane, ...]
     own: int
     dialect: Dialect = "c"
+    addressed: frozenset[int] = frozenset()
+    row: bool = False
 
     def stride(self, lane: int) -> int:
         """Bytes of a row."""
@@ -72,7 +79,7 @@ class Lanes:
         """The expression for the rows in the holder."""
         if lane >= self.own:
             return f"holder->scratch[{lane - self.own}].bytes"
-        return "&holder->message" if lane == 0 else f"holder->{self.rows(lane)}.rows"
+        return ("&given_row" if self.row else "&holder->message") if lane == 0 else f"holder->{self.rows(lane)}.rows"
 
     def grown(self, lane: int, missing: str) -> str | None:
         """The call that makes room for rows, and says whether it could; None where the caller's memory is all there is."""

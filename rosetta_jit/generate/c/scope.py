@@ -51,7 +51,7 @@ class Scope:
 
     def rows(self, lane: int) -> str:
         """The pointer to the rows of a lane."""
-        self.parameters.add("holder")
+        self.parameters.add("given_row" if lane == 0 and self.lanes.row else "holder")
         self.touched.add(lane)
         self._note(lane)
         return self.lanes.rows(lane)

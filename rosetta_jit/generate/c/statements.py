@@ -257,6 +257,8 @@ def _fill(scope: Scope, target: Address, size: Expr, byte: int) -> str:
     memory, start = location(scope, target)
     if isinstance(target, Place) and isinstance(size, Const) and start == "0" and size.value > 0:
         return f"memset({memory}, {byte}, {int(size.value)});"
+    if scope.lanes.dialect == "c++":
+        return f"rosetta_jit::detail::fill_few({memory}, {start}, {bare(expression(scope, size))}, {byte});"
     return f"{scope.calls('fill_bytes')}({memory}, {start}, {bare(expression(scope, size))}, {byte});"
 
 

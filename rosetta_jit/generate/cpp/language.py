@@ -12,11 +12,16 @@ from rosetta_jit.generate.c.functions import print_kernel
 from rosetta_jit.generate.c.language import parts_of
 from rosetta_jit.generate.cleared import without_clearing
 from rosetta_jit.generate.cpp.manners import MANNERS
-from rosetta_jit.generate.cpp.source import header, source
-from rosetta_jit.generate.unit import wire_of
+from rosetta_jit.generate.cpp.source import addressed_in, header, source
+from rosetta_jit.generate.undamaged import undamaged_kernel
+from rosetta_jit.generate.unit import kind_of, wire_of
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.unit import Unit
+    from rosetta_jit.generate.c.functions import Printed
+    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.cpp.manners import Manners
+    from rosetta_jit.generate.unit import Role, Unit
+    from rosetta_jit.kernel.ir import Kernel
 
 INCLUDE = Path(__file__).with_name("include")
 SHARED = "rosetta_jit/rosetta_jit.hpp"
@@ -31,9 +36,16 @@ def files(unit: Unit) -> dict[str, str]:
         raise SchemaError((words.wires_around(manners.name),))
     if "borrow" in unit.kernels:
         unit = replace(unit, kernels={**unit.kernels, "borrow": without_clearing(unit.kernels["borrow"], unit.layout)})
-    parts = parts_of(unit, lambda kernel, lanes, role: print_kernel(kernel, lanes, role, unit.origins.get(role, ())), dialect="c++")
+    parts = parts_of(unit, lambda kernel, lanes, role: _printed(unit, manners, kernel, lanes, role), dialect="c++")
     return {
         f"{unit.name}.hpp": header(unit, manners),
         f"{unit.name}.cpp": source(unit, parts, manners),
         SHARED: (INCLUDE / SHARED).read_text("utf-8"),
     }
+
+
+def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: Role) -> Printed:
+    """The functions of a kernel; those of encoders are given the message's row, and addresses."""
+    if kind_of(role) in ("encode", "size"):
+        kernel, lanes = undamaged_kernel(kernel), replace(lanes, addressed=addressed_in(unit, lanes, manners), row=True)
+    return print_kernel(kernel, lanes, role, unit.origins.get(role, ()))

@@ -70,9 +70,8 @@ rosetta_jit::error unplaced(rosetta_jit::error found)
     return found;
 }
 
-void gather(const ::$name::holder &source, ${name}_holder *holder)
+${inline}void gather(const ::$name::holder &source, ${name}_holder *holder, $row &row)
 {
-    auto &row = holder->message;
 $clear
     holder->most = rosetta_jit::detail::most_rows(std::size_t{1} << 39);
 $reset
@@ -80,19 +79,75 @@ $bind
     collect(source, *holder, row);
 }
 
-int64_t measured(${name}_holder *holder, struct failure *failure_of_size)
+int64_t measured(${name}_holder *holder, const $row &given_row, struct failure *failure_of_size)
 {
     struct failure &failure = *failure_of_size;
     const int64_t end = INT64_MAX;
     static_cast<void>(end);
     static_cast<void>(holder);
+    static_cast<void>(given_row);
     static_cast<void>(failure);
     return $size;
 }
+/* == straight == */
+} // namespace
+
+rosetta_jit::result<std::size_t> codec::try_size(const ::$name::holder &source)
+{
+    ${name}_holder *const holder = $memory.get();
+    struct failure failure = {0, 0, {0, 0, 0, 0}};
+    holder->now = now;
+    holder->number = number;
+$kept
+    gather(source, holder, holder->message);
+    const int64_t size = measured(holder, holder->message, &failure);
+    if (size < 0) {
+        return unplaced(report(size_sites, failure, 0, *holder));
+    }
+    return static_cast<std::size_t>(size);
+}
+
+rosetta_jit::result<std::size_t> codec::try_encode(const ::$name::holder &source, void *target, std::size_t capacity)
+{
+    ${name}_holder *const holder = $memory.get();
+    unsigned char *const bytes = static_cast<unsigned char *>(target);
+    const int64_t end = reach(capacity);
+    struct failure failure = {0, 0, {0, 0, 0, 0}};
+    $row given_row;
+    static_cast<void>(bytes);
+    static_cast<void>(end);
+    holder->now = now;
+    holder->number = number;
+$kept
+    gather(source, holder, given_row);
+    const int64_t result = $run;
+    if (result < 0) {
+        return unplaced(report(encode_sites, failure, 0, *holder));
+    }
+    return static_cast<std::size_t>(result);
+}
+
+rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::$name::holder &source, std::string &bytes)
+{
+    const auto size = try_size(source);
+    if (!size) {
+        return size.error();
+    }
+    bytes.resize(*size);
+    const auto found = try_encode(source, &bytes[0], *size);
+    if (!found) {
+        return found.error();
+    }
+    bytes.resize(*found);
+    return rosetta_jit::done{};
+}
+/* == gathered == */
 
 rosetta_jit::result<std::size_t> written(${name}_holder *holder, unsigned char *bytes, int64_t end)
 {
     struct failure failure = {0, 0, {0, 0, 0, 0}};
+    const auto &given_row = holder->message;
+    static_cast<void>(given_row);
     static_cast<void>(bytes);
     static_cast<void>(end);
     const int64_t result = $run;
@@ -111,8 +166,8 @@ rosetta_jit::result<std::size_t> codec::try_size(const ::$name::holder &source)
     holder->now = now;
     holder->number = number;
 $kept
-    gather(source, holder);
-    const int64_t size = measured(holder, &failure);
+    gather(source, holder, holder->message);
+    const int64_t size = measured(holder, holder->message, &failure);
     if (size < 0) {
         return unplaced(report(size_sites, failure, 0, *holder));
     }
@@ -125,7 +180,7 @@ rosetta_jit::result<std::size_t> codec::try_encode(const ::$name::holder &source
     holder->now = now;
     holder->number = number;
 $kept
-    gather(source, holder);
+    gather(source, holder, holder->message);
 $measure
     return written(holder, static_cast<unsigned char *>(bytes), reach(capacity));
 }
@@ -147,7 +202,7 @@ rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::$name::holder &
 /* == measure == */
     {
         struct failure failure = {0, 0, {0, 0, 0, 0}};
-        const int64_t size = measured(holder, &failure); /* which leaves the lengths of the message's parts in the scratch memory */
+        const int64_t size = measured(holder, holder->message, &failure); /* which leaves the lengths of the message's parts in the scratch memory */
         if (size < 0) {
             return unplaced(report(size_sites, failure, 0, *holder));
         }

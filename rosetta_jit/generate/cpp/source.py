@@ -16,6 +16,7 @@ from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import C_TYPES, RESERVED
 from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.classes import classes
+from rosetta_jit.generate.cpp.straight import addressed_lanes, is_local
 from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
 from rosetta_jit.generate.shares import WHOLE, changed_lanes
 from rosetta_jit.generate.unit import kind_of, wire_of
@@ -23,6 +24,7 @@ from rosetta_jit.model.layout import Row
 from rosetta_jit.model.types import Ref, Struct
 
 if TYPE_CHECKING:
+    from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.c.language import Parts
     from rosetta_jit.generate.cpp.manners import Manners
     from rosetta_jit.generate.unit import Role, Unit
@@ -146,24 +148,29 @@ def _filled(file: str, **given: str) -> str:
     return re.sub(r"\n{3,}", "\n\n", Template((FOLDER / file).read_text("utf-8")).substitute(given))
 
 
+def _directs(walk: Walk, at: str) -> list[Direct]:
+    """The containers that are lanes; none where rows stay, which are the codec's."""
+    unit, element = walk.unit, walk.lanes.all[0].element
+    return [] if _wires(unit) else [*walk.directs(Ref(unit.type), unit.layout.root, element, "row", Spot(at))]
+
+
+def addressed_in(unit: Unit, lanes: Lanes, manners: Manners) -> frozenset[int]:
+    """The lanes of an encoder that are addressed."""
+    return addressed_lanes(unit, frozenset(each.lane for each in _directs(Walk(unit, lanes, manners, "encode"), "source")))
+
+
 def source(unit: Unit, parts: Parts, manners: Manners) -> str:
     """The text of the source file."""
     printed, lanes = parts.printed, parts.lanes
     walks = {direction: Walk(unit, lanes, manners, direction) for direction in ("decode", "encode")}
-    root, element = unit.layout.root, lanes.all[0].element
-    type_ = Ref(unit.type)
-    has_wires = bool(_wires(unit))  # then rows stay, and are the codec's
-    directs = {
-        name: [] if has_wires else [*walk.directs(type_, root, element, "row", Spot(at))]
-        for (name, walk), at in zip(walks.items(), ("target", "source"), strict=True)
-    }
-    of_type = () if has_wires else walks["decode"].directs(type_, root, element, "row", Spot("std::declval<holder &>()"))
-    containers = {each.lane: each.spot.at for each in of_type}
+    directs = {name: _directs(walk, at) for (name, walk), at in zip(walks.items(), ("target", "source"), strict=True)}
+    containers = {each.lane: each.spot.at for each in _directs(walks["decode"], "std::declval<holder &>()")}
     called = {name for each in printed.values() for name in each.support} | {"failure"}
     kernels: list[str] = []
     for role in sorted(printed, key=by_order):
         kernels += [_table(role, unit, parts), printed[role].text.rstrip()]
     said = any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites)
+    between = _walks(unit, parts, walks, directs)
     return _filled(
         "source.cpp",
         made=made(unit),
@@ -174,13 +181,13 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
         holder=_holder(unit, parts, containers),
         support=support(without_unused(called, printed)),
         kernels="\n\n".join(kernels),
-        walks=_walks(unit, parts, walks, directs),
+        walks=between,
         lanes=",\n    ".join(
             [*(literal(f".{each.name}" if each.name else "") for each in unit.layout.lanes)] + [literal("")] * parts.hidden
         ),
         said=SAID if said else "",
         written=", written_(new memory)" if _writes_apart(unit) else "",
-        functions="\n".join(_methods(unit, parts, directs)),
+        functions="\n".join(_methods(unit, parts, directs, walks["encode"])),
     )
 
 
@@ -242,6 +249,7 @@ def _walks(unit: Unit, parts: Parts, walks: dict[str, Walk], directs: dict[str, 
         if not roles:
             continue
         walk.direct = frozenset(each.lane for each in directs[name])
+        walk.addressed = addressed_in(unit, parts.lanes, walk.manners) if name == "encode" else frozenset()
         inner = [_walk(unit, parts, walk, lane, Ref(struct)) for lane, struct in unit.layout.recursive]
         whole = [_walk(unit, parts, walk, 0, Ref(unit.type), role) for role in roles]
         texts += [*(f"{head};" for head, _ in inner), "", *(f"{head}\n{{\n{body}}}\n" for head, body in (*whole, *inner))]
@@ -269,10 +277,12 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
     for each in unused:
         walk.writer.line(f"static_cast<void>({each});")
     walk.value(type_, unit.layout.lanes[lane].element, element, "row", Spot(target))
+    if walk.direction == "encode" and is_local(walk, parts.printed["encode"].hidden):
+        head = head.replace("\nvoid", "\nROSETTA_JIT_INLINE void")
     return head, walk.writer.text()
 
 
-def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]]) -> list[str]:
+def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], walk: Walk) -> list[str]:
     template = (FOLDER / "methods.cpp").read_text("utf-8")
     _, *sections = re.split(r"^/\* == (\w+) == \*/\n", template, flags=re.MULTILINE)
     known = dict(zip(sections[::2], sections[1::2], strict=True))
@@ -296,22 +306,27 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]]) -> list
         )
     texts += [_of_wire(unit, parts, known, role) for role in printed if wire_of(role)]
     texts += [known["reset"]] if _wires(unit) else []
-    if "encode" in printed:
-        texts.append(
-            Template(known["encode"]).substitute(
-                words,
-                memory="written_" if _writes_apart(unit) else "memory_",
-                clear="" if _is_collected(unit) else "    row = {};",
-                reset="\n".join(f"    holder->{lanes.rows(lane)}.reset();" for lane in range(1, lanes.own)),
-                bind="\n".join(_read(lanes.rows(each.lane), each) for each in directs["encode"]),
-                size=run(printed["size"].attempts[0], "failure"),
-                run=run(printed["encode"].attempts[0], "failure"),
-                measure=Template(known["measure"]).substitute(no_room=str(len(printed["encode"].sites)))
-                if printed["encode"].hidden
-                else "",
-            )
-        )
+    texts += [_encoder(unit, parts, known, words, directs["encode"], walk)] if "encode" in printed else []
     return [re.sub(r"\n+(\n    |\n})", r"\1", text) for text in texts]
+
+
+def _encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, str], directs: list[Direct], walk: Walk) -> str:
+    """The encoder; ``walk`` has printed what takes an object apart."""
+    lanes, encode = parts.lanes, parts.printed["encode"]
+    is_straight = is_local(walk, encode.hidden)
+    begun = (f"    holder->{lanes.rows(lane)}.{'address' if lane in walk.addressed else 'reset'}();" for lane in range(1, lanes.own))
+    return Template(known["encode"] + known["straight" if is_straight else "gathered"]).substitute(
+        words,
+        row=lanes.type(0),
+        inline="ROSETTA_JIT_INLINE " if is_straight else "",
+        memory="written_" if _writes_apart(unit) else "memory_",
+        clear="" if _is_collected(unit) else "    row = {};",
+        reset="\n".join(begun),
+        bind="\n".join(_read(lanes.rows(each.lane), each) for each in directs),
+        size=run(parts.printed["size"].attempts[0], "failure"),
+        run=run(encode.attempts[0], "failure"),
+        measure=Template(known["measure"]).substitute(no_room=str(len(encode.sites))) if encode.hidden else "",
+    )
 
 
 def _of_wire(unit: Unit, parts: Parts, known: dict[str, str], role: Role) -> str:

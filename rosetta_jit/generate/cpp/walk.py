@@ -63,13 +63,18 @@ class Direct:
 
 @dataclass(slots=True)
 class Walk:
-    """One of the functions being printed; ``in_rows`` is how many lists there are around a value, ``share`` what is set of it."""
+    """One of the functions being printed; ``in_rows`` is how many lists there are around a value, ``share`` what is set of it.
+
+    ``takes``: an encoder copies rows, whose lanes have memory of their own.
+    """
 
     unit: Unit
     lanes: Lanes
     manners: Manners
     direction: Direction
     direct: frozenset[int] = frozenset()
+    addressed: frozenset[int] = frozenset()
+    takes: bool = False
     writer: Writer = field(default_factory=Writer)
     depth: int = 0
     in_rows: int = 0
@@ -138,7 +143,7 @@ class Walk:
         assert isinstance(element, RowStruct)
         known, names, share = _members(element), self.names(struct), self.share
         if slot.unknown is not None and () in share and "unknown decode" in self.manners.sections():
-            lane = self.lanes.rows(slot.unknown.lane)
+            lane, self.takes = self.lanes.rows(slot.unknown.lane), True
             self.lines("unknown", Spot(spot.at, spot.at), row=f"{row}.unknown", lane=lane)
         for each, name, member, own in zip(struct.fields, names, slot.members, known, strict=True):
             if inner := within(share, each.name):
@@ -194,8 +199,11 @@ class Walk:
         if slot.lane in self.direct:
             return
         if not isinstance(type_, Array) or isinstance(self.unit.layout.lanes[slot.lane].element, Number):
-            self.lines("sequence", spot, row=row, lane=lane, how="take" if self.in_rows else "show")
+            how = "point" if slot.lane in self.addressed else "take" if self.in_rows else "show"
+            self.takes |= how == "take"
+            self.lines("sequence", spot, row=row, lane=lane, how=how)
             return
+        self.takes = True
         self.lines("list", spot, row=row, lane=lane)
         self.depth += 1
         index = self.local("i")
@@ -239,7 +247,7 @@ class Walk:
 
     def link(self, slot: Span, row: str, spot: Spot, present: str = "") -> None:
         """A field of a type that contains itself: no row, or one."""
-        self.depth += 1
+        self.depth, self.takes = self.depth + 1, True
         lane = slot.lane
         type_ = Ref(next(name for number, name in self.unit.layout.recursive if number == lane))
         if self.direction == "decode":
@@ -260,7 +268,7 @@ class Walk:
 
     def map(self, key: Type, value: Type, slot: Span, row: str, spot: Spot) -> None:
         """Entries of a map: later ones of equal keys replace earlier ones."""
-        self.depth += 1
+        self.depth, self.takes = self.depth + 1, True
         self.in_rows += 1
         lane = self.lanes.rows(slot.lane)
         entry, inner, index = map_entry(key, value), self.local("row"), self.local("i")

@@ -10,10 +10,10 @@ from rosetta_jit.generate.python.asked import without_lengths
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.functions import words_of
 from rosetta_jit.generate.python.given import Given
-from rosetta_jit.generate.python.groups import undamaged
 from rosetta_jit.generate.python.parts import Parts
 from rosetta_jit.generate.python.positions import NotInParts, Sum, without_places, without_positions
 from rosetta_jit.generate.python.statements import Function, Objects
+from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.kernel.ir import Expect
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.terms import index

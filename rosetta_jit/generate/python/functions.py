@@ -12,8 +12,9 @@ from rosetta_jit.generate.c.statements import reached, read_names
 from rosetta_jit.generate.cleared import settled
 from rosetta_jit.generate.python.direct import FEW, direct
 from rosetta_jit.generate.python.expressions import CODES, Scope, bare, expression, flat_name, view_name
-from rosetta_jit.generate.python.groups import not_negative, undamaged
+from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.statements import Attempt, Function, print_block
+from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import kind_of
 from rosetta_jit.kernel.ir import (
     Capacity,

@@ -25,22 +25,14 @@ from rosetta_jit.kernel.ir import (
     Store,
     Var,
 )
-from rosetta_jit.kernel.rewrite import locals_in, with_blocks
+from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.shape import bound_names, statements
 from rosetta_jit.kernel.terms import END, index, type_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
-    from rosetta_jit.kernel.ir import Block, Expr, Site, Stmt
-
-DAMAGED = "the holder is damaged"
-
-
-def undamaged(block: Block, sites: Sequence[Site]) -> Block:
-    """A block without the checks of spans: those of an object that was just taken apart are right."""
-    kept = (stmt for stmt in block if not (isinstance(stmt, Expect) and sites[stmt.failure.site].detail == DAMAGED))
-    return tuple(with_blocks(stmt, lambda inner: undamaged(inner, sites)) for stmt in kept)
+    from rosetta_jit.kernel.ir import Block, Expr, Stmt
 
 
 def grouped(block: Block) -> Iterator[list[Stmt]]:

@@ -2,7 +2,8 @@
 
 At a message of one wire the bytes of the others' are gone. A rule runs there if all that it reads of the others are numbers and bools that
 are known without the message at hand: `.odom.x` and `len(.scan.ranges)`, but no text, and no element that a loop chooses. Each of them is
-computed when its own message comes, and kept as state. Such a rule waits until every wire that it reads has sent a message.
+computed when its own message comes, and kept as state. Such a rule waits until every wire that it reads has sent a message, but for
+those of which it asks whether one has: what it reads of them is 0 until then.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.language import typed
 from rosetta_jit.language.typed import FieldStep
-from rosetta_jit.language.untouched import places_read
+from rosetta_jit.language.untouched import asks_arrival, places_read
 from rosetta_jit.language.walk import operands, parts
 from rosetta_jit.model.types import Bool, Float, Int
 from rosetta_jit.startup.dataclass import dataclass
@@ -45,6 +46,12 @@ def wire_of(place: Place) -> Wires:
 def wires_read(exprs: Iterable[Expr]) -> Wires:
     """The wires that expressions read."""
     return frozenset[str]().union(*(wire_of(place) for expr in exprs for place in places_read(expr)))
+
+
+def asked_for(exprs: Iterable[Expr]) -> Wires:
+    """The wires of which expressions ask whether a message has arrived: what reads them does not wait for one."""
+    asked = [part for expr in exprs for part in parts(expr) if asks_arrival(part)]
+    return frozenset[str]().union(*(wire_of(part.place) for part in asked if isinstance(part, typed.Has)))
 
 
 def runs_at(exprs: Iterable[Expr], wires: Wires) -> Wires:
@@ -112,9 +119,11 @@ def _is_kept(expr: Expr) -> bool:
 
 
 def _looks_elsewhere(expr: Expr) -> bool:
-    """Whether an expression reads state, the time, or what a user's function gives."""
+    """Whether an expression reads state, the time, what a user's function gives, or whether a message has arrived."""
     return any(
-        isinstance(each, typed.StateVariable | typed.HostCall) or (isinstance(each, typed.Call) and not each.arguments)
+        isinstance(each, typed.StateVariable | typed.HostCall)
+        or (isinstance(each, typed.Call) and not each.arguments)
+        or asks_arrival(each)
         for each in parts(expr)
     )
 

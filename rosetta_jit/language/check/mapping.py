@@ -148,7 +148,7 @@ def _read(mapping: Mapping, imports: Imports, parameters: Dictionary[str, object
     derived_mapping = derived(written, merged, read, underived)
     others = read.changed(lambda other: derived(other, merged, read, problems))
     complete = not _errors(problems)
-    problems += [*_without_handed_on(bound, mapping, others), *underived]
+    problems += [*_without_handed_on(bound, mapping, others), *(underived if complete else ())]  # it follows from what is wrong there
     schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
     state = declared(derived_mapping, problems)
     return _Texts(written, derived_mapping, others, imports, imported, schema, state, complete, underived, problems)

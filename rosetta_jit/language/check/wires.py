@@ -16,6 +16,7 @@ from rosetta_jit.language import typed
 from rosetta_jit.language.check.across_wires import (
     NOTHING_KEPT,
     Wires,
+    asked_for,
     remembered,
     runs_at,
     values_of_others,
@@ -24,6 +25,7 @@ from rosetta_jit.language.check.across_wires import (
 )
 from rosetta_jit.language.places import places_in, shown_names, shown_place
 from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, SetState, When
+from rosetta_jit.language.untouched import asks_arrival
 from rosetta_jit.language.walk import expressions_of, placed, rebuilt
 from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Enum, Field, Float, Int, Ref, Schema, Struct, same_name
@@ -86,32 +88,52 @@ class _Nested:
 
     Attributes
     ----------
-    wires
-        Those that it reads; of a rule to pack, the one that it sets.
+    read
+        The wires that it reads; of a rule to pack, the one that it sets.
     exprs
         What it computes.
+    others
+        All wires, of a rule that asks what has arrived: it runs at messages of any.
     """
 
-    wires: Wires = NO_WIRE
+    read: Wires = NO_WIRE
     exprs: tuple[Expr, ...] = ()
+    others: Wires = NO_WIRE
 
     def within(self, rule: Rule, target: Side) -> _Nested:
         """The same with one more rule."""
         places = [rule.place] if isinstance(rule, Assign | SetLength | Default | Ignore) else []
         exprs = _own(rule) if target == "holder" else ()
         set_ = () if target == "wire" and isinstance(rule, Ignore) else tuple(map(wire_of, places))
-        return _Nested(self.wires.union(wires_read(exprs), *set_), (*self.exprs, *exprs))
+        return _Nested(self.read.union(wires_read(exprs), *set_), (*self.exprs, *exprs))
+
+    @property
+    def wires(self) -> Wires:
+        """The wires on whose messages it depends."""
+        return self.read | self.others
 
     @property
     def runs_at(self) -> Wires:
         """The wires at whose messages the rule runs; none of one that runs at all of them, or at none."""
         return self.wires if len(self.wires) < 2 else runs_at(self.exprs, self.wires)
 
+    @property
+    def waits_for(self) -> Wires:
+        """The wires that must have sent a message before the rule runs."""
+        return self.read - asked_for(self.exprs)
+
 
 NOTHING_AROUND = _Nested()
 
 
-def _told(
+def _told(rules: tuple[Rule, ...], target: Side) -> list[tuple[Rule, _Nested]]:
+    """Each rule that is no block, of all of a direction, with what it reads."""
+    found = list(_walked(rules, target))
+    every = NO_WIRE.union(*(told.read for _, told in found))
+    return [(rule, replace(told, others=every) if asked_for(told.exprs) else told) for rule, told in found]
+
+
+def _walked(
     rules: tuple[Rule, ...], target: Side, around: _Nested = NOTHING_AROUND, *, chosen: bool = False
 ) -> Iterator[tuple[Rule, _Nested]]:
     """Each rule that is no block, with what it reads; the conditions and bounds of the blocks around it count.
@@ -122,9 +144,9 @@ def _told(
         within = around.within(rule, target)
         match rule:
             case For(body=body):
-                yield from _told(body, target, within, chosen=chosen)
+                yield from _walked(body, target, within, chosen=chosen)
             case When(then=then, otherwise=otherwise):
-                inner = _told((*then, *otherwise), target, within, chosen=True)
+                inner = _walked((*then, *otherwise), target, within, chosen=True)
                 yield from inner if chosen else _as_one(list(inner))
             case _:
                 yield rule, within
@@ -135,7 +157,7 @@ def _as_one(chosen: list[tuple[Rule, _Nested]]) -> Iterator[tuple[Rule, _Nested]
     for rule, told in chosen:
         for place in places_in((rule,)):
             wires, exprs = together.get(shown_place(place.steps), (NO_WIRE, dict[int, "Expr"]()))
-            together[shown_place(place.steps)] = wires | told.wires, exprs | {id(each): each for each in told.exprs}
+            together[shown_place(place.steps)] = wires | told.read, exprs | {id(each): each for each in told.exprs}
     for rule, told in chosen:
         found = [together[shown_place(place.steps)] for place in places_in((rule,))]
         yield rule, _Nested(found[0][0], tuple(found[0][1].values())) if found else told
@@ -187,7 +209,8 @@ class _Chosen:
         """Those of some rules that run, where the wires that have ``come`` are known to have sent a message."""
         for rule in rules:
             told, own = around.within(rule, self.target), of_wire(rule, self.wire, self.memory)
-            others = (self.needed(rule, around) | wires_read(_own(rule))) - come if self.memory.arrived else NO_WIRE
+            read = wires_read(_own(rule)) - asked_for(told.exprs)
+            others = (self.needed(rule, around) | read) - come if self.memory.arrived else NO_WIRE
             match own:
                 case For(body=body):
                     inner = tuple(self.of(body, told, come | others))
@@ -217,7 +240,7 @@ class _Chosen:
             case When(then=then, otherwise=otherwise):
                 inner = (*then, *otherwise)
             case _:
-                return told.wires.union(*(self.waits.get(self.cut(place), NO_WIRE) for place in places_in((rule,))))
+                return told.waits_for.union(*(self.waits.get(self.cut(place), NO_WIRE) for place in places_in((rule,))))
         first, *rest = [self.needed(each, told) for each in inner] or [NO_WIRE]
         return first.intersection(*rest)
 
@@ -232,7 +255,7 @@ def _waits(rules: tuple[Rule, ...], owners: dict[Names, frozenset[Wires]], cut: 
         for place in places_in((rule,)):
             names = cut(place)
             if len(owners.get(names, ())) == 1:
-                found[names] = found.get(names, NO_WIRE) | told.wires
+                found[names] = found.get(names, NO_WIRE) | told.waits_for
     return found
 
 
@@ -266,6 +289,9 @@ def value_of_wire(expr: Expr, wire: str, memory: Memory = NOTHING_KEPT) -> Expr:
     known = remembered(expr, wire, memory)
     if known is not None:
         return known
+    if isinstance(expr, typed.Has) and asks_arrival(expr):
+        (asked,) = wire_of(expr.place)
+        return typed.Const(True, typed.BOOL, expr.span) if asked == wire else memory.arrived.get(asked, expr)
     found = rebuilt(expr, lambda part: value_of_wire(part, wire, memory))
     match found:
         case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place) | typed.Search(place):
@@ -329,7 +355,7 @@ def _cutter(holder: Message) -> Callable[[Place], Names]:
 
 def wrong_wires(rules: tuple[Rule, ...], target: Side, holder: Message) -> list[Diagnostic]:
     """Reports of rules that need several wires at once, and, of rules to unpack, of fields that several wires set."""
-    every = list(_told(rules, target))
+    every = _told(rules, target)
     problems = [words.apart(rule.span, sorted(told.wires)) for rule, told in every if told.wires and not told.runs_at]
     return problems or (_overlaps(rules, every, holder) if target == "holder" else [])
 

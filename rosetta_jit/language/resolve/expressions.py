@@ -31,6 +31,7 @@ from rosetta_jit.language.scope import Broken, Sought, members_of, resolve_path
 from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, FieldStep, Has, IndexStep, Local, Search, Unary
 from rosetta_jit.language.units.conversion import check_agree
 from rosetta_jit.model import expr as model
+from rosetta_jit.model.mapping import OF_WIRES
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, Optional, String, Union
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ def type_index(expr: model.Expr | Sought, scope: Scope) -> Expr | None:
 
 def _name(expr: model.Name, scope: Scope) -> Expr | None:
     if expr.name in scope.locals:
-        return Local(expr.name + scope.suffix, INT64, expr.span)
+        return Local(expr.name + scope.suffix, INT64, expr.span, counts=expr.name in scope.counting)
     if expr.name in scope.values:
         return Local(expr.name, scope.values[expr.name], expr.span)
     if expr.name in scope.state:
@@ -155,6 +156,8 @@ def _presence(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
     if isinstance(place, Broken):
         return None
     message = scope.messages[place.side]
+    if place.side == "wire" and len(place.steps) == 1 and message.root.name.startswith(OF_WIRES):
+        return Has(place, span=span)
     schema, asked = message.schema, is_found(place, message)
     if any(isinstance(step, FieldStep) and isinstance(schema.resolve(step.field.type), Optional | Union) for step in place.steps):
         asked.append(Has(place, span=span))

@@ -18,7 +18,7 @@ from rosetta_jit.language.conversions import as_int64
 from rosetta_jit.language.function import written
 from rosetta_jit.language.functions.calls import type_numbers
 from rosetta_jit.language.functions.decisions import is_condition, type_condition
-from rosetta_jit.language.typed import Call, Local, Reduce
+from rosetta_jit.language.typed import INT64, Call, Const, Local, Reduce
 from rosetta_jit.model.expr import Binary, Each, Name
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def type_reduction(call: model.Call, scope: Scope, type_expr: TypeExpr) -> Reduc
     except LayoutError as error:
         scope.problems.append(error.problem)
         return None
-    value = type_expr(substituted(call.arguments[0], elements, Name(name)), scope.inside(name))
+    value = type_expr(substituted(call.arguments[0], elements, Name(name)), scope.inside(name, Const(0, INT64)))
     first, *others = [view.total for view in views.values()]
     count = type_expr(first, scope)
     refused = [each for view in views.values() for each in view.refused]

@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue import wires as words
 from rosetta_jit.language.arrays.counts import LayoutError
 from rosetta_jit.language.arrays.element_loops import element_at
 from rosetta_jit.language.arrays.layouts import view_of
@@ -13,11 +14,13 @@ from rosetta_jit.language.arrays.parts import sources_in, substituted
 from rosetta_jit.language.both_ways.directions import in_each_direction
 from rosetta_jit.language.resolve.expressions import type_expr
 from rosetta_jit.language.resolve.messages import message_named, scope_between
-from rosetta_jit.model.expr import Literal
+from rosetta_jit.model.expr import Call, Literal, Member, Path
 from rosetta_jit.model.mapping import For
-from rosetta_jit.model.walk import every_rule
+from rosetta_jit.model.walk import every_rule, expressions_of, parts
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.language.uses import UsableMappings
@@ -43,7 +46,22 @@ def derived(mapping: Mapping, schema: Schema, others: UsableMappings, problems: 
         typed = None if known is None else type_expr(_of_first(expr), known)
         return None if typed is None else typed.type
 
-    return in_each_direction(mapping, type_of, problems)
+    asked = [words.arrival_to_pack(call.span) for call in _arrivals(mapping)]
+    problems.extend(asked)
+    return in_each_direction(mapping, type_of, [] if asked else problems)
+
+
+def _arrivals(mapping: Mapping) -> Iterator[Call]:
+    """Where relations ask whether a message of a wire has arrived."""
+    names = {each.name for each in mapping.wires}
+    for rule in every_rule(mapping.rules or ()) if names else ():
+        for expr in expressions_of(rule):
+            for part in parts(expr):
+                match part:
+                    case Call("has", (Path("wire", (Member(name),)),)) if name in names:
+                        yield part
+                    case _:
+                        pass
 
 
 def _scope(mapping: Mapping, schema: Schema, others: UsableMappings) -> Scope | None:

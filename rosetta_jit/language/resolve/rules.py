@@ -313,7 +313,7 @@ class _Block:
             scope.problems.append(states.repeated(rule.span, rule.variable, "a state variable"))
         start = type_integer(rule.start, scope, "where a loop starts")
         stop = type_integer(rule.stop, scope, "where a loop ends")
-        body = self.rules(rule.body, scope.inside(rule.variable))
+        body = self.rules(rule.body, scope.inside(rule.variable, start))
         if start is None or stop is None:
             self.broken.extend(field_names(place) for place in places_in(body))
             return None
@@ -325,7 +325,7 @@ class _Block:
 
     def filtered(self, rule: model.For[model.Rule, expr.Expr], kept: Kept[expr.Expr], scope: Scope) -> list[Rule | None]:
         """A loop of which some rounds are kept, behind the lengths of the arrays that have an element for each of them."""
-        inside = scope.inside(rule.variable)
+        inside = scope.inside(rule.variable, Const(0, INT64))
         stop = type_integer(rule.stop, scope, "where a loop ends")
         condition = type_condition(kept.condition, inside, type_expr)
         body = self.rules(rule.body, inside.inside(kept.variable))

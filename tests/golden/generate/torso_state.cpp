@@ -337,25 +337,14 @@ static int64_t borrow_2(torso_state_holder *holder, const unsigned char *restric
 
 const site size_sites[] = {
     {status::full, "", "a lane is too small", "", -1, 0, nullptr},
-    {status::length, ".angles", "the holder is damaged", "", -1, 0, nullptr},
 };
 
-static int64_t size_message(torso_state_holder *holder, struct failure *failure)
+static int64_t size_message(void)
 {
-    const torso_state_JointAngles *restrict const message = &holder->message;
-    const int64_t angles_used = holder->angles.used;
-    const int64_t start = message->angles.start;
-    const int64_t count = message->angles.count;
-    if (!((count >= 0) && (count <= angles_used))) {
-        return fail(failure, 1, 0); /* length .angles: the holder is damaged */
-    }
-    if (!((start >= 0) && (start <= (angles_used - count)))) {
-        return fail(failure, 1, 0); /* length .angles: the holder is damaged */
-    }
     return 32;
 }
 
-const part encode_parts_2[] = {
+const part encode_parts_1[] = {
     {0, 4, 0, ""},
     {4, 4, 0, ""},
     {8, 8, 0, ".yaw"},
@@ -365,8 +354,7 @@ const part encode_parts_2[] = {
 
 const site encode_sites[] = {
     {status::full, "", "a lane is too small", "", -1, 0, nullptr},
-    {status::length, ".angles", "the holder is damaged", "", -1, 0, nullptr},
-    {status::length, "", "no room for the message", "", -1, 5, encode_parts_2},
+    {status::length, "", "no room for the message", "", -1, 5, encode_parts_1},
     {status::index, ".angles[{}]", "no such element", "torso_state.mapping:11:3", -1, 0, nullptr},
     {status::index, ".angles[{}]", "no such element", "torso_state.mapping:12:3", -1, 0, nullptr},
     {status::index, ".angles[{}]", "no such element", "torso_state.mapping:13:3", -1, 0, nullptr},
@@ -374,47 +362,40 @@ const site encode_sites[] = {
     {status::length, "", "no room for the message", "", -1, 0, nullptr},
 };
 
-static int64_t encode_message(torso_state_holder *holder, unsigned char *restrict bytes, int64_t end, struct failure *failure)
+static int64_t encode_message(torso_state_holder *holder, const torso_state_JointAngles &given_row, unsigned char *restrict bytes, int64_t end, struct failure *failure)
 {
-    const torso_state_JointAngles *restrict const message = &holder->message;
+    const torso_state_JointAngles *restrict const message = &given_row;
     float *restrict const angles = holder->angles.rows;
-    const int64_t angles_used = holder->angles.used;
     const int64_t start = message->angles.start;
     const int64_t count = message->angles.count;
-    if (!((count >= 0) && (count <= angles_used))) {
-        return fail(failure, 1, 0); /* length .angles: the holder is damaged */
-    }
-    if (!((start >= 0) && (start <= (angles_used - count)))) {
-        return fail(failure, 1, 0); /* length .angles: the holder is damaged */
-    }
     if (end < 32) {
-        return fail(failure, 2, 0); /* length: no room for the message */
+        return fail(failure, 1, 0); /* length: no room for the message */
     }
     store_i32_le(bytes, 0, 266);
     store_i32_le(bytes, 4, 3);
     if (0 >= count) {
         failure->indices[0] = 0;
-        return fail(failure, 3, 8); /* index .angles[{}]: no such element (torso_state.mapping:11:3) */
+        return fail(failure, 2, 8); /* index .angles[{}]: no such element (torso_state.mapping:11:3) */
     }
     const float element = angles[start]; /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
     const double yaw = (double)element * 57.29577951308232;
     store_f64_le(bytes, 8, yaw);
     if (1 >= count) {
         failure->indices[0] = 1;
-        return fail(failure, 4, 16); /* index .angles[{}]: no such element (torso_state.mapping:12:3) */
+        return fail(failure, 3, 16); /* index .angles[{}]: no such element (torso_state.mapping:12:3) */
     }
     const float element_2 = angles[start + 1]; /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
     const double roll = (double)element_2 * 57.29577951308232;
     store_f64_le(bytes, 16, roll);
     if (2 >= count) {
         failure->indices[0] = 2;
-        return fail(failure, 5, 24); /* index .angles[{}]: no such element (torso_state.mapping:13:3) */
+        return fail(failure, 4, 24); /* index .angles[{}]: no such element (torso_state.mapping:13:3) */
     }
     const float element_3 = angles[start + 2]; /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
     const double pitch = (double)element_3 * 57.29577951308232;
     store_f64_le(bytes, 24, pitch);
     if (count != 3) {
-        return fail(failure, 6, 32); /* rejected: `len(.angles)` is not `3`, as the mapping says (torso_state.mapping:10:3) */
+        return fail(failure, 5, 32); /* rejected: `len(.angles)` is not `3`, as the mapping says (torso_state.mapping:10:3) */
     }
     return 32;
 }
@@ -519,9 +500,8 @@ rosetta_jit::error unplaced(rosetta_jit::error found)
     return found;
 }
 
-void gather(const ::torso_state::holder &source, torso_state_holder *holder)
+void gather(const ::torso_state::holder &source, torso_state_holder *holder, torso_state_JointAngles &row)
 {
-    auto &row = holder->message;
     row = {};
     holder->most = rosetta_jit::detail::most_rows(std::size_t{1} << 39);
     holder->unknown.reset();
@@ -531,22 +511,25 @@ void gather(const ::torso_state::holder &source, torso_state_holder *holder)
     collect(source, *holder, row);
 }
 
-int64_t measured(torso_state_holder *holder, struct failure *failure_of_size)
+int64_t measured(torso_state_holder *holder, const torso_state_JointAngles &given_row, struct failure *failure_of_size)
 {
     struct failure &failure = *failure_of_size;
     const int64_t end = INT64_MAX;
     static_cast<void>(end);
     static_cast<void>(holder);
+    static_cast<void>(given_row);
     static_cast<void>(failure);
-    return size_message(holder, &failure);
+    return size_message();
 }
 
 rosetta_jit::result<std::size_t> written(torso_state_holder *holder, unsigned char *bytes, int64_t end)
 {
     struct failure failure = {0, 0, {0, 0, 0, 0}};
+    const auto &given_row = holder->message;
+    static_cast<void>(given_row);
     static_cast<void>(bytes);
     static_cast<void>(end);
-    const int64_t result = encode_message(holder, bytes, end, &failure);
+    const int64_t result = encode_message(holder, given_row, bytes, end, &failure);
     if (result < 0) {
         return unplaced(report(encode_sites, failure, 0, *holder));
     }
@@ -560,8 +543,8 @@ rosetta_jit::result<std::size_t> codec::try_size(const ::torso_state::holder &so
     struct failure failure = {0, 0, {0, 0, 0, 0}};
     holder->now = now;
     holder->number = number;
-    gather(source, holder);
-    const int64_t size = measured(holder, &failure);
+    gather(source, holder, holder->message);
+    const int64_t size = measured(holder, holder->message, &failure);
     if (size < 0) {
         return unplaced(report(size_sites, failure, 0, *holder));
     }
@@ -573,7 +556,7 @@ rosetta_jit::result<std::size_t> codec::try_encode(const ::torso_state::holder &
     torso_state_holder *const holder = memory_.get();
     holder->now = now;
     holder->number = number;
-    gather(source, holder);
+    gather(source, holder, holder->message);
     return written(holder, static_cast<unsigned char *>(bytes), reach(capacity));
 }
 

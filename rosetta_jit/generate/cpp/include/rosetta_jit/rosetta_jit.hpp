@@ -24,6 +24,13 @@
 #include <span>
 #endif
 
+/* Code that is as quick as what it stands for only where a compiler sees both. */
+#if defined(__GNUC__)
+#define ROSETTA_JIT_INLINE __attribute__((always_inline)) inline
+#else
+#define ROSETTA_JIT_INLINE inline
+#endif
+
 namespace rosetta_jit {
 
 /* What is wrong with a message. */
@@ -261,6 +268,14 @@ template <class Row> struct lane {
         used = 0;
     }
 
+    /* No rows, and a place in memory for each. */
+    void address()
+    {
+        rows = nullptr;
+        capacity = 0;
+        used = INT64_MAX;
+    }
+
     void show(const Row *elements, std::int64_t count)
     {
         rows = const_cast<Row *>(elements); /* the functions that write messages change no row */
@@ -309,6 +324,27 @@ struct scratch {
         return true;
     }
 };
+
+/* Sets bytes, of which there are fewer than eight nearly always: a call takes longer than to set them. */
+inline void fill_few(void *target, std::int64_t to, std::int64_t size, int byte) noexcept
+{
+    unsigned char *at = static_cast<unsigned char *>(target) + to;
+    if (size >= 8) {
+        std::memset(at, byte, static_cast<std::size_t>(size));
+    } else if (size > 0) {
+        if ((size & 4) != 0) {
+            std::memset(at, byte, 4);
+            at += 4;
+        }
+        if ((size & 2) != 0) {
+            std::memset(at, byte, 2);
+            at += 2;
+        }
+        if ((size & 1) != 0) {
+            *at = static_cast<unsigned char>(byte);
+        }
+    }
+}
 
 /* --- containers --- */
 
@@ -497,6 +533,14 @@ template <class Lane, class Span, class Container> void show_span(Lane &to, Span
         }
     }
     take_span(to, span, from);
+}
+
+/* The same by the address of the elements. */
+template <class Lane, class Span, class Container> void point_span(Lane &, Span &span, const Container &from)
+{
+    static_assert(sizeof(*std::data(from)) == 1, "the class has elements of another type than the schema");
+    span.start = static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(std::data(from)));
+    span.count = count_of(from);
 }
 
 /* Rows that are the elements of a container, so that nothing is copied. */
