@@ -196,6 +196,12 @@ def several_encodings(name: str, encodings: Sequence[str]) -> Diagnostic:
     return Diagnostic("error", "log-encoding", message, help="name the one that is meant: `--encoding`")
 
 
+def no_output(name: str, tables: Iterable[str], suffixes: Iterable[str]) -> Diagnostic:
+    """A name that says neither a table, nor a folder, nor a log."""
+    help_ = f"a table ends with {', '.join(tables)}, a log with {', '.join(suffixes)}, a folder of tables with `/`"
+    return Diagnostic("error", "log-format", f"{name}: the name does not say what to write", help=help_)
+
+
 def no_writer(name: str, suffixes: Iterable[str]) -> Diagnostic:
     """A file whose name tells no format that is written."""
     return Diagnostic("error", "log-format", f"{name}: nothing writes such files", help=f"names end with {', '.join(suffixes)}")

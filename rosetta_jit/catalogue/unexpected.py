@@ -81,10 +81,12 @@ def _of_sign(place: _Place) -> str:
         return sign or habits.CHARACTERS[found[:1]]
     if ("RBRACE" in expected or re.search(r"\{[^}]*$", place.before)) and (found == ":" or pair == "=>"):
         return 'a key and its value stand so: `"key" = value`'
-    if expected & {"EQUAL", "RELATES"} and place.kind != "RELATES" and (found == "==" or ahead[:2] in ("->", "<-", ":=")):
+    if expected & {"EQUAL", "RELATES"} and place.kind != "RELATES" and (found == "==" or ahead[:2] in ("->", "<-", ":=", "<=", "=>")):
         return "a place is related to a value by `<->`" if "RELATES" in expected else "a place is set by `=`"
     if place.kind == "EQUAL" and "FOR" in expected:
         return "values are compared by `==`; a rule sets one place by `=`"
+    if expected & {"EQUAL", "RELATES"} and ahead[:2] in ("+=", "-=", "*=", "/="):
+        return "a place is set once for a message; what earlier messages left is `state`"
     if found in OPERATORS and expected & {"EQUAL", "RELATES"}:
         return f"left of `{'<->' if 'RELATES' in expected else '='}` stands a place alone: compute on the right"
     if found in COMPARISONS and "FOR" in expected:
@@ -103,6 +105,8 @@ def _of_number(place: _Place) -> str:
         return "a digit stands behind the point: `1.0`"
     if found == "," and ahead[1:2].isdigit():
         return "decimals stand behind a point: `1.5`"
+    if place.before.startswith("limit"):
+        return "a limit is a number of bytes: `limit: 4000000`"
     if place.kind == "NAME" and place.touches:
         together = re.match(r"[_0-9]+\b", found)
         return "the digits of a number stand together: `1000`" if together else "a number ends with its digits: `float32(1.0)`, `int64(10)`"
@@ -126,6 +130,8 @@ def _of_bracket(place: _Place) -> str:
         return f"what a function takes stands in its brackets: `{called[2]}({shorten(called[1])})`"
     if found == "[" and before.endswith(")"):
         return '`part(x, "/", 0)` is the first part of a text; of other arrays, only fields have elements'
+    if place.kind in ("NAME", "UNCLOSED") and place.touches == '"':
+        return 'a quote within a text is written with a backslash: `"a\\"b"`'
     if place.kind == "STRING" and place.touches == "f":
         return 'texts are joined by `+`: `"joint " + text(.n)`'
     return ""
@@ -140,6 +146,10 @@ def _of_statement(place: _Place) -> str:
         return "a loop counts: `for i from 0 to len(.a)`"
     if re.match(r"(if|elif|else if)\b", place.line) and "ELSE" in expected:
         return "rules that depend on a condition stand in a block: `when condition`, the rules, `end`"
+    if re.search(r"\bif\b", place.line) and "ELSE" in expected and place.kind != "NAME":
+        return "a choice has two values, `a if condition else b`; a rule that is left out otherwise stands in a `when`"
+    if found in ("*", ".") and (word := re.match(r"(ignore|default)\s*(\.[\w.]*)?", before)):
+        return f"`{word[1]} {shorten(word[2])}` is said of all of it" if word[2] else f"`{word[1]} rest` is said of all others"
     if found == "," and re.match(r"(ignore|default)\b", before):
         return f"each field has its own: `{before} {before.split()[0]} .b`"
     if before.startswith("reject") and (found == "if" or ("STRING" in expected and found == "when")):

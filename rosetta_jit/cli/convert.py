@@ -91,12 +91,17 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _kind(arguments: argparse.Namespace, output: Path) -> Kind:
+    from rosetta_jit.catalogue.logs import no_output
+    from rosetta_jit.errors import LogError
     from rosetta_jit.logs.converting.table import TABLES
+    from rosetta_jit.logs.writing import WRITERS
 
     if arguments.folder == "yarpdatadumper":
         return "log"
     if arguments.folder or arguments.output.endswith("/") or output.is_dir():
         return "folder"
+    if output.suffix not in (*TABLES, *WRITERS):
+        raise LogError((no_output(arguments.output, TABLES, WRITERS),))
     return "table" if output.suffix in TABLES else "log"
 
 

@@ -19,6 +19,9 @@ SECONDS = frozenset(("sec", "second"))
 NANOSECONDS = frozenset(("nsec", "nanosec", "nanosecond"))
 MOMENTS = frozenset(("time", "timestamp", "stamp", "date", "duration", "moment"))
 
+ALIKE = 0.8
+"""How much of two names is shared where they are of the same moment."""
+
 Clock = tuple["Leaf", "Leaf"]
 """Seconds, and the nanoseconds behind them."""
 
@@ -28,6 +31,11 @@ def clocks(leaves: list[Leaf]) -> list[Clock]:
     seconds = [each for each in leaves if SECONDS & {*tokens(each.names[-1])} and isinstance(each.type, Int)]
     rest = {each.group: each for each in leaves if NANOSECONDS & {*tokens(each.names[-1])} and isinstance(each.type, Int)}
     return [(each, rest[each.group]) for each in seconds if each.group in rest]
+
+
+def without_another(mine: list[Clock], theirs: list[Clock]) -> list[Clock]:
+    """The clocks that are not the same moment as one of the other side: that one tells them better than a number does."""
+    return [each for each in mine if not any(shared(each[0].names[:-1], other[0].names[:-1]) > ALIKE for other in theirs)]
 
 
 def numbers(leaves: list[Leaf]) -> Iterator[Leaf]:

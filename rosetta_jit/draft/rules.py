@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.draft.conversions import converted, kind
 from rosetta_jit.draft.limits import MAX_FIELDS
-from rosetta_jit.draft.moments import best_clock, clocks, numbers, of_clock, of_number
+from rosetta_jit.draft.moments import best_clock, clocks, numbers, of_clock, of_number, without_another
 from rosetta_jit.draft.pairs import FAMILIES, around, fit, pairs
 from rosetta_jit.draft.words import tokens
 from rosetta_jit.model.types import Bytes, Enum
@@ -59,14 +59,14 @@ def _of_padded_rows(decision: Decision, wire: list[Leaf]) -> Decision:
 
 
 def _moments(holder: list[Leaf], wire: list[Leaf]) -> Iterator[Decision]:
-    known = clocks(wire)
+    known = without_another(clocks(wire), clocks(holder))
     for number in numbers(holder):
         clock = best_clock(number, known)
         value = None if clock is None else of_clock(number, clock, "")
         if clock is not None and value is not None:
             known.remove(clock)
             yield Decision((number,), clock, (f"{number.path()} <-> {value}",), 1.0)
-    known = clocks(holder)
+    known = without_another(clocks(holder), clocks(wire))
     for number in numbers(wire):
         clock = best_clock(number, known)
         values = None if clock is None else of_number(number, clock, "")

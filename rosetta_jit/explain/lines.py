@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING
@@ -10,7 +11,7 @@ from rosetta_jit.explain.nodes import by_span, names_of, places, span_of
 from rosetta_jit.explain.notes import Note, notes
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import shown_fields
-from rosetta_jit.model.expr import Member, Path
+from rosetta_jit.model.expr import Index, Literal, Member, Path
 from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, SameNames, SetLength, SetState, Via, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.walk import every_rule
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.typed import Place, Rule
     from rosetta_jit.language.uses import Use
     from rosetta_jit.model.expr import Expr, Side
-    from rosetta_jit.model.mapping import Mapping, Way
+    from rosetta_jit.model.mapping import Assignment, Mapping, Way
     from rosetta_jit.model.mapping import Rule as Untyped
     from rosetta_jit.source import Span
 
@@ -74,8 +75,9 @@ class Lines:
         return cls(written, direction, target, by_span(rules), used, around=(written.source.name,))
 
     def lines(self, rules: tuple[Untyped, ...], depth: int = 0) -> Iterator[Line]:
+        several = Counter(span_of(rule.span) for rule in rules)
         for rule in rules:
-            yield from self.rule(rule, depth)
+            yield from self.rule(rule, depth, is_whole=several[span_of(rule.span)] == 1)
 
     def of_used(self, rule: Untyped, depth: int) -> Iterator[Line]:
         """The rules of the mapping by which a rule is made, below it."""
@@ -100,7 +102,9 @@ class Lines:
         outer = () if self.inside is None else names_of(self.inside.place)
         return names_of(place)[: len(outer)] == outer
 
-    def rule(self, rule: Untyped, depth: int) -> Iterator[Line]:
+    def rule(self, rule: Untyped, depth: int, *, is_whole: bool = True) -> Iterator[Line]:
+        """The lines of a rule, which ``is_whole`` unless it is one of several that a rule of the text becomes."""
+        written = self.text(rule.span) if is_whole else ""
         match rule:
             case For(variable, start, stop, body):
                 yield self.line(rule, f"for {variable} from {self.expr(start)} to {self.expr(stop)}", depth)
@@ -123,10 +127,10 @@ class Lines:
                     yield from self.opened(use, depth)
             case Assign(place, value, by=way):
                 text = f"{show_expr(place)} = {_expr(value)}{_by(way)}"
-                yield self.line(rule, self.text(rule.span) or text, depth)
+                yield self.line(rule, written or text, depth)
                 yield from self.of_used(rule, depth)
             case SetLength(place, value):
-                yield self.line(rule, self.text(rule.span) or f"len({show_expr(place)}) = {_expr(value)}", depth)
+                yield self.line(rule, written or f"len({show_expr(place)}) = {_expr(value)}", depth)
             case SetState(variable, value):
                 yield self.line(rule, self.text(rule.span) or f"state {variable} = {_expr(value)}", depth)
             case Ignore(place) | Default(place):
@@ -207,11 +211,21 @@ def _own(rule: Untyped, found: list[Rule]) -> list[Rule]:
         case Assign(Path(steps=steps)) | SetLength(Path(steps=steps)):
             wanted = tuple(step.name for step in steps if isinstance(step, Member))
             own = [each for each in found if _is_filter(each) or any(names_of(place)[-len(wanted) :] == wanted for place in _set_by(each))]
+            own = [each for each in own if _is_item(rule, each)] or own
         case Reject():
             own = [each for each in found if not _set_by(each)]
         case _:
             own = found
     return own or found
+
+
+def _is_item(rule: Assignment | SetLength[Path, Expr], found: Rule) -> bool:
+    """Whether a typed rule sets the length, or the very element, that a rule does."""
+    if isinstance(rule, SetLength) or not isinstance(found, typed.Assign):
+        return isinstance(rule, SetLength) and isinstance(found, typed.SetLength)
+    numbers = [step.index.value for step in rule.place.steps if isinstance(step, Index) and isinstance(step.index, Literal)]
+    indices = [step.index for step in found.place.steps if isinstance(step, typed.IndexStep)]
+    return numbers == [each.value for each in indices if isinstance(each, typed.Const)]
 
 
 def _is_filter(rule: Rule) -> bool:

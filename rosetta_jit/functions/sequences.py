@@ -16,7 +16,7 @@ from rosetta_jit.language.function import SEVERAL, Function, Row
 from rosetta_jit.language.typed import BOOL, INT64
 from rosetta_jit.lowering.arithmetic import binary, inside
 from rosetta_jit.lowering.codec.fields import scalar_name
-from rosetta_jit.lowering.filling import UINT8, Filling, given
+from rosetta_jit.lowering.made_arrays import UINT8, MadeArray, array_argument
 from rosetta_jit.lowering.writer import block
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.layout import scalar_of
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Scalar
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.lowering.filling import Given, Put
+    from rosetta_jit.lowering.made_arrays import ArrayArgument, Put
     from rosetta_jit.lowering.writer import Writer
     from rosetta_jit.model.types import Type
 
-    Fill = Callable[[Given, Expr, Evaluation, Put], None]
+    Fill = Callable[[ArrayArgument, Expr, Evaluation, Put], None]
     Takes = tuple[str, Callable[[Type | None], bool]]
     """What an argument must be, and whether an array of such elements is that."""
 
@@ -88,12 +88,12 @@ def _typed(takes: tuple[Takes, ...], gives: Type | None, call: model.Call, argum
 # --- kernels: sums and differences ---------------------------------------------------------------------------------------
 
 
-def _lower_deltas(call: typed.Call, values: Evaluation) -> Filling:
-    array = given(call.arguments[0], values)
-    return Filling(array.count, partial(_fill_deltas, array, values))
+def _lower_deltas(call: typed.Call, values: Evaluation) -> MadeArray:
+    array = array_argument(call.arguments[0], values)
+    return MadeArray(array.count, partial(_fill_deltas, array, values))
 
 
-def _fill_deltas(array: Given, values: Evaluation, put: Put) -> None:
+def _fill_deltas(array: ArrayArgument, values: Evaluation, put: Put) -> None:
     writer = values.writer
     last = writer.var("last", _zero(array))
     with array.each() as number:
@@ -102,12 +102,12 @@ def _fill_deltas(array: Given, values: Evaluation, put: Put) -> None:
         writer.assign(last, value)
 
 
-def _lower_sums(call: typed.Call, values: Evaluation) -> Filling:
-    array = given(call.arguments[0], values)
-    return Filling(array.count, partial(_fill_sums, array, values))
+def _lower_sums(call: typed.Call, values: Evaluation) -> MadeArray:
+    array = array_argument(call.arguments[0], values)
+    return MadeArray(array.count, partial(_fill_sums, array, values))
 
 
-def _fill_sums(array: Given, values: Evaluation, put: Put) -> None:
+def _fill_sums(array: ArrayArgument, values: Evaluation, put: Put) -> None:
     writer = values.writer
     total = writer.var("total", index(0))  # and not the element that is put, which would be narrowed and widened in each round
     with array.each() as number:
@@ -123,8 +123,8 @@ def _integer(value: Expr) -> Expr:
 # --- kernels: runs -------------------------------------------------------------------------------------------------------
 
 
-def _lower_repeated(call: typed.Call, values: Evaluation) -> Filling:
-    array, counts = (given(each, values) for each in call.arguments)
+def _lower_repeated(call: typed.Call, values: Evaluation) -> MadeArray:
+    array, counts = (array_argument(each, values) for each in call.arguments)
     writer, runs = values.writer, array.count
     values.reject(words.OTHER_COUNT, when=Compare("ne", runs, counts.count))
     total = writer.var("total", index(0))
@@ -132,10 +132,10 @@ def _lower_repeated(call: typed.Call, values: Evaluation) -> Filling:
         size = writer.let("size", _integer(counts.at(number)))
         writer.expect(Compare("ge", size, index(0)), "count", values.where, "a run must not be negative", line=values.line)
         writer.assign(total, binary(writer, "+", total, size, values.where, values.line))
-    return Filling(writer.let("total", total), partial(_fill_repeated, array, counts, writer.let("total", total), values))
+    return MadeArray(writer.let("total", total), partial(_fill_repeated, array, counts, writer.let("total", total), values))
 
 
-def _fill_repeated(array: Given, counts: Given, total: Expr, values: Evaluation, put: Put) -> None:
+def _fill_repeated(array: ArrayArgument, counts: ArrayArgument, total: Expr, values: Evaluation, put: Put) -> None:
     writer = values.writer
     at = writer.var("at", index(0))
     with counts.each() as number:
@@ -152,7 +152,7 @@ def _fill_repeated(array: Given, counts: Given, total: Expr, values: Evaluation,
 
 
 @contextmanager
-def _each_run(array: Given, values: Evaluation) -> Generator[tuple[Local, Expr, Expr]]:
+def _each_run(array: ArrayArgument, values: Evaluation) -> Generator[tuple[Local, Expr, Expr]]:
     """Around what is done with each element: its number, its value, and whether a run begins with it. Floats are the same to the bit."""
     writer = values.writer
     last = writer.var("last", _zero(array))
@@ -164,20 +164,20 @@ def _each_run(array: Given, values: Evaluation) -> Generator[tuple[Local, Expr, 
         writer.assign(last, value)
 
 
-def _zero(array: Given) -> Const:
+def _zero(array: ArrayArgument) -> Const:
     assert isinstance(array.element, Bool | Enum | Float | Int)
     scalar = scalar_name(scalar_of(array.element))
     return Const(scalar, value=False if scalar == "bool" else 0.0 if scalar in FLOATS else 0)
 
 
-def _lower_runs(fill: Fill, call: typed.Call, values: Evaluation) -> Filling:
+def _lower_runs(fill: Fill, call: typed.Call, values: Evaluation) -> MadeArray:
     """Runs of elements that are the same."""
-    array = given(call.arguments[0], values)
+    array = array_argument(call.arguments[0], values)
     runs = values.together(replace(call, function="run_values", type=INT64), partial(_counted, array, values))["runs"]
-    return Filling(runs, partial(fill, array, runs, values))
+    return MadeArray(runs, partial(fill, array, runs, values))
 
 
-def _counted(array: Given, values: Evaluation) -> dict[str, Expr]:
+def _counted(array: ArrayArgument, values: Evaluation) -> dict[str, Expr]:
     """How many runs there are."""
     writer = values.writer
     found = writer.var("runs", index(0))
@@ -186,7 +186,7 @@ def _counted(array: Given, values: Evaluation) -> dict[str, Expr]:
     return {"runs": writer.let("runs", found)}
 
 
-def _fill_values(array: Given, runs: Expr, values: Evaluation, put: Put) -> None:
+def _fill_values(array: ArrayArgument, runs: Expr, values: Evaluation, put: Put) -> None:
     """The element of each run, which each of its elements sets."""
     writer = values.writer
     row = writer.var("run", index(-1))
@@ -196,7 +196,7 @@ def _fill_values(array: Given, runs: Expr, values: Evaluation, put: Put) -> None
     _all_were_put(row, runs, values)
 
 
-def _fill_lengths(array: Given, runs: Expr, values: Evaluation, put: Put) -> None:
+def _fill_lengths(array: ArrayArgument, runs: Expr, values: Evaluation, put: Put) -> None:
     """How many each run has: what its elements set counts up to that."""
     writer = values.writer
     row, first = writer.var("run", index(-1)), writer.var("first", index(0))
@@ -224,10 +224,10 @@ def _all_were_put(row: Expr, runs: Expr, values: Evaluation) -> None:
 # --- kernels: bits -------------------------------------------------------------------------------------------------------
 
 
-def _lower_bits(call: typed.Call, values: Evaluation) -> Filling:
-    array = given(call.arguments[0], values)
+def _lower_bits(call: typed.Call, values: Evaluation) -> MadeArray:
+    array = array_argument(call.arguments[0], values)
     count = values.writer.checked("mul", array.count, index(8), values.where, line=values.line)
-    return Filling(count, partial(_fill_bits, array, _places(call), values))
+    return MadeArray(count, partial(_fill_bits, array, _places(call), values))
 
 
 def _places(call: typed.Call) -> list[int]:
@@ -236,7 +236,7 @@ def _places(call: typed.Call) -> list[int]:
     return [*range(8)][:: -1 if is_big else 1]
 
 
-def _fill_bits(array: Given, places: list[int], values: Evaluation, put: Put) -> None:
+def _fill_bits(array: ArrayArgument, places: list[int], values: Evaluation, put: Put) -> None:
     writer = values.writer
     with array.each() as number:
         byte = writer.let("byte", array.at(number))
@@ -245,15 +245,15 @@ def _fill_bits(array: Given, places: list[int], values: Evaluation, put: Put) ->
             put(add(mul(number, index(8)), index(each)), Compare("ne", bit, Const("u8", 0)))
 
 
-def _lower_bytes(call: typed.Call, values: Evaluation) -> Filling:
-    array, writer = given(call.arguments[0], values), values.writer
+def _lower_bytes(call: typed.Call, values: Evaluation) -> MadeArray:
+    array, writer = array_argument(call.arguments[0], values), values.writer
     is_even = Compare("eq", Binary("and", array.count, index(7)), index(0))
     writer.expect(is_even, "range", values.where, "these bits are no whole bytes", line=values.line)
     count = writer.let("bytes", Binary("div", array.count, index(8)))
-    return Filling(count, partial(_fill_bytes, array, count, _places(call)))
+    return MadeArray(count, partial(_fill_bytes, array, count, _places(call)))
 
 
-def _fill_bytes(array: Given, count: Expr, places: list[int], put: Put) -> None:
+def _fill_bytes(array: ArrayArgument, count: Expr, places: list[int], put: Put) -> None:
     with array.each(count) as number:
         bits = [array.at(add(mul(number, index(8)), index(each))) for each in range(8)]
         parts = [Binary("shl", Convert("u8", bit), Const("u8", place)) for bit, place in zip(bits, places, strict=True)]

@@ -1,4 +1,4 @@
-"""Signals within the bytes of a frame, as of a CAN bus: read, and put together (`rosetta_jit.language.signals` says where their bits lie).
+"""Signals within the bytes of a frame, as of a CAN bus: read, and put together. Where their bits lie, `language.signal_bits` says.
 
 signal (bytes, "start|length@order sign")                       the number
 signal_bytes (size, "start|length@order sign", number, ...)     the frame; bits of no signal are 0
@@ -17,7 +17,7 @@ from rosetta_jit.language.conversions import as_int64, describe
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
 from rosetta_jit.language.functions.texts import is_bytes
 from rosetta_jit.language.limits import MAX_SIGNAL_BYTES
-from rosetta_jit.language.signals import MOST_BITS, signal_of
+from rosetta_jit.language.signal_bits import MOST_BITS, signal_of
 from rosetta_jit.lowering.codec.fields import scalar_name
 from rosetta_jit.lowering.texts.views import byte_at, kept, put, room
 from rosetta_jit.model.layout import scalar_of
@@ -26,7 +26,7 @@ from rosetta_jit.model.types import Array, Bytes, Int, String
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr
     from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.signals import Signal
+    from rosetta_jit.language.signal_bits import Signal
     from rosetta_jit.lowering.evaluation import Evaluation
     from rosetta_jit.lowering.texts.views import View
     from rosetta_jit.model import expr as model

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -30,6 +31,10 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.parts import OnError, Part
     from rosetta_jit.logs.walking import Rows
     from rosetta_jit.runtime.batch import Batch
+
+
+MOST_OF_EMPTY = 8
+"""Bytes that a message without fields takes at most: in CDR the header, one byte, and three that fill up the last four."""
 
 
 class Channel:
@@ -95,7 +100,15 @@ class Channel:
         SchemaError, MappingError
             The definition, or the mapping, is wrong.
         """
-        return _decoder(self._log, self.connections[0], self._target, self._options)
+        connection = self.connections[0]
+        if connection.schema_encoding and not connection.schema.strip() and self._has_content():
+            connection = replace(connection, schema_encoding="", schema=b"")
+        return _decoder(self._log, connection, self._target, self._options)
+
+    def _has_content(self) -> bool:
+        """Whether the first message is longer than one without fields: then an empty definition is none."""
+        block = next(self._blocks(), None)
+        return block is not None and int(block.rows.ends[0] - block.rows.begins[0]) > MOST_OF_EMPTY
 
     def parts(
         self, *, start: Moment | None = None, end: Moment | None = None, pieces: range | None = None, on_error: OnError = "raise"

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, cast, overload
 
 import numpy as np
 
+from rosetta_jit.errors import InUse
 from rosetta_jit.kernel.state import EPOCH, VALID
 from rosetta_jit.runtime.columns import column, presence_mask
 from rosetta_jit.runtime.holder.family import family_of
@@ -185,12 +186,17 @@ class Batch:
         return [*own, *self.family_.tree.root.entries]
 
     def __repr__(self) -> str:
+        if not self.lanes.words[VALID]:
+            why = "in use" if isinstance(self.lanes.invalid(), InUse) else "the last decode failed"
+            return f"<Batch of {self.family_.struct.name}: {why}>"
         return f"<Batch of {len(self)} {self.family_.struct.name}>"
 
     def _repr_html_(self) -> str:
         """What a notebook shows: the first messages."""
-        from rosetta_jit.runtime.looks.page import batch_page
+        from rosetta_jit.runtime.looks.page import batch_page, failed_page
 
+        if not self.lanes.words[VALID]:
+            return failed_page(self)
         return self.lanes.consistent(batch_page, self)
 
     def column(self, name: str) -> Any:

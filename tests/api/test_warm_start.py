@@ -44,6 +44,19 @@ def test_the_second_process_needs_no_llvm(tmp_path):
     assert start(tmp_path / "cache").stderr.split() == ["False"]
 
 
+MANNERS = """
+import sys
+import rosetta_jit.frameworks.corba.manners, rosetta_jit.frameworks.lcm.manners, rosetta_jit.frameworks.protobuf.manners
+import rosetta_jit.frameworks.ros1.manners, rosetta_jit.frameworks.ros2.manners, rosetta_jit.frameworks.yarp.manners
+print(*[name for name in sys.modules if name.startswith("rosetta_jit.") and name.endswith((".idl", ".reading", ".encoding", ".parse"))])
+"""
+
+
+def test_holders_need_no_front_end():
+    ran = subprocess.run([sys.executable, "-c", MANNERS], check=True, capture_output=True, text=True)
+    assert ran.stdout.split() == []
+
+
 def test_no_process_imports_numba_unless_it_is_asked_for(tmp_path):
     assert "numba" not in start(tmp_path / "cache").stdout.split()
 

@@ -113,3 +113,14 @@ def test_types_of_one_name_are_told_apart(capsys):
         "# not decided: nothing of the wire is like these",
         "default .seq",
     ]
+
+
+def test_a_stamp_of_both_sides_is_no_matter_of_other_times(capsys):
+    """`time_increment`, which is in seconds, is not the moment of the message."""
+    assert main(["draft", "sensor_msgs/msg/LaserScan", "sensor_msgs/LaserScan"]) == 0
+    lines = {line.strip() for line in capsys.readouterr().out.splitlines()}
+    assert {
+        ".header.stamp.sec <-> int32(.header.stamp.secs)",
+        ".header.stamp.nanosec <-> .header.stamp.nsecs",
+        ".time_increment <-> .time_increment",
+    } <= lines

@@ -15,7 +15,9 @@ from rosetta_jit.source import Source
 from tests.draft.meanings import meanings
 
 MAPPINGS = Path(__file__).resolve().parents[2] / "mappings"
-SHIPPED = [path.relative_to(MAPPINGS).as_posix() for path in sorted(MAPPINGS.rglob("*.mapping")) if path.parent.name not in ("joined", "packed")]
+SHIPPED = [
+    path.relative_to(MAPPINGS).as_posix() for path in sorted(MAPPINGS.rglob("*.mapping")) if path.parent.name not in ("joined", "packed")
+]
 """But for those of several wires: a draft is between two types."""
 SEARCH, READERS = SearchPath.of(), Readers(installed())
 ENOUGH = 0.6

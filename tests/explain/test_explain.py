@@ -344,3 +344,12 @@ rules:
     secs, nanos = pack.lines[:2]
     assert (secs.text, secs.sets, secs.notes) == (".secs = floor_divide(.ns, 1000000000)", (("secs",),), ())
     assert (nanos.sets, [note.text for note in nanos.notes]) == ((("nanos",),), ["int64 → int32, refused where it does not fit"])
+
+
+def test_items_of_a_list_are_shown_one_by_one(mapping, capsys):
+    text = f"{HEAD}unpack-rules:\n  default .inner\n  .angle = float32(.yaw)\n  .list = [1.0, float32(.list[0])]\n  ignore rest\n"
+    assert main(["explain", mapping(text), "--encoding", "yarp4"]) == 0
+    lines = [line for line in capsys.readouterr().out.splitlines() if ".list" in line and "rules" in line]
+    shown = [line.split("unpack-rules", 1)[1].strip() for line in lines]
+    noted = ".list[1] = float32(.list[0])   \u00b7 float64 \u2192 float32, rounded to the nearest"
+    assert shown == ["len(.list) = 2", ".list[0] = 1.0", noted]

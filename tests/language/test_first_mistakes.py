@@ -116,6 +116,13 @@ MISTAKES = [
     syntax("  .total * 2 <-> .pose.x\n", "left of `<->` stands a place alone", HEAD + BOTH),
     syntax("  ignore .pose, .angle\n", "`ignore .pose ignore .b`"),
     syntax("  .total = .joints[name = 3].position\n", "a field begins with a dot: `.name`"),
+    syntax("  .total <=> .pose.x\n", "a place is related to a value by `<->`", HEAD + BOTH),
+    syntax("  .position += .angle\n", "a place is set once for a message"),
+    syntax("  .total = .angle if .ok\n", "`a if condition else b`"),
+    syntax("  ignore *\n", "`ignore rest`"),
+    syntax("  ignore .pose.*\n", "`ignore .pose` is said of all of it"),
+    syntax('  .label = "a"b"\n', "written with a backslash"),
+    syntax("limit: 4MB\n", "`limit: 4000000`", HEAD, UNPACK),
     # declarations
     syntax("state n = 0\n", "`state n: int64 = 0`", HEAD, UNPACK),
     syntax("  n = n + 1\n", "a state variable is set by `state n = ...`", HEAD + "state n: int64 = 0\n" + UNPACK),
@@ -126,6 +133,7 @@ MISTAKES = [
     Mistake("  .total = .k\n", "unknown-field", "`k` is a parameter, which has no dot", HEAD + "parameter k: float64 = 1.0\n" + UNPACK),
     # names
     Mistake("  .total = average(.position[])\n", "many-elements", "`mean(.a[])`"),
+    Mistake("  .total = to_rad(.angle)\n", "unknown-function", "`radians(x)`"),
     Mistake("  .total = index()\n", "unknown-function", "in a rule with `[]`"),
     Mistake("  .label = .wire.frame\n", "unknown-field", "`.frame`"),
     Mistake("  .label = msg.frame\n", "unknown-name", "`.frame`"),

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.language.signals import signal_of
+from rosetta_jit.language.signal_bits import signal_of
 
 BACKENDS = ["llvm", "python", "interpreter"]
 FILES = {

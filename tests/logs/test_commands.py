@@ -162,3 +162,12 @@ def test_decode_takes_logs_types_and_standard_input(command, folder, monkeypatch
     assert command("decode", "std_msgs/String", "-", "--encoding", "ros1").out == 'data: "hi"\n'
     assert "kernel" in command("dump", "std_msgs/String", "--encoding", "ros1").out
     assert "several topics" in command("decode", "std_msgs/String", "a.bag", "--encoding", "ros1", code=1).err
+
+
+def test_a_name_that_does_not_say_what_to_write(folder, tmp_path, capsys):
+    for name in ("out", "out.parket"):
+        assert main(["convert", str(folder / "a.mcap"), "--on-error", "skip", "-o", str(tmp_path / name)]) == 1
+        said = capsys.readouterr().err
+        assert "the name does not say what to write" in said
+        assert "a folder of tables with `/`" in said
+    assert not list(tmp_path.iterdir())

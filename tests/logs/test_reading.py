@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.errors import DecodeError, LogError
+from rosetta_jit.errors import DecodeError, LogError, SchemaError
 
 from .made import BAGS, COMPRESSIONS, LCM_TYPES, POINT, START, STEP, expected, time_of, values, write_bag, write_lcm, write_mcap
 
@@ -246,3 +246,25 @@ def test_a_url(log):
     assert rj.open("memory://drive/whole.mcap")["/a"].to_arrow().num_rows == COUNT
     with pytest.raises(LogError, match="log-unreadable"):
         rj.open("memory://drive/nothing.mcap")
+
+
+@pytest.mark.parametrize("size", [1, 40])
+def test_a_definition_that_is_empty(folder, size):
+    """It is of a type without fields, or there is none: then the type is looked for on the search path."""
+    from mcap.writer import Writer
+
+    path = folder / "empty.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        channel = writer.register_channel("/x", "cdr", writer.register_schema("z/msg/Unknown", "ros2msg", b" \n"))
+        writer.add_message(channel, log_time=1, publish_time=1, data=b"\0\1\0\0" + bytes(size))
+        writer.finish()
+    (folder / "z" / "msg").mkdir(parents=True, exist_ok=True)
+    (folder / "z" / "msg" / "Unknown.msg").write_text("float64[5] x\n")
+    if size == 1:
+        assert rj.open(path)["/x"].to_arrow().num_rows == 1
+        return
+    with pytest.raises(SchemaError, match="no file declares a message `z/msg/Unknown`"):
+        rj.open(path)["/x"].to_arrow()
+    assert rj.open(path, search_path=[folder])["/x"].to_arrow()["x"].to_pylist() == [[0] * 5]

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rosetta_jit.kernel.state import VALID
 from rosetta_jit.runtime.batch import Batch
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -94,6 +95,16 @@ def test_what_a_batch_shows():
     with pytest.raises(AttributeError, match=r"<Batch of 6 .*> has no field 'smal'") as caught:
         _ = batch.smal
     assert (caught.value.name, caught.value.obj) == ("smal", batch)
+
+
+def test_a_batch_whose_decode_failed_says_so():
+    batch = Batch.new(flat(), 6)
+    batch.lanes.words[VALID] = 0
+    assert repr(batch) == f"<Batch of {batch.family_.struct.name}: the last decode failed>"
+    assert "the last decode failed" in batch._repr_html_()
+    with batch.lanes:
+        batch.lanes.begin_filling()
+        assert repr(batch) == f"<Batch of {batch.family_.struct.name}: in use>"
 
 
 def test_rows_of_ragged_columns():

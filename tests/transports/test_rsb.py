@@ -87,6 +87,18 @@ def test_events_are_passed_on_to_the_others_as_they_are(bus):
             assert sock.recv(1) == b""
 
 
+def test_events_that_end_other_peers_are_not_passed_on(bus):
+    """What rsb-cpp terminates of, or rsb-python closes its connection of: the events behind each of them are passed on."""
+    server, _, port = bus
+    names = ["no scope", "scope with a space", "scope with an empty component", "no wire schema", "sender id empty", "frame of garbage"]
+    with rj.subscribe(server("/none")) as source, join(port) as first, join(port) as second:
+        until(lambda: source.connections == 2)
+        for name in names:
+            first.sendall(bytes.fromhex("".join(PROBES[name]["sent_hex"]) + PROBES[name]["then_sent_hex"]))
+        assert [bytes(decode(memoryview(each)).data) for each in read(second, len(names))] == [b"AFTER"] * len(names)
+        assert source.lost.total() == len(names)
+
+
 @pytest.mark.parametrize("name", ["string_s2c", "shutdown_by_server", "uint64_s2c"])
 def test_a_client_reads_what_a_real_server_sent(bus, name):
     _, _, port = bus

@@ -10,15 +10,14 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.ros import Dialect, Interface, Rule, gathered, schema_of
 from rosetta_jit.frameworks.ros1.md5 import md5_sums, service_sums
-from rosetta_jit.model.types import Bool, Field, Float, Int, String, Struct
+from rosetta_jit.frameworks.ros1.time_types import INT32, STRUCTS, UINT32
+from rosetta_jit.model.types import Bool, Float, Int, String
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.ros import Definition
     from rosetta_jit.model.types import Schema
     from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
-
-UINT32, INT32 = Int(32, signed=False, spelling="uint32"), Int(32, spelling="int32")
 
 SCALARS = {
     "int8": Int(8, spelling="int8"),
@@ -63,10 +62,7 @@ ROS1 = Dialect(
     line_ends=re.compile(r"\n"),
     dashes=re.compile(r"^---[^\n]*(?:\n|\Z)", re.MULTILINE),
     extended=False,
-    structs={
-        "time": Struct("time", (Field("secs", UINT32), Field("nsecs", UINT32))),
-        "duration": Struct("duration", (Field("secs", INT32), Field("nsecs", INT32))),
-    },
+    structs=STRUCTS,
     aliases={"Header": "std_msgs/Header"},
     interfaces={"srv": SERVICE, "action": ACTION},
 )

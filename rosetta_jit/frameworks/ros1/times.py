@@ -9,7 +9,7 @@ from numbers import Integral, Real
 from operator import ge, gt, le, lt
 from typing import TYPE_CHECKING, Any, Literal
 
-from rosetta_jit.frameworks.ros1.idl import ROS1
+from rosetta_jit.frameworks.ros1.time_types import STRUCTS
 from rosetta_jit.model.types import Ref, Schema
 from rosetta_jit.runtime.holder import Holder, holder_class
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 NANO = 1_000_000_000
-SCHEMA = Schema(ROS1.structs)
+SCHEMA = Schema(STRUCTS)
 
 Kind = Literal["time", "duration"]
 

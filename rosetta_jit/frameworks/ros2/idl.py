@@ -12,6 +12,7 @@ from rosetta_jit.frameworks.omg.idl import parse as parse_declarations
 from rosetta_jit.frameworks.ros import Dialect, Interface, Rule, gathered, schema_of
 from rosetta_jit.frameworks.ros2.adapter import idl_text, with_messages
 from rosetta_jit.frameworks.ros2.concatenated import in_order, is_concatenated
+from rosetta_jit.frameworks.ros2.empty import DUMMY
 from rosetta_jit.model.types import Bool, Field, Float, Int, String
 from rosetta_jit.source import Source
 
@@ -37,8 +38,6 @@ SCALARS = {
     "string": String("utf-8", "string"),
     "wstring": String("utf-16", "wstring"),
 }
-
-DUMMY = "structure_needs_at_least_one_member"
 
 EVENT = "service_msgs/ServiceEventInfo info\n{0}_Request[<=1] request\n{0}_Response[<=1] response"
 DESCRIBED = "{0}_Request request_message\n{0}_Response response_message\n{0}_Event event_message"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from rosetta_jit.frameworks.ros2.idl import DUMMY
+from rosetta_jit.frameworks.ros2.empty import DUMMY
 from rosetta_jit.frameworks.ros2.objects import OBJECTS
 from rosetta_jit.model.types import Array, Bytes, Field, Optional, Ref, String, name_parts
 from rosetta_jit.runtime.holder import PLAIN, Holder, Manners

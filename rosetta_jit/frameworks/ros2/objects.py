@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.ros2.idl import DUMMY
+from rosetta_jit.frameworks.ros2.empty import DUMMY
 from rosetta_jit.model.types import name_parts
 from rosetta_jit.runtime.holder.objects.foreign import Foreign
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.ros import gathered
-from rosetta_jit.frameworks.ros2.idl import DUMMY, ROS2
+from rosetta_jit.frameworks.ros2.empty import DUMMY
+from rosetta_jit.frameworks.ros2.idl import ROS2
 from rosetta_jit.wire.other_type import UnlikeError
 
 if TYPE_CHECKING:

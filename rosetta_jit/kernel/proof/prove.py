@@ -323,12 +323,16 @@ class Facts:
     def _is_sum(self, goal: Linear, most: int) -> bool:
         """Whether a goal is a sum of at most so many facts, or multiples of them, and of something that bounds show.
 
-        Each fact must do away with the atom of which the fewest facts are known.
+        Each fact must do away with an atom: of those whose own bound does not help the goal, the one of which the fewest facts are known.
         """
-        about = [(len(facts), atom, wanted) for atom, wanted in goal.terms if (facts := self._about.get(atom))]
+        about = [
+            (wanted * (self.lows[atom] if wanted > 0 else self.highs[atom]) >= 0, len(facts), atom, wanted)
+            for atom, wanted in goal.terms
+            if (facts := self._about.get(atom))
+        ]
         if not about:
             return False
-        _, atom, wanted = min(about)
+        *_, atom, wanted = min(about)
         for terms in self._about[atom][: -1 - MAX_TRIED : -1]:
             fact = Linear(-self._bounds[terms], terms)
             factor, left = divmod(wanted, coefficient_of(fact, atom))

@@ -10,7 +10,7 @@ from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in,
 from rosetta_jit.language.both_ways.inverse_parts import below, part, plain, put_together, rest_of, taken_part
 from rosetta_jit.language.both_ways.knowledge import Beside, Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.presence import flag_of, is_kept
-from rosetta_jit.language.both_ways.signals import frames_of
+from rosetta_jit.language.both_ways.signal_relations import frames_of
 from rosetta_jit.language.both_ways.text_parts import numbers_of_texts
 from rosetta_jit.language.function import Affine, written
 from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary

@@ -15,7 +15,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.laws.chain import come_back, field_in
-from rosetta_jit.language.signals import signal_of
+from rosetta_jit.language.signal_bits import signal_of
 from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Call, Const, Convert
 from rosetta_jit.language.walk import rebuilt
 from rosetta_jit.model.types import Array, Bytes, Int

@@ -17,7 +17,7 @@ from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.calls import lowered
-from rosetta_jit.lowering.filling import UINT8
+from rosetta_jit.lowering.made_arrays import UINT8
 from rosetta_jit.lowering.rules.copies import copy, is_endless
 from rosetta_jit.lowering.rules.filters import filtered
 from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
     from rosetta_jit.kernel.ir import Block
-    from rosetta_jit.lowering.filling import Filling
+    from rosetta_jit.lowering.made_arrays import MadeArray
     from rosetta_jit.lowering.rules.values import Values
     from rosetta_jit.lowering.texts.views import View
 
@@ -154,7 +154,7 @@ class Runner:
             case Array(), typed.Call("split"):
                 self.assign_parts(place, value, values)
             case ((Array() | Bytes()), typed.Call(type=Array())):
-                self.assign_filling(place, value, values)
+                self.assign_made(place, value, values)
             case ((String() | Bytes() | Array()), typed.Call()):
                 self.assign_computed(place, value, values)
             case ((Struct() | Map() | Union() | Array(element=Ref() | Struct() | Map() | Union())), typed.Access(origin)):
@@ -210,10 +210,10 @@ class Runner:
         self.take(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), view.address, size))
 
-    def assign_filling(self, place: typed.Place, call: typed.Call, values: Values) -> None:
+    def assign_made(self, place: typed.Place, call: typed.Call, values: Values) -> None:
         """An array that a function makes of others. On the wire there is no place for it before it is known how long it is."""
         assert isinstance(self.target, HolderSide)
-        made = cast("Filling", lowered(call, values))
+        made = cast("MadeArray", lowered(call, values))
         self.take(place, self.count(made.count), values)
         variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
         type_ = place.type.element if isinstance(place.type, Array) else UINT8

@@ -19,6 +19,7 @@ from rosetta_jit.model.limits import MAX_INITIAL_BYTES
 from rosetta_jit.runtime.arrow.leaves import blob_of, listed_of, numbers_of, refused, solid, text_of
 from rosetta_jit.runtime.arrow.times import moment_columns
 from rosetta_jit.runtime.cells import dtype_of
+from rosetta_jit.runtime.holder.paths import no_such_field
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.rows import offsets
 from rosetta_jit.startup.dataclass import dataclass
@@ -70,7 +71,7 @@ def write_columns(root: Record, lanes: Lanes, columns: Columns) -> None:
 def _write_record(record: Record, columns: Mapping[str, pa.Array], target: _Target) -> None:
     for name in columns:
         if name not in record.entries:
-            raise ValuesError(f"{target.path}.{name}", f"{record.struct or 'the record'} has no such field")
+            raise ValuesError(f"{target.path}.{name}", no_such_field(record, name))
     for name, entry in record.entries.items():
         _write_entry(entry, columns.get(name), target.within(f".{name}"))
     for name, entry in record.entries.items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 from llvmlite import binding
@@ -18,13 +19,18 @@ def target_machine(*, hurried: bool = False) -> binding.TargetMachine:
 
     ``hurried`` is for vast kernels: code of twice the size, in a tenth of the time.
     """
+    return _machine(0 if hurried else 3)
+
+
+@cache
+def _machine(level: int) -> binding.TargetMachine:
+    """One for each level of LLVM's code generator: to make one takes a millisecond. LLVM works for one thread of a process at a time."""
     binding.initialize_native_target()
     binding.initialize_native_asmprinter()
     binding.initialize_native_asmparser()
     features = binding.get_host_cpu_features().flatten()
     target = binding.Target.from_default_triple()
-    opt = 0 if hurried else 3
-    return target.create_target_machine(cpu=binding.get_host_cpu_name(), features=features, opt=opt, reloc="pic", codemodel="small")
+    return target.create_target_machine(cpu=binding.get_host_cpu_name(), features=features, opt=level, reloc="pic", codemodel="small")
 
 
 def linked(parts: Iterable[str]) -> binding.ModuleRef:
@@ -65,10 +71,14 @@ def run_few_passes(module: binding.ModuleRef, machine: binding.TargetMachine, *,
 
 
 def assembled(text: str, exported: Sequence[str], *, hurried: bool = False) -> bytes:
-    """Code of a module that a person wrote, for `runtime.code.native`: it says itself what is inlined, and needs few passes."""
+    """Code of a module that a person wrote, for `runtime.code.native`: it says itself what is inlined, and needs few passes.
+
+    ``hurried`` is for what is called once or twice: nothing is inlined.
+    """
     machine, module = target_machine(hurried=hurried), linked([text])
     make_private(module, exported)
-    run_few_passes(module, machine)
+    if not hurried:
+        run_few_passes(module, machine)
     image = machine.emit_object(module)
     return prelinked(image) or image
 

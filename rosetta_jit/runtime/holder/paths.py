@@ -59,8 +59,18 @@ def _inside(entry: Entry, *, through_arrays: bool) -> Record:
             assert_never(node)
 
 
+def no_such_field(record: Record, name: str) -> str:
+    """What is said of a name that no field has."""
+    near = _meant(record, name)
+    return f"{record.struct or 'the record'} has no such field{f'; did you mean `{near}`?' if near else ''}"
+
+
 def _unknown(record: Record, name: str) -> str:
+    near = _meant(record, name)
+    return f"{record.struct or 'the record'} has no field `{name}`{f'; did you mean `{near}`?' if near else ''}"
+
+
+def _meant(record: Record, name: str) -> str | None:
     from rosetta_jit.catalogue.spelling import closest
 
-    near = closest(name, record.entries)
-    return f"{record.struct or 'the record'} has no field `{name}`{f'; did you mean `{near}`?' if near else ''}"
+    return closest(str(name), record.entries)  # the key of a dict may be anything

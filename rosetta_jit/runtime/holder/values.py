@@ -14,6 +14,7 @@ from rosetta_jit.errors import EncodeError, ValuesError
 from rosetta_jit.model.layout import UNKNOWN
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import arena, coerce, grid
+from rosetta_jit.runtime.holder.paths import no_such_field
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_DEPTH
@@ -141,7 +142,7 @@ def write_record(record: Record, lanes: Lanes, row: int, values: Any, path: str 
             continue
         entry = record.entries.get(name)
         if entry is None:
-            raise ValuesError(f"{path}.{name}", f"{record.struct or 'the record'} has no such field")
+            raise ValuesError(f"{path}.{name}", no_such_field(record, name))
         write_entry(entry, lanes, row, value, path, depth=depth)
 
 

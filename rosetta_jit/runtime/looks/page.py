@@ -68,6 +68,11 @@ def batch_page(batch: Rows) -> str:
     return f"<div><b>{escape(repr(batch))}</b><table><tr>{head}</tr>{lines}</table></div>"
 
 
+def failed_page(batch: Rows) -> str:
+    """A batch of which nothing can be read."""
+    return f"<div><b>{escape(repr(batch))}</b></div>"
+
+
 @dataclass(slots=True)
 class _Page:
     """The rows of one page; of a type of very many fields, or of messages in messages, the first are shown."""

@@ -53,7 +53,8 @@ class Client:
         try:
             self.paho.connect(self._host, self._port)
         except (OSError, ValueError) as error:
-            raise TransportError("unreachable", self._place, f"no broker answers at {self._host}:{self._port}: {error}") from None
+            why = getattr(error, "strerror", None) or error
+            raise TransportError("unreachable", self._place, f"no broker answers at {self._host}:{self._port}: {why}") from None
         self.paho.loop_start()
         if not self._connected.wait(self._timeout):
             self.close()

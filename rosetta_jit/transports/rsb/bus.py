@@ -196,20 +196,28 @@ class Bus:
         return frames(lambda data: self._took(stream, data), self.most, is_client=is_client, ready=ready)
 
     def _took(self, stream: Stream, data: memoryview) -> None:
-        """Pass an event on, as it is, where this is the server; and to who listens here."""
-        if self._listener is not None and len(self._streams) > 1:
-            head, copy = _LENGTH.pack(len(data)), bytes(data)
-            for each in self._streams:
-                if each is not stream and not each.send(head, copy):
-                    self._lose("the peer is too slow")
-        if not self._listening:
+        """Pass an event on, as it is, where this is the server; and to who listens here. One that would end other peers goes nowhere."""
+        relays = self._listener is not None and len(self._streams) > 1
+        if not relays and not self._listening:
             return
         try:
             scope = _scope(data)
-            if any(self._listening.get(each) for each in above(scope)):
-                self._deliver(decode(data)._replace(scope=scope))
+            if not relays and not any(self._listening.get(each) for each in above(scope)):
+                return
+            event = _with_schema(decode(data)) if relays else decode(data)
         except NoEventError as error:
             self._lose(f"no event of RSB: {error}")
+            return
+        if relays:
+            self._relay(stream, bytes(data))
+        self._deliver(event._replace(scope=scope))
+
+    def _relay(self, source: Stream, data: bytes) -> None:
+        """Send an event to all connections but the one by which it came."""
+        head = _LENGTH.pack(len(data))
+        for each in self._streams:
+            if each is not source and not each.send(head, data):
+                self._lose("the peer is too slow")
 
     def _deliver(self, event: Event) -> None:
         listening = self._listening
@@ -246,6 +254,12 @@ def _scope(data: memoryview) -> str:
     if scope is None:
         raise NoEventError("a scope that is none")
     return scope
+
+
+def _with_schema(event: Event) -> Event:
+    if not event.schema:
+        raise NoEventError("an event without a wire schema")
+    return event
 
 
 class Buses:

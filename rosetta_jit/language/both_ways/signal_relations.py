@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.inverse import NoInverseError, Solution, fields_in, may_round, named, solve
 from rosetta_jit.language.both_ways.inverse_parts import until
-from rosetta_jit.language.signals import MOST_BITS, signal_of
+from rosetta_jit.language.signal_bits import MOST_BITS, signal_of
 from rosetta_jit.model.expr import Call, Literal, Nearest
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float
 from rosetta_jit.model.walk import fields_of, parts
@@ -18,7 +18,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.knowledge import Loops
-    from rosetta_jit.language.signals import Signal
+    from rosetta_jit.language.signal_bits import Signal
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Relation
 

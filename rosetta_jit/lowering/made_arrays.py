@@ -30,7 +30,7 @@ UINT8 = Int(8, signed=False)
 
 
 @dataclass(frozen=True, slots=True)
-class Filling:
+class MadeArray:
     """An array: how many elements there are, and what sets them all, where there is room for them."""
 
     count: Expr
@@ -38,7 +38,7 @@ class Filling:
 
 
 @dataclass(frozen=True, slots=True)
-class Given:
+class ArrayArgument:
     """An array, or bytes, that a function reads."""
 
     place: typed.Place
@@ -72,7 +72,7 @@ class Given:
         writer.emit(For(number.name, stop, block(body)))
 
 
-def given(argument: typed.Expr, values: Evaluation) -> Given:
+def array_argument(argument: typed.Expr, values: Evaluation) -> ArrayArgument:
     """The array that an argument names."""
     assert isinstance(argument, typed.Access)
-    return Given(argument.place, values)
+    return ArrayArgument(argument.place, values)
