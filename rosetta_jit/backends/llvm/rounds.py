@@ -88,24 +88,19 @@ def print_switch(frame: Frame, rounds: Rounds, end: ir.Block, over: ir.Block, bl
     other, ways = frame.block("default"), Ways({number: frame.block(f"case{number}") for number, _ in rounds.switch.cases}, end, over)
     value = builder.load(_variable(frame, rounds.case).slot, typ=I64)
     switch = builder.switch(value, other)
-    alike = print_cases(frame, rounds.switch, switch, lambda body: _body(frame, rounds, body, ways, block), ways.cases)
+    alike = print_cases(frame, rounds.switch, switch, block, lambda body: _leave(frame, rounds, body, ways, block), ways.cases)
     for number, body in rounds.switch.cases:
         if number in alike:
             continue
         switch.add_case(ir.Constant(value.type, number), ways.cases[number])
         builder.position_at_end(ways.cases[number])
-        _body(frame, rounds, body, ways, block)
+        block(frame, body)
+        if not builder.block.is_terminated:
+            _leave(frame, rounds, body, ways, block)
     builder.position_at_end(other)
     block(frame, rounds.switch.default)
     if not builder.block.is_terminated:
         builder.branch(end)
-
-
-def _body(frame: Frame, rounds: Rounds, body: Block, ways: Ways, block: Printer) -> None:
-    """A case, and how it goes on behind it."""
-    block(frame, body)
-    if not frame.builder.block.is_terminated:
-        _leave(frame, rounds, body, ways, block)
 
 
 def _leave(frame: Frame, rounds: Rounds, body: Block, ways: Ways, block: Printer) -> None:

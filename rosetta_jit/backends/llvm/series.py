@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
+from rosetta_jit.backends.llvm.alike import NOTHING
 from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.frame import I64, LLVM_TYPES, Given, constant, forgotten, state_word
 from rosetta_jit.kernel.ir import Local
@@ -55,7 +56,7 @@ def print_series(frame: Frame, series: Series, block: Printer) -> None:
     index, values = builder.phi(I64), [builder.phi(LLVM_TYPES[each.type]) for each in series.carried]
     for each, value in zip(series.carried, values, strict=True):
         frame.locals[each.name] = forgotten(builder, value) if value.type == I64 else value
-    _stretch(frame, series, index, lambda body: block(frame, body))
+    _stretch(frame, series, index, block)
     lasts = [expression(frame, Local(each.type, each.last)) for each in series.carried]
     following = builder.add(index, constant(1), flags=("nsw",))
     starts, rounds = (constant(0), *firsts), (following, *lasts)
@@ -67,12 +68,18 @@ def print_series(frame: Frame, series: Series, block: Printer) -> None:
 
 
 def print_cases(
-    frame: Frame, switch: Switch, printed: ir.SwitchInstr, body: Callable[[Block], None], blocks: dict[int, ir.Block] | None = None
+    frame: Frame,
+    switch: Switch,
+    printed: ir.SwitchInstr,
+    block: Printer,
+    leave: Callable[[Block], object],
+    blocks: dict[int, ir.Block] | None = None,
 ) -> Container[int]:
-    """The cases of a switch that are alike, each series once; which these are. They begin in blocks of their own, or in ``blocks``."""
+    """The cases of a switch that are alike, each series once, with what ``leave`` prints behind it; which these are.
+
+    They begin in blocks of their own, or in ``blocks``.
+    """
     builder, known = frame.builder, set[int]()
-    if frame.given is not None:
-        return known
     for cases in frame.alike.switches.get(id(switch), ()):
         shared = frame.block("alike")
         builder.position_at_end(shared)
@@ -82,13 +89,15 @@ def print_cases(
             printed.add_case(ir.Constant(LLVM_TYPES[type_of(switch.value)], each), case)
             index.add_incoming(constant(number), case)
             ir.IRBuilder(case).branch(shared)
-        _stretch(frame, cases.series, index, body)
+        _stretch(frame, cases.series, index, block)
+        if not builder.block.is_terminated:
+            leave(cases.series.body)
         known |= set(cases.numbers)
     return known
 
 
-def _stretch(frame: Frame, series: Series, index: ir.Value, body: Callable[[Block], None]) -> None:
-    """A stretch with the numbers of a row of its table."""
+def _stretch(frame: Frame, series: Series, index: ir.Value, block: Printer) -> None:
+    """A stretch with the numbers of a row of its table. What repeats itself inside is printed as it stands: one table is used at a time."""
     builder = frame.builder
     row = Row(series, index, frame.module)
     for name, (type_, number) in series.constants.items():
@@ -100,9 +109,9 @@ def _stretch(frame: Frame, series: Series, index: ir.Value, body: Callable[[Bloc
         found = series.sites.get(number)
         return constant(number) if found is None else row.number(where, found)
 
-    frame.given = Given(lanes, offsets, site)
-    body(series.body)
-    frame.given = None
+    around, frame.alike, frame.given = frame.alike, NOTHING, Given(lanes, offsets, site)
+    block(frame, series.body)
+    frame.alike, frame.given = around, None
 
 
 def _table(module: ir.Module, series: Series) -> ir.Value:

@@ -328,7 +328,7 @@ def _switch(frame: Frame, statement: Switch) -> None:
     builder, value = frame.builder, expression(frame, statement.value)
     other, behind = frame.block("default"), frame.block("after")
     switch = builder.switch(value, other)
-    alike = print_cases(frame, statement, switch, lambda body: _branch(frame, body, behind))
+    alike = print_cases(frame, statement, switch, block, lambda _: builder.branch(behind))
     for number, body in _shuffled(tuple(case for case in statement.cases if case[0] not in alike)):
         case = frame.block(f"case{number}")
         switch.add_case(ir.Constant(value.type, number), case)
