@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import pytest
 
 import rosetta_jit as rj
@@ -127,14 +125,3 @@ def repeated(*, last):
 def test_names_that_others_use_belong_to_no_series(last, count):
     made = repeated(last=last)
     assert sum(isinstance(each, Series) for each in found(made, made.bodies[0]).parts(made.bodies[0])) == count
-
-
-def test_a_message_of_many_strings_takes_time_in_proportion():
-    def took(count):
-        started = time.process_time()
-        text = "\n".join(f"string field{number}" for number in range(count))
-        rj.Decoder.of("a/Many", encoding="ros1", framework="ros1", schema={"a/msg/Many.msg": text})
-        return time.process_time() - started
-
-    few, many = (took(count) for count in (60, 240))
-    assert many < 6 * few
