@@ -50,7 +50,7 @@ kernel that does not get to a Return changes none.
 width: these are obligations that `verify` proves, like the bounds of every access. `Fits(op, a, b)` asks at run time whether an
 i64 operation stays in range. `div` and `rem` truncate toward zero. Float arithmetic is IEEE 754, round to nearest. `and or xor`
 of integers are bitwise, of bools logical and strict. Convert between integers keeps the low bits; from float to integer it
-truncates and saturates (NaN gives 0); everything else rounds to nearest.
+truncates and saturates (NaN gives 0); everything else rounds to nearest. Which NaN arithmetic gives is not said.
 
 `shr` is arithmetic for signed, logical for unsigned integers; `shl` drops high bits. `neg` and `abs` of integers must not wrap.
 `rem` of floats is C's fmod; `min(a, b)` of floats is `a` where `a < b`, else `b` (`max` with `>`). Comparisons with NaN are

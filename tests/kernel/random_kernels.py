@@ -14,10 +14,12 @@ from rosetta_jit.kernel.ir import (
     Const,
     Convert,
     Copy,
+    Extent,
     Fill,
     Fits,
     For,
     Get,
+    HostCall,
     If,
     IsText,
     Let,
@@ -30,6 +32,7 @@ from rosetta_jit.kernel.ir import (
     Return,
     Routine,
     SetField,
+    Store,
     Used,
     Var,
     Wire,
@@ -117,6 +120,15 @@ COUNTED = (
 
 def _written(name):
     return ROW_EXISTS, SetField(Place(0, ROW), i64(name)), SetField(Place(0, ROW, 8), i64(name))
+
+
+def straight(*body):
+    """Statements about row 0 and 24 bytes of the message, without a loop."""
+    return kernel((ROW_EXISTS, need(BEGIN, 24), *body, Return(BEGIN)), strides=(24,))
+
+
+def moved(offset, at, order="<"):
+    return SetField(Place(0, ROW, offset), Load("i64", add(BEGIN, at), order))
 
 
 PASSED = {
@@ -364,5 +376,40 @@ PASSED = {
         strides=(64, 1, 1, 1),
         hidden=3,
     ),
+    "bytes that the host reads, and others that it fills": kernel(
+        (
+            *(ROW_EXISTS, need(BEGIN, 8)),
+            *(*_rows(1, 8), *_rows(2, 8)),
+            Copy(Place(1, i64("start_1")), Wire(BEGIN), index(8)),
+            HostCall(
+                "f",
+                (),
+                i64("given"),
+                fail(3),
+                (Extent(Place(1, i64("start_1")), index(8)),),
+                Extent(Place(2, index(0)), index(8)),
+            ),
+            SetField(Place(0, ROW), i64("given")),
+            Return(BEGIN),
+        ),
+        strides=(64, 1, 1),
+        hidden=2,
+    ),
+    "a row that is emptied, and set in one go": straight(Fill(Place(0, ROW), index(24)), *(moved(8 * at, 8 * at) for at in range(3))),
+    "a row that is emptied, and set in pieces": straight(
+        Fill(Place(0, ROW), index(24)), moved(8, 8, ">"), Let("a", index(1)), moved(0, 16, ">"), moved(16, 0, ">")
+    ),
+    "a row that is emptied, and set but for its end": straight(Fill(Place(0, ROW), index(24)), moved(8, 8, ">"), moved(0, 0, ">")),
+    "a row that is emptied, and set but for its begin": straight(Fill(Place(0, ROW), index(24)), moved(8, 8, ">"), moved(16, 0, ">")),
+    "a field that is emptied and set": straight(Fill(Place(0, ROW, 8), index(8)), moved(8, 8)),
+    "bytes that are emptied and copied": straight(Fill(Place(0, ROW), index(16)), Copy(Place(0, ROW), Wire(BEGIN), index(16))),
+    "a field that is emptied, read and set": straight(
+        Fill(Place(0, ROW), index(8)), SetField(Place(0, ROW), Binary("xor", Get("i64", Place(0, ROW)), Load("i64", BEGIN)))
+    ),
+    "fields that are written end to end": kernel(
+        (ROW_EXISTS, need(BEGIN, 24), *(Store(add(BEGIN, 8 * at), Get("i64", Place(0, ROW, 8 * at))) for at in range(3)), Return(BEGIN)),
+        direction="encode",
+    ),
+    "attempts, of which the last is rare": replace(kernels.ALL["attempts"], rare=1),
 }
 """What a pass does, or must not do."""

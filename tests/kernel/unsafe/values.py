@@ -72,6 +72,12 @@ CASES.add(
     (*WORD, Let("x", Binary("add", Lookup("u8", TABLE, index(1)), Const("u8", 6)))),
     (*WORD, Let("x", Binary("add", Lookup("u8", TABLE, index(1)), Const("u8", 5)))),
 )
+CASES.add(
+    "a difference with a value of a table that wraps",
+    "u8 arithmetic that may wrap",
+    (*WORD, Let("x", Binary("sub", Lookup("u8", TABLE, index(1)), Const("u8", 4)))),
+    (*WORD, Let("x", Binary("sub", Lookup("u8", TABLE, index(1)), Const("u8", 3)))),
+)
 CASES.add("a value that a table cannot have", "a value that is no u8", (*WORD, Let("x", Lookup("u8", (256,), index(0)))))
 CASES.add("a table without a value", "a value among none", (*WORD, Let("x", Lookup("u8", (), index(0)))))
 CASES.add("a position that wraps", "i64 arithmetic that may wrap", (*WORD, Let("x", plus(N, 1))))
