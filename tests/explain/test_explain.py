@@ -346,7 +346,8 @@ rules:
     assert (nanos.sets, [note.text for note in nanos.notes]) == ((("nanos",),), ["int64 → int32, refused where it does not fit"])
 
 
-def test_items_of_a_list_are_shown_one_by_one(mapping, capsys):
+def test_items_of_a_list_are_shown_one_by_one(mapping, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "300")  # however long the name of the file is
     text = f"{HEAD}unpack-rules:\n  default .inner\n  .angle = float32(.yaw)\n  .list = [1.0, float32(.list[0])]\n  ignore rest\n"
     assert main(["explain", mapping(text), "--encoding", "yarp4"]) == 0
     lines = [line for line in capsys.readouterr().out.splitlines() if ".list" in line and "rules" in line]
