@@ -6,10 +6,30 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.backends.llvm.alike import Series, found
-from rosetta_jit.kernel.ir import Advance, Compare, Const, Expect, Let, Load, Local, Place, Require, Reserve, Return, SetField
-from rosetta_jit.kernel.terms import BEGIN, END, ROW, add
+from rosetta_jit.kernel.ir import (
+    Advance,
+    Capacity,
+    Compare,
+    Const,
+    Copy,
+    Expect,
+    For,
+    Let,
+    Load,
+    Local,
+    Place,
+    Require,
+    Reserve,
+    Return,
+    SetField,
+    Wire,
+)
+from rosetta_jit.kernel.proof.verify import verify
+from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request
+from tests.backends.engines import outcome
+from tests.backends.holders import rows
 from tests.backends.kernels import failure, kernel
 
 
@@ -125,3 +145,31 @@ def repeated(*, last):
 def test_names_that_others_use_belong_to_no_series(last, count):
     made = repeated(last=last)
     assert sum(isinstance(each, Series) for each in found(made, made.bodies[0]).parts(made.bodies[0])) == count
+
+
+AROUND, INSIDE = 20, 32
+
+
+def nested():
+    """Loops of one round that are alike but for the field that they set, each around copies that are alike but for row and source."""
+    body = [
+        Expect(Compare("lt", ROW, Capacity(0)), failure(2)),
+        Require(BEGIN, index(8 * INSIDE), failure(1)),
+        Reserve(1, index(INSIDE)),
+        Advance(1, index(INSIDE)),
+    ]
+    sources = [(number, add(BEGIN, 8 + number * number % 31)) for number in range(INSIDE)]
+    for outer in range(AROUND):
+        moves = (Copy(Place(1, index(number), 8 * outer), Wire(source), index(8)) for number, source in sources)
+        body.append(For(f"round{outer}", Const("i64", 1), tuple(moves)))
+    return kernel((*body, Return(END)), strides=(8, 8 * AROUND), name="nested")
+
+
+@pytest.mark.parametrize("name", ["llvm", "numba"])
+def test_series_within_series_use_their_own_numbers(name):
+    made = nested()
+    verify(made)
+    series = found(made, made.bodies[0])
+    assert sum(isinstance(part, Series) for parts in series.blocks.values() for part in parts) > 1, "some stand within others"
+    message = bytes(number % 251 for number in range(8 * INSIDE))
+    assert outcome(name, made, message, rows(made)) == outcome("interpreter", made, message, rows(made))
