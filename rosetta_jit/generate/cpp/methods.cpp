@@ -89,9 +89,7 @@ int64_t measured(${name}_holder *holder, const $row &given_row, struct failure *
     static_cast<void>(failure);
     return $size;
 }
-/* == straight == */
-} // namespace
-
+/* == sized == */
 rosetta_jit::result<std::size_t> codec::try_size(const ::$name::holder &source)
 {
     ${name}_holder *const holder = $memory.get();
@@ -107,7 +105,10 @@ $kept
     return static_cast<std::size_t>(size);
 }
 
-rosetta_jit::result<std::size_t> codec::try_encode(const ::$name::holder &source, void *target, std::size_t capacity)
+/* == straight == */
+} // namespace
+
+$sizedrosetta_jit::result<std::size_t> codec::try_encode(const ::$name::holder &source, void *target, std::size_t capacity)
 {
     ${name}_holder *const holder = $memory.get();
     unsigned char *const bytes = static_cast<unsigned char *>(target);
@@ -159,22 +160,7 @@ rosetta_jit::result<std::size_t> written(${name}_holder *holder, unsigned char *
 
 } // namespace
 
-rosetta_jit::result<std::size_t> codec::try_size(const ::$name::holder &source)
-{
-    ${name}_holder *const holder = $memory.get();
-    struct failure failure = {0, 0, {0, 0, 0, 0}};
-    holder->now = now;
-    holder->number = number;
-$kept
-    gather(source, holder, holder->message);
-    const int64_t size = measured(holder, holder->message, &failure);
-    if (size < 0) {
-        return unplaced(report(size_sites, failure, 0, *holder));
-    }
-    return static_cast<std::size_t>(size);
-}
-
-rosetta_jit::result<std::size_t> codec::try_encode(const ::$name::holder &source, void *bytes, std::size_t capacity)
+$sizedrosetta_jit::result<std::size_t> codec::try_encode(const ::$name::holder &source, void *bytes, std::size_t capacity)
 {
     ${name}_holder *const holder = $memory.get();
     holder->now = now;

@@ -315,7 +315,8 @@ def _encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, s
     lanes, encode = parts.lanes, parts.printed["encode"]
     is_straight = is_local(walk, encode.hidden)
     begun = (f"    holder->{lanes.rows(lane)}.{'address' if lane in walk.addressed else 'reset'}();" for lane in range(1, lanes.own))
-    return Template(known["encode"] + known["straight" if is_straight else "gathered"]).substitute(
+    rest = known["straight" if is_straight else "gathered"].replace("$sized", known["sized"])
+    return Template(known["encode"] + rest).substitute(
         words,
         row=lanes.type(0),
         inline="ROSETTA_JIT_INLINE " if is_straight else "",
