@@ -6,49 +6,7 @@ from itertools import chain, pairwise
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, assert_never
 
-from rosetta_jit.kernel.ir import (
-    Advance,
-    Assign,
-    Binary,
-    Bits,
-    Call,
-    Capacity,
-    Compare,
-    Const,
-    Convert,
-    Copy,
-    Digits,
-    Expect,
-    Fill,
-    Fits,
-    For,
-    Get,
-    HostCall,
-    HostValue,
-    If,
-    IsText,
-    Let,
-    Load,
-    Local,
-    Lookup,
-    Nearest,
-    Nest,
-    Place,
-    Register,
-    Require,
-    Reserve,
-    Return,
-    Scale,
-    Select,
-    SetField,
-    Store,
-    Switch,
-    Unary,
-    Used,
-    Var,
-    While,
-    Wire,
-)
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.limits import MAX_BLOCKS, MAX_EXPRESSION
 from rosetta_jit.kernel.state import INDEX_WORDS
 from rosetta_jit.kernel.terms import BEGIN, END, ROW
@@ -56,7 +14,6 @@ from rosetta_jit.kernel.terms import BEGIN, END, ROW
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
-    from rosetta_jit.kernel.ir import Address, Block, Expr, Extent, Kernel, Routine, Stmt
 
 SHORT = 32
 """Statements up to which a call costs any kernel more than 5 % of its time."""
@@ -74,173 +31,173 @@ VAST = 12_000
 """Statements of kernels, each counted once for every block that it stands in, from which on work that grows faster takes minutes."""
 
 
-def blocks_of(stmt: Stmt) -> tuple[Block, ...]:
+def blocks_of(stmt: ir.Stmt) -> tuple[ir.Block, ...]:
     """The blocks inside a statement."""
     match stmt:
-        case For(_, _, body) | While(_, body, _, _):
+        case ir.For(_, _, body) | ir.While(_, body, _, _):
             return (body,)
-        case If(_, then, otherwise):
+        case ir.If(_, then, otherwise):
             return (then, otherwise)
-        case Switch(_, cases, default):
+        case ir.Switch(_, cases, default):
             return (*(block for _, block in cases), default)
         case _:
             return ()
 
 
-def statements(block: Block) -> Iterator[tuple[Stmt, int]]:
+def statements(block: ir.Block) -> Iterator[tuple[ir.Stmt, int]]:
     """Every statement of a block, of the blocks inside, and so on, each with its depth."""
-    stack: list[Iterator[Stmt]] = [iter(block)]
+    stack: list[Iterator[ir.Stmt]] = [iter(block)]
     while stack:
         for stmt in stack[-1]:
             yield stmt, len(stack)
-            if isinstance(stmt, Nest):
+            if isinstance(stmt, ir.Nest):
                 stack.append(chain.from_iterable(blocks_of(stmt)))
                 break
         else:
             stack.pop()
 
 
-def is_large(kernel: Kernel) -> bool:
+def is_large(kernel: ir.Kernel) -> bool:
     """Whether a kernel is so large that it is not worth while to improve it again and again."""
     return sum(1 for body in kernel.bodies for _ in statements(body)) > LARGE
 
 
-def are_vast(kernels: Iterable[Kernel]) -> bool:
+def are_vast(kernels: Iterable[ir.Kernel]) -> bool:
     """Whether kernels are so large, or nested so deep, that only work in proportion to their size is done on them."""
     return sum(depth for kernel in kernels for body in kernel.bodies for _, depth in statements(body)) > VAST
 
 
-def are_straight_and_compute(kernels: Iterable[Kernel]) -> bool:
+def are_straight_and_compute(kernels: Iterable[ir.Kernel]) -> bool:
     """Whether kernels, in the first of their bodies, compute with floats, without loops and without what stands for loops."""
     every = [each for kernel in kernels for each in _usual_statements(kernel)]
-    if any(isinstance(each, For | While) for each in every):
+    if any(isinstance(each, ir.For | ir.While) for each in every):
         return False
     parts = [part for each in every for expr in expressions_of(each) for part in subexpressions(expr)]
-    has_floats = any(isinstance(part, Const | Convert) and part.type in ("f32", "f64") for part in parts)
-    return has_floats and not any(isinstance(part, IsText | Nearest | Digits | Scale) for part in parts)
+    has_floats = any(isinstance(part, ir.Const | ir.Convert) and part.type in ("f32", "f64") for part in parts)
+    return has_floats and not any(isinstance(part, ir.IsText | ir.Nearest | ir.Digits | ir.Scale) for part in parts)
 
 
-def has_loops_for_vectors(kernel: Kernel) -> bool:
+def has_loops_for_vectors(kernel: ir.Kernel) -> bool:
     """Whether a kernel has, in the first of its bodies, loops over elements that do nothing but compute and store."""
-    return any(isinstance(each, For) and _only_stores(each.body) for each in _usual_statements(kernel))
+    return any(isinstance(each, ir.For) and _only_stores(each.body) for each in _usual_statements(kernel))
 
 
-def is_moderate(kernel: Kernel) -> bool:
+def is_moderate(kernel: ir.Kernel) -> bool:
     """Whether a kernel is of a size for which LLVM can be asked for all that it can do."""
     return sum(1 for _ in _usual_statements(kernel)) <= MODERATE
 
 
-def _only_stores(block: Block) -> bool:
-    return all(isinstance(each, Let | Store | SetField) for each in block)
+def _only_stores(block: ir.Block) -> bool:
+    return all(isinstance(each, ir.Let | ir.Store | ir.SetField) for each in block)
 
 
-def _usual_statements(kernel: Kernel) -> Iterator[Stmt]:
+def _usual_statements(kernel: ir.Kernel) -> Iterator[ir.Stmt]:
     """What runs for the usual message: all but the later bodies."""
     for block in (kernel.bodies[0], *(routine.body for routine in kernel.routines)):
         yield from (each for each, _ in statements(block))
 
 
-def is_short_and_straight(kernel: Kernel) -> bool:
+def is_short_and_straight(kernel: ir.Kernel) -> bool:
     """Whether a kernel, in the first of its bodies, takes no longer than a call of it by much."""
     every = [each for each, _ in statements(kernel.bodies[0])]
     if len(every) > SHORT and not (len(every) <= SHORT_IN_VECTORS and are_straight_and_compute((kernel,))):
         return False
-    return not any(isinstance(each, For | While) for each in every)
+    return not any(isinstance(each, ir.For | ir.While) for each in every)
 
 
-def is_short(kernel: Kernel) -> bool:
+def is_short(kernel: ir.Kernel) -> bool:
     """Whether the first of a kernel's bodies has so few statements that it can be compiled once more."""
     return sum(1 for _ in statements(kernel.bodies[0])) <= SHORT_IN_VECTORS
 
 
-def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
+def expressions_of(stmt: ir.Stmt) -> tuple[ir.Expr, ...]:
     """The expressions that stand in a statement itself."""
     match stmt:
-        case Require(at, size, failure):
+        case ir.Require(at, size, failure):
             return (at, size, failure.at, *failure.indices)
-        case Expect(condition, failure):
+        case ir.Expect(condition, failure):
             return (condition, failure.at, *failure.indices)
-        case Let(_, value) | Var(_, value) | Assign(_, value):
+        case ir.Let(_, value) | ir.Var(_, value) | ir.Assign(_, value):
             return (value,)
-        case Store(at, value, _):
+        case ir.Store(at, value, _):
             return (at, value)
-        case SetField(place, value):
+        case ir.SetField(place, value):
             return (place.row, value)
-        case Reserve(_, count) | Advance(_, count) | For(_, count, _):
+        case ir.Reserve(_, count) | ir.Advance(_, count) | ir.For(_, count, _):
             return (count,)
-        case Copy(target, source, size):
+        case ir.Copy(target, source, size):
             return (_start(target), _start(source), size)
-        case Fill(target, size, _):
+        case ir.Fill(target, size, _):
             return (_start(target), size)
-        case While(condition, _, invariant, measure):
+        case ir.While(condition, _, invariant, measure):
             return (condition, *invariant, measure)
-        case If(condition, _, _):
+        case ir.If(condition, _, _):
             return (condition,)
-        case Switch(value, _, _):
+        case ir.Switch(value, _, _):
             return (value,)
-        case Return(position, registers):
+        case ir.Return(position, registers):
             return (position, *(value for _, value in registers))
-        case Call(_, arguments, _, _, indices):
+        case ir.Call(_, arguments, _, _, indices):
             return (*arguments, *indices)
-        case HostCall(_, arguments, _, failure):
+        case ir.HostCall(_, arguments, _, failure):
             spans = (part for extent in extents_of(stmt) for part in (_start(extent.address), extent.size))
             return (*arguments, *spans, failure.at, *failure.indices)
         case _:
             assert_never(stmt)
 
 
-def operands(expr: Expr) -> tuple[Expr, ...]:
+def operands(expr: ir.Expr) -> tuple[ir.Expr, ...]:
     """The expressions that stand in an expression itself. A table is asked, since no other function is called so often."""
     return _OPERANDS[type(expr)](expr)
 
 
-def _none(expr: Expr) -> tuple[Expr, ...]:  # noqa: ARG001 - as for those that have some
+def _none(expr: ir.Expr) -> tuple[ir.Expr, ...]:  # noqa: ARG001 - as for those that have some
     return ()
 
 
-_OPERANDS: dict[type[Expr], Callable[[Any], tuple[Expr, ...]]] = {
-    **dict.fromkeys((Const, Local, Used, Capacity, HostValue, Register), _none),
-    **dict.fromkeys((Binary, Compare, Fits), attrgetter("left", "right")),
-    **dict.fromkeys((Unary, Convert, Bits), lambda expr: (expr.operand,)),
-    **dict.fromkeys((Digits, Scale), lambda expr: (expr.value,)),
-    Load: lambda expr: (expr.at,),
-    Get: lambda expr: (expr.place.row,),
-    Select: attrgetter("condition", "then", "otherwise"),
-    IsText: lambda expr: (_start(expr.address), expr.size),
-    Nearest: lambda expr: (_start(expr.address), expr.size, expr.exponent),
-    Lookup: lambda expr: (expr.index,),
+_OPERANDS: dict[type[ir.Expr], Callable[[Any], tuple[ir.Expr, ...]]] = {
+    **dict.fromkeys((ir.Const, ir.Local, ir.Used, ir.Capacity, ir.HostValue, ir.Register), _none),
+    **dict.fromkeys((ir.Binary, ir.Compare, ir.Fits), attrgetter("left", "right")),
+    **dict.fromkeys((ir.Unary, ir.Convert, ir.Bits), lambda expr: (expr.operand,)),
+    **dict.fromkeys((ir.Digits, ir.Scale), lambda expr: (expr.value,)),
+    ir.Load: lambda expr: (expr.at,),
+    ir.Get: lambda expr: (expr.place.row,),
+    ir.Select: attrgetter("condition", "then", "otherwise"),
+    ir.IsText: lambda expr: (_start(expr.address), expr.size),
+    ir.Nearest: lambda expr: (_start(expr.address), expr.size, expr.exponent),
+    ir.Lookup: lambda expr: (expr.index,),
 }
 
 
-def calls_to_host(kernels: Iterable[Kernel]) -> list[HostCall]:
+def calls_to_host(kernels: Iterable[ir.Kernel]) -> list[ir.HostCall]:
     """What kernels ask functions of the host."""
-    return [stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, HostCall)]
+    return [stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, ir.HostCall)]
 
 
-def our_functions(kernels: Iterable[Kernel]) -> list[str]:
+def our_functions(kernels: Iterable[ir.Kernel]) -> list[str]:
     """The names of the functions that kernels ask and that are not the user's, in order."""
     return sorted({call.function for call in calls_to_host(kernels) if "." in call.function})
 
 
-def asks_host(kernels: Iterable[Kernel]) -> bool:
+def asks_host(kernels: Iterable[ir.Kernel]) -> bool:
     """Whether kernels ask the host for the time, or for the number of a message."""
     stmts = (stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body))
-    return any(isinstance(part, HostValue) for stmt in stmts for expr in expressions_of(stmt) for part in subexpressions(expr))
+    return any(isinstance(part, ir.HostValue) for stmt in stmts for expr in expressions_of(stmt) for part in subexpressions(expr))
 
 
-def registers_read(kernel: Kernel) -> set[int]:
+def registers_read(kernel: ir.Kernel) -> set[int]:
     """The registers whose values a kernel asks for."""
     stmts = (stmt for body in kernel.bodies for stmt, _ in statements(body))
     parts = (part for stmt in stmts for expr in expressions_of(stmt) for part in subexpressions(expr))
-    return {part.number for part in parts if isinstance(part, Register)}
+    return {part.number for part in parts if isinstance(part, ir.Register)}
 
 
-def extents_of(call: HostCall) -> tuple[Extent, ...]:
+def extents_of(call: ir.HostCall) -> tuple[ir.Extent, ...]:
     """The bytes that a function of the host reads, and those that it fills."""
     return call.inputs if call.target is None else (*call.inputs, call.target)
 
 
-def subexpressions(expr: Expr) -> list[Expr]:
+def subexpressions(expr: ir.Expr) -> list[ir.Expr]:
     """An expression and all inside it."""
     parts = [expr]
     for part in parts:  # which grows
@@ -248,20 +205,20 @@ def subexpressions(expr: Expr) -> list[Expr]:
     return parts
 
 
-def bound_names(stmt: Stmt) -> tuple[str, ...]:
+def bound_names(stmt: ir.Stmt) -> tuple[str, ...]:
     """The names that a statement binds."""
     match stmt:
-        case Let(name, _) | Var(name, _) | For(name, _, _):
+        case ir.Let(name, _) | ir.Var(name, _) | ir.For(name, _, _):
             return (name,)
-        case Call(_, _, results, _, _):
+        case ir.Call(_, _, results, _, _):
             return tuple(result.name for result in results)
-        case HostCall():
+        case ir.HostCall():
             return (stmt.result.name,)
         case _:
             return ()
 
 
-def shape_error(kernel: Kernel) -> str | None:
+def shape_error(kernel: ir.Kernel) -> str | None:
     """What is wrong with a kernel's text, if anything is."""
     if not kernel.bodies:
         return "a kernel without bodies"
@@ -282,23 +239,26 @@ def shape_error(kernel: Kernel) -> str | None:
     return _statements_error(inner, (BEGIN.name, END.name, ROW.name), len(kernel.sites), kernel.routines)
 
 
-def _registers_error(count: int, every: list[Stmt]) -> str | None:
+def _registers_error(count: int, every: list[ir.Stmt]) -> str | None:
     parts = (part for stmt in every for expr in expressions_of(stmt) for part in subexpressions(expr))
-    changed = [[number for number, _ in stmt.registers] for stmt in every if isinstance(stmt, Return)]
-    named = {part.number for part in parts if isinstance(part, Register)} | {number for numbers in changed for number in numbers}
+    changed = [[number for number, _ in stmt.registers] for stmt in every if isinstance(stmt, ir.Return)]
+    named = {part.number for part in parts if isinstance(part, ir.Register)} | {number for numbers in changed for number in numbers}
     unknown = [number for number in named if not 0 <= number < count]
     if unknown:
         return f"no register {unknown[0]}"
     return None if all(a < b for numbers in changed for a, b in pairwise(numbers)) else "a register that is set twice"
 
 
-def _routine_error(routine: Routine, before: tuple[Routine, ...]) -> str | None:
+def _routine_error(routine: ir.Routine, before: tuple[ir.Routine, ...]) -> str | None:
     if any(routine.name == other.name for other in before):
         return "a name that another one has"
     if any(result.type not in ("i64", "u64") for result in routine.results):
         return "a result that is no integer of 64 bits"
     inside = list(statements(routine.body))
-    if any(isinstance(stmt, Return | Reserve | Advance | HostCall) or any(map(_of_a_body, expressions_of(stmt))) for stmt, _ in inside):
+    if any(
+        isinstance(stmt, ir.Return | ir.Reserve | ir.Advance | ir.HostCall) or any(map(_of_a_body, expressions_of(stmt)))
+        for stmt, _ in inside
+    ):
         return "something that only a body can do"
     names = BEGIN.name, END.name, *(parameter.name for parameter in routine.parameters)
     if len(set(names)) < len(names):
@@ -306,12 +266,14 @@ def _routine_error(routine: Routine, before: tuple[Routine, ...]) -> str | None:
     return _statements_error(inside, names, len(routine.sites), before)
 
 
-def _of_a_body(expr: Expr) -> bool:
+def _of_a_body(expr: ir.Expr) -> bool:
     """Whether an expression asks for a used length, for what the host tells, or for a register."""
-    return any(isinstance(part, Used | HostValue | Register) for part in subexpressions(expr))
+    return any(isinstance(part, ir.Used | ir.HostValue | ir.Register) for part in subexpressions(expr))
 
 
-def _statements_error(inside: Iterable[tuple[Stmt, int]], names: tuple[str, ...], sites: int, routines: tuple[Routine, ...]) -> str | None:
+def _statements_error(
+    inside: Iterable[tuple[ir.Stmt, int]], names: tuple[str, ...], sites: int, routines: tuple[ir.Routine, ...]
+) -> str | None:
     bound = set(names)
     known = {routine.name: routine for routine in routines}
     for stmt, depth in inside:
@@ -325,15 +287,15 @@ def _statements_error(inside: Iterable[tuple[Stmt, int]], names: tuple[str, ...]
     return None
 
 
-def _statement_error(stmt: Stmt, depth: int, sites: int, routines: Mapping[str, Routine]) -> str | None:
+def _statement_error(stmt: ir.Stmt, depth: int, sites: int, routines: Mapping[str, ir.Routine]) -> str | None:
     if depth > MAX_BLOCKS:
         return "blocks are nested too deep"
     if any(_too_deep(expr) for expr in expressions_of(stmt)):
         return "an expression is nested too deep"
     match stmt:
-        case Require(_, _, failure) | Expect(_, failure) | HostCall(_, _, _, failure):
+        case ir.Require(_, _, failure) | ir.Expect(_, failure) | ir.HostCall(_, _, _, failure):
             return _failing_error((failure.site,), failure.indices, sites)
-        case Call(name, arguments, results, named, indices):
+        case ir.Call(name, arguments, results, named, indices):
             routine = routines.get(name)
             if routine is None:
                 return f"no routine {name} before"
@@ -345,15 +307,15 @@ def _statement_error(stmt: Stmt, depth: int, sites: int, routines: Mapping[str, 
             return None
 
 
-def _failing_error(named: tuple[int, ...], indices: tuple[Expr, ...], sites: int) -> str | None:
+def _failing_error(named: tuple[int, ...], indices: tuple[ir.Expr, ...], sites: int) -> str | None:
     missing = [site for site in named if not 1 <= site < sites]
     if missing:
         return f"no site {missing[0]}"
     return "too many indices" if len(indices) > INDEX_WORDS else None
 
 
-def _too_deep(expr: Expr) -> bool:
-    level: tuple[Expr, ...] = (expr,)
+def _too_deep(expr: ir.Expr) -> bool:
+    level: tuple[ir.Expr, ...] = (expr,)
     for _ in range(MAX_EXPRESSION):
         level = tuple(chain.from_iterable(map(operands, level)))
         if not level:
@@ -361,11 +323,11 @@ def _too_deep(expr: Expr) -> bool:
     return True
 
 
-def _start(address: Address) -> Expr:
+def _start(address: ir.Address) -> ir.Expr:
     match address:
-        case Wire(at):
+        case ir.Wire(at):
             return at
-        case Place(_, row, _):
+        case ir.Place(_, row, _):
             return row
         case _:
             assert_never(address)
