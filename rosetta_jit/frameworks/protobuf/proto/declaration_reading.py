@@ -8,11 +8,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.frameworks.protobuf import diagnostics as say
-from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.proto import tree
-from rosetta_jit.frameworks.protobuf.proto.syntax import VISIBILITIES
-from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, ends, one, tokens_of
+from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, one, tokens_of
 from rosetta_jit.parsing.lalr import Token, Tree
 
 if TYPE_CHECKING:
@@ -26,24 +24,15 @@ class DeclarationReader(ValueReader):
 
     __slots__ = ()
 
-    def visibility(self, node: Node) -> tree.Visibility | None:
-        word = tokens_of(node)[0]
-        if word.type != "VISIBILITY":
-            return None
-        if self.version != "2024":
-            self.problems.append(say_edition.early_visibility(self.at(word)))
-        return cast("tree.Visibility", str(word))
-
     # Messages
 
     def message(self, node: Node) -> tree.Message:
-        return self.body(node, self.name(tokens_of(node)[-1]), self.doc(node), self.visibility(node))
+        return self.body(node, self.name(tokens_of(node)[-1]), self.doc(node))
 
-    def body(self, node: Node, name: tree.Name, doc: str, visibility: tree.Visibility | None = None) -> tree.Message:
+    def body(self, node: Node, name: tree.Name, doc: str) -> tree.Message:
         members = tuple(
             self.oneof(child) if child.data == "oneof" else self.field(child) for child in all_of(node, "field", "group", "oneof")
         )
-        self.check_words(node)
         extends, extend_groups = self.extends(node)
         reserved, reserved_names = self.reserved(node)
         options = self.options(node)
@@ -65,15 +54,7 @@ class DeclarationReader(ValueReader):
             reserved_names=reserved_names,
             options=options,
             doc=doc,
-            visibility=visibility,
         )
-
-    def check_words(self, node: Node) -> None:
-        """In edition 2024 a field of a message cannot begin with the words for visibility, though types may have such names."""
-        for field in all_of(node, "field"):
-            first = ends(field)[0]
-            if self.version == "2024" and first in VISIBILITIES:
-                self.problems.append(say_edition.misplaced_visibility(self.at(first), first))
 
     def groups(self, node: Node) -> Iterator[tree.Message]:
         """The messages that the groups among some fields declare."""
@@ -145,13 +126,9 @@ class DeclarationReader(ValueReader):
         )
 
     def reserved_names(self, node: Node) -> Iterator[tree.Name]:
-        """Strings in proto2 and proto3, identifiers in editions."""
+        """Strings in proto2 and proto3, identifiers in editions; either is read in both."""
         quoted = [tree.Name(self.text(string), self.span(string)) for string in all_of(node, "string")]
         bare = [self.name(token) for token in tokens_of(node)]
-        if self.version in tree.EDITIONS:
-            self.problems.extend(say_edition.reserved_string(name) for name in quoted)
-        else:
-            self.problems.extend(say_edition.reserved_identifier(name) for name in bare)
         yield from (*quoted, *bare)
 
     def range(self, node: Node, limit: int) -> tree.Range:
@@ -183,7 +160,6 @@ class DeclarationReader(ValueReader):
             reserved=reserved,
             reserved_names=reserved_names,
             options=self.options(node),
-            visibility=self.visibility(node),
         )
 
     def value(self, node: Node) -> tree.EnumValue:

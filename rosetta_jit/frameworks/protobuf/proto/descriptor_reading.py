@@ -16,8 +16,6 @@ from rosetta_jit.frameworks.protobuf.proto.descriptor_features import (
     features,
     has_unknown_features,
     option_dependencies,
-    unenforced,
-    visibility,
 )
 from rosetta_jit.frameworks.protobuf.proto.descriptor_options import Extensions, custom_options, extensions_in, own_options
 from rosetta_jit.frameworks.protobuf.proto.literals import EscapeError, number, unescape
@@ -100,7 +98,7 @@ class _Reader:
             enums=tuple(self.enum(enum) for enum in file.enum_type),
             extends=tuple(self.extend(field) for field in file.extension),
             services=tuple(self.service(service) for service in file.service),
-            options=(*self.options("FileOptions", file.options), *unenforced(self.version, file.options)),
+            options=self.options("FileOptions", file.options),
         )
 
     def imports(self, file: FileDescriptorProto) -> Iterator[tree.Import]:
@@ -127,7 +125,6 @@ class _Reader:
             reserved=tuple(tree.Range(range_.start, range_.end - 1) for range_ in message.reserved_range),
             reserved_names=tuple(tree.Name(self.text(name)) for name in message.reserved_name),
             options=self.options("MessageOptions", message.options),
-            visibility=visibility(message),
         )
 
     def members(self, message: DescriptorProto, entries: Mapping[str, DescriptorProto]) -> list[tree.Field | tree.Oneof]:
@@ -208,7 +205,6 @@ class _Reader:
             reserved=tuple(tree.Range(range_.start, range_.end) for range_ in enum.reserved_range),
             reserved_names=tuple(tree.Name(self.text(name)) for name in enum.reserved_name),
             options=self.options("EnumOptions", enum.options),
-            visibility=visibility(enum),
         )
 
     def service(self, service: ServiceDescriptorProto) -> tree.Service:

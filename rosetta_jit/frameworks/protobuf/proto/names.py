@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.frameworks.protobuf import diagnostics as say
-from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf.limits import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto import tree
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
@@ -29,12 +28,11 @@ FEATURE_SET = "google.protobuf.FeatureSet"
 
 def absolute(file: tree.File, symbols: Symbols, problems: list[Diagnostic]) -> tree.File:
     """The same file with every type and every custom option by its absolute name."""
-    return _Resolver(file.name, symbols.visible[file.name], symbols.visible_in_options[file.name], symbols, problems).file(file)
+    return _Resolver(symbols.visible[file.name], symbols.visible_in_options[file.name], symbols, problems).file(file)
 
 
 @dataclass(frozen=True, slots=True)
 class _Resolver:
-    file_name: str
     visible: frozenset[str]
     visible_in_options: frozenset[str]
     symbols: Symbols
@@ -134,8 +132,6 @@ class _Resolver:
         if symbol.kind not in kinds:
             self.problems.append(say.wrong_kind(name, full, symbol.kind, kinds))
             return tree.Name("", name.span)
-        if not symbol.exported and self.file_name not in symbol.files:
-            self.problems.append(say_edition.local_name(name, full, min(symbol.files)))
         return tree.Name(f".{full}", name.span)
 
     def files(self, kinds: frozenset[Kind]) -> frozenset[str]:

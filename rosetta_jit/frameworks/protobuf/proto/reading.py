@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
@@ -48,20 +47,13 @@ class _Reader(DeclarationReader):
             name=self.source.name,
             version=self.version,
             package=packages[0] if packages else None,
-            imports=self.imports(root),
+            imports=tuple(self.import_(node) for node in all_of(root, "import")),
             messages=(*(self.message(node) for node in all_of(root, "message")), *groups),
             enums=tuple(self.enum(node) for node in all_of(root, "enum")),
             extends=extends,
             services=tuple(self.service(node) for node in all_of(root, "service")),
             options=self.options(root),
         )
-
-    def imports(self, root: Node) -> tuple[tree.Import, ...]:
-        imports = tuple(self.import_(node) for node in all_of(root, "import"))
-        for before, import_ in pairwise(imports):
-            if before.kind == "option" and import_.kind != "option":
-                self.problems.append(say_edition.late_import(import_.span))
-        return imports
 
     def import_(self, node: Node) -> tree.Import:
         path = one(node, "string")
@@ -73,12 +65,8 @@ class _Reader(DeclarationReader):
                 case "public":
                     return "public"
                 case "weak":
-                    if self.version == "2024":
-                        self.problems.append(say_edition.weak_import(self.at(word)))
                     return "weak"
                 case "option":
-                    if self.version != "2024":
-                        self.problems.append(say_edition.option_import(self.at(word)))
                     return "option"
                 case other:
                     self.problems.append(of_file.unexpected(self.at(word), other, {"STRING"}))
