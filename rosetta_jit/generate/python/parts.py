@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.python.asked import bit_asked, case_asked, named_in_rounds, places_read
 from rosetta_jit.generate.python.expressions import bare, expression
 from rosetta_jit.generate.python.groups import turned
+from rosetta_jit.generate.python.joined_parts import Written
 from rosetta_jit.generate.python.packed import Part
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
+from rosetta_jit.generate.python.presence import bit_asked, case_asked, named_in_rounds, places_read
 from rosetta_jit.generate.python.statements import fail, print_statement
-from rosetta_jit.generate.python.written import Written
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
@@ -26,7 +26,7 @@ from rosetta_jit.model.layout import Number
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rosetta_jit.generate.python.given import Given, Listed, Maybe
+    from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope
     from rosetta_jit.generate.python.statements import Function
     from rosetta_jit.generate.unit import Unit
 
@@ -38,7 +38,7 @@ class Parts(Written):
     of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has.
     """
 
-    def __init__(self, unit: Unit, function: Function, scope: Given, body: ir.Block, routines: Mapping[str, str]) -> None:
+    def __init__(self, unit: Unit, function: Function, scope: ObjectScope, body: ir.Block, routines: Mapping[str, str]) -> None:
         exprs = (expr for stmt, _ in statements(body) for expr in expressions_of(stmt))
         needed = {(place.lane, place.offset) for expr in exprs for place in places_read(expr)}
         super().__init__(unit, function, scope, needed)

@@ -22,11 +22,11 @@ from rosetta_jit.language.functions.texts import type_pieces
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_DEFAULTS, MAX_PROBLEMS
 from rosetta_jit.language.places import field_names, places_in
+from rosetta_jit.language.resolve.coerced_values import fitted
 from rosetta_jit.language.resolve.defaults import ManyDefaultsError, default_rules, has_array
 from rosetta_jit.language.resolve.expressions import type_expr, type_index, type_integer
 from rosetta_jit.language.resolve.fitting import fit
 from rosetta_jit.language.resolve.groups import length_rules, paths_of, type_group
-from rosetta_jit.language.resolve.held_values import fitted
 from rosetta_jit.language.resolve.keyed_rules import numbered
 from rosetta_jit.language.resolve.lengths_first import lengths_first
 from rosetta_jit.language.resolve.messages import checked_message, scope_between

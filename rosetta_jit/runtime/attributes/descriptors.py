@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.attributes.field_table import PLACE_BYTES, KeptFields
 from rosetta_jit.runtime.attributes.names import Names
-from rosetta_jit.runtime.attributes.places import PLACE_BYTES, KeptFields
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.limits import MAX_VIEWS

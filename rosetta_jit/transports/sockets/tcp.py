@@ -10,8 +10,8 @@ from rosetta_jit.transports.base import Message, Sink, Source
 from rosetta_jit.transports.connecting import Dialer, Listener
 from rosetta_jit.transports.limits import MAX_CONNECTIONS
 from rosetta_jit.transports.loop import loop
+from rosetta_jit.transports.sockets.endpoints import targets
 from rosetta_jit.transports.sockets.framing import framed, messages
-from rosetta_jit.transports.sockets.places import targets
 from rosetta_jit.transports.stream import Stream, finish_all
 
 if TYPE_CHECKING:
