@@ -60,7 +60,11 @@ def _compare(expr: Compare) -> Expr:
 
 
 def _fits_in(expr: Fits) -> Expr:
-    return _computed(expr) if isinstance(expr.left, Const) and isinstance(expr.right, Const) else expr
+    match expr:
+        case Fits(_, Const(), Const()):
+            return _computed(expr)
+        case _:
+            return expr
 
 
 def _convert(expr: Convert) -> Expr:
