@@ -32,26 +32,28 @@ VAST = 12_000
 
 
 def blocks_of(stmt: ir.Stmt) -> tuple[ir.Block, ...]:
-    """The blocks inside a statement."""
-    match stmt:
-        case ir.For(_, _, body) | ir.While(_, body, _, _):
-            return (body,)
-        case ir.If(_, then, otherwise):
-            return (then, otherwise)
-        case ir.Switch(_, cases, default):
-            return (*(block for _, block in cases), default)
-        case _:
-            return ()
+    """The blocks inside a statement. A table is asked, as for all that every walk over kernels asks."""
+    found = _BLOCKS.get(type(stmt))
+    return () if found is None else found(stmt)
+
+
+_BLOCKS: dict[type[ir.Stmt], Callable[[Any], tuple[ir.Block, ...]]] = {
+    **dict.fromkeys((ir.For, ir.While), lambda stmt: (stmt.body,)),
+    ir.If: attrgetter("then", "otherwise"),
+    ir.Switch: lambda stmt: (*(block for _, block in stmt.cases), stmt.default),
+}
 
 
 def statements(block: ir.Block) -> Iterator[tuple[ir.Stmt, int]]:
     """Every statement of a block, of the blocks inside, and so on, each with its depth."""
     stack: list[Iterator[ir.Stmt]] = [iter(block)]
+    nested = _BLOCKS
     while stack:
+        depth = len(stack)
         for stmt in stack[-1]:
-            yield stmt, len(stack)
-            if isinstance(stmt, ir.Nest):
-                stack.append(chain.from_iterable(blocks_of(stmt)))
+            yield stmt, depth
+            if type(stmt) in nested:
+                stack.append(chain.from_iterable(nested[type(stmt)](stmt)))
                 break
         else:
             stack.pop()
@@ -72,7 +74,7 @@ def are_straight_and_compute(kernels: Iterable[ir.Kernel]) -> bool:
     every = [each for kernel in kernels for each in _usual_statements(kernel)]
     if any(isinstance(each, ir.For | ir.While) for each in every):
         return False
-    parts = [part for each in every for expr in expressions_of(each) for part in subexpressions(expr)]
+    parts = parts_of(every)
     has_floats = any(isinstance(part, ir.Const | ir.Convert) and part.type in ("f32", "f64") for part in parts)
     return has_floats and not any(isinstance(part, ir.IsText | ir.Nearest | ir.Digits | ir.Scale) for part in parts)
 
@@ -112,51 +114,38 @@ def is_short(kernel: ir.Kernel) -> bool:
 
 def expressions_of(stmt: ir.Stmt) -> tuple[ir.Expr, ...]:
     """The expressions that stand in a statement itself."""
-    match stmt:
-        case ir.Require(at, size, failure):
-            return (at, size, failure.at, *failure.indices)
-        case ir.Expect(condition, failure):
-            return (condition, failure.at, *failure.indices)
-        case ir.Let(_, value) | ir.Var(_, value) | ir.Assign(_, value):
-            return (value,)
-        case ir.Store(at, value, _):
-            return (at, value)
-        case ir.SetField(place, value):
-            return (place.row, value)
-        case ir.Reserve(_, count) | ir.Advance(_, count) | ir.For(_, count, _):
-            return (count,)
-        case ir.Copy(target, source, size):
-            return (_start(target), _start(source), size)
-        case ir.Fill(target, size, _):
-            return (_start(target), size)
-        case ir.While(condition, _, invariant, measure):
-            return (condition, *invariant, measure)
-        case ir.If(condition, _, _):
-            return (condition,)
-        case ir.Switch(value, _, _):
-            return (value,)
-        case ir.Return(position, registers):
-            return (position, *(value for _, value in registers))
-        case ir.Call(_, arguments, _, _, indices):
-            return (*arguments, *indices)
-        case ir.HostCall(_, arguments, _, failure):
-            spans = (part for extent in extents_of(stmt) for part in (_start(extent.address), extent.size))
-            return (*arguments, *spans, failure.at, *failure.indices)
-        case _:
-            assert_never(stmt)
+    return _EXPRESSIONS[type(stmt)](stmt)
+
+
+def _host_expressions(call: ir.HostCall) -> tuple[ir.Expr, ...]:
+    spans = (part for extent in extents_of(call) for part in (_start(extent.address), extent.size))
+    return (*call.arguments, *spans, call.failure.at, *call.failure.indices)
+
+
+_EXPRESSIONS: dict[type[ir.Stmt], Callable[[Any], tuple[ir.Expr, ...]]] = {
+    ir.Require: lambda stmt: (stmt.at, stmt.size, stmt.failure.at, *stmt.failure.indices),
+    ir.Expect: lambda stmt: (stmt.condition, stmt.failure.at, *stmt.failure.indices),
+    **dict.fromkeys((ir.Let, ir.Var, ir.Assign, ir.Switch), lambda stmt: (stmt.value,)),
+    ir.Store: attrgetter("at", "value"),
+    ir.SetField: attrgetter("place.row", "value"),
+    **dict.fromkeys((ir.Reserve, ir.Advance, ir.For), lambda stmt: (stmt.count,)),
+    ir.Copy: lambda stmt: (_start(stmt.target), _start(stmt.source), stmt.size),
+    ir.Fill: lambda stmt: (_start(stmt.target), stmt.size),
+    ir.While: lambda stmt: (stmt.condition, *stmt.invariant, stmt.measure),
+    ir.If: lambda stmt: (stmt.condition,),
+    ir.Return: lambda stmt: (stmt.position, *(value for _, value in stmt.registers)),
+    ir.Call: lambda stmt: (*stmt.arguments, *stmt.indices),
+    ir.HostCall: _host_expressions,
+}
 
 
 def operands(expr: ir.Expr) -> tuple[ir.Expr, ...]:
-    """The expressions that stand in an expression itself. A table is asked, since no other function is called so often."""
-    return _OPERANDS[type(expr)](expr)
-
-
-def _none(expr: ir.Expr) -> tuple[ir.Expr, ...]:  # noqa: ARG001 - as for those that have some
-    return ()
+    """The expressions that stand in an expression itself."""
+    found = _OPERANDS.get(type(expr))
+    return () if found is None else found(expr)
 
 
 _OPERANDS: dict[type[ir.Expr], Callable[[Any], tuple[ir.Expr, ...]]] = {
-    **dict.fromkeys((ir.Const, ir.Local, ir.Used, ir.Capacity, ir.HostValue, ir.Register), _none),
     **dict.fromkeys((ir.Binary, ir.Compare, ir.Fits), attrgetter("left", "right")),
     **dict.fromkeys((ir.Unary, ir.Convert, ir.Bits), lambda expr: (expr.operand,)),
     **dict.fromkeys((ir.Digits, ir.Scale), lambda expr: (expr.value,)),
@@ -181,15 +170,17 @@ def our_functions(kernels: Iterable[ir.Kernel]) -> list[str]:
 
 def asks_host(kernels: Iterable[ir.Kernel]) -> bool:
     """Whether kernels ask the host for the time, or for the number of a message."""
-    stmts = (stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body))
-    return any(isinstance(part, ir.HostValue) for stmt in stmts for expr in expressions_of(stmt) for part in subexpressions(expr))
+    return any(isinstance(part, ir.HostValue) for kernel in kernels for part in parts_of(_statements_of(kernel)))
 
 
 def registers_read(kernel: ir.Kernel) -> set[int]:
     """The registers whose values a kernel asks for."""
-    stmts = (stmt for body in kernel.bodies for stmt, _ in statements(body))
-    parts = (part for stmt in stmts for expr in expressions_of(stmt) for part in subexpressions(expr))
-    return {part.number for part in parts if isinstance(part, ir.Register)}
+    return {part.number for part in parts_of(_statements_of(kernel)) if isinstance(part, ir.Register)} if kernel.registers else set()
+
+
+def _statements_of(kernel: ir.Kernel) -> Iterator[ir.Stmt]:
+    """The statements of all bodies."""
+    return (stmt for body in kernel.bodies for stmt, _ in statements(body))
 
 
 def extents_of(call: ir.HostCall) -> tuple[ir.Extent, ...]:
@@ -199,23 +190,35 @@ def extents_of(call: ir.HostCall) -> tuple[ir.Extent, ...]:
 
 def subexpressions(expr: ir.Expr) -> list[ir.Expr]:
     """An expression and all inside it."""
-    parts = [expr]
+    return _with_parts([expr])
+
+
+def parts_of(stmts: Iterable[ir.Stmt]) -> list[ir.Expr]:
+    """All expressions of some statements, and all inside them."""
+    return _with_parts([expr for stmt in stmts for expr in _EXPRESSIONS[type(stmt)](stmt)])
+
+
+def _with_parts(parts: list[ir.Expr]) -> list[ir.Expr]:
+    """Expressions and, behind them, all inside them."""
+    inside = _OPERANDS
     for part in parts:  # which grows
-        parts += _OPERANDS[type(part)](part)
+        if type(part) in inside:
+            parts += inside[type(part)](part)
     return parts
 
 
 def bound_names(stmt: ir.Stmt) -> tuple[str, ...]:
     """The names that a statement binds."""
-    match stmt:
-        case ir.Let(name, _) | ir.Var(name, _) | ir.For(name, _, _):
-            return (name,)
-        case ir.Call(_, _, results, _, _):
-            return tuple(result.name for result in results)
-        case ir.HostCall():
-            return (stmt.result.name,)
-        case _:
-            return ()
+    found = _BOUND.get(type(stmt))
+    return () if found is None else found(stmt)
+
+
+_BOUND: dict[type[ir.Stmt], Callable[[Any], tuple[str, ...]]] = {
+    **dict.fromkeys((ir.Let, ir.Var), lambda stmt: (stmt.name,)),
+    ir.For: lambda stmt: (stmt.variable,),
+    ir.Call: lambda stmt: tuple([result.name for result in stmt.results]),
+    ir.HostCall: lambda stmt: (stmt.result.name,),
+}
 
 
 def shape_error(kernel: ir.Kernel) -> str | None:
@@ -240,9 +243,10 @@ def shape_error(kernel: ir.Kernel) -> str | None:
 
 
 def _registers_error(count: int, every: list[ir.Stmt]) -> str | None:
-    parts = (part for stmt in every for expr in expressions_of(stmt) for part in subexpressions(expr))
     changed = [[number for number, _ in stmt.registers] for stmt in every if isinstance(stmt, ir.Return)]
-    named = {part.number for part in parts if isinstance(part, ir.Register)} | {number for numbers in changed for number in numbers}
+    named = {part.number for part in parts_of(every) if isinstance(part, ir.Register)} | {
+        number for numbers in changed for number in numbers
+    }
     unknown = [number for number in named if not 0 <= number < count]
     if unknown:
         return f"no register {unknown[0]}"
@@ -315,11 +319,11 @@ def _failing_error(named: tuple[int, ...], indices: tuple[ir.Expr, ...], sites: 
 
 
 def _too_deep(expr: ir.Expr) -> bool:
-    level: tuple[ir.Expr, ...] = (expr,)
+    level = operands(expr)
     for _ in range(MAX_EXPRESSION):
-        level = tuple(chain.from_iterable(map(operands, level)))
         if not level:
             return False
+        level = tuple(chain.from_iterable(map(operands, level)))
     return True
 
 

@@ -225,11 +225,8 @@ class _Rules:
         match type_:
             case Bool():
                 absent = int(field.default is True)
-                return (
-                    wire.Number(path, "bool", absent=absent)
-                    if "bool" in self.lenient
-                    else wire.Table(path, "u8", ((0, 0), (1, 1)), absent=absent)
-                )
+                strict = wire.Table(path, "u8", ((0, 0), (1, 1)), absent=absent)
+                return wire.Number(path, "bool", absent=absent) if "bool" in self.lenient else strict
             case Int(16, _, "wchar") if self.encoding == "cdr-giop":
                 return wire.Seq((wire.Constant(path[:0], 2, "u8", kind="count"), wire.Number(path, "u16", ">")))
             case Int() | Float():

@@ -9,8 +9,8 @@ from itertools import repeat
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.passes.fold import FALSE, TRUE, folded
-from rosetta_jit.kernel.rewrite import ends, locals_in, names_read, with_blocks, with_bodies, with_expressions, with_operands
-from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
+from rosetta_jit.kernel.rewrite import ends, names_in, names_read, with_blocks, with_bodies, with_expressions, with_operands
+from rosetta_jit.kernel.shape import statements, subexpressions
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, index, split, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -171,6 +171,6 @@ def _used(block: ir.Block, read: set[str], live: set[str]) -> ir.Block:
                 continue
             case _:
                 kept = with_blocks(stmt, lambda inner: _used(inner, read, live))
-        live.update(name for expr in expressions_of(kept) for name in locals_in(expr))
+        live.update(names_in((kept,)))
         result.append(kept)
     return tuple(reversed(result))
