@@ -102,7 +102,7 @@ def test_no_more_than_a_few_are_remembered(mapping, checks):
 
 
 def test_a_file_that_was_missing(tmp_path):
-    """protobuf's own file was taken, where now the user's is."""
+    """A user's file is taken where protobuf's own was."""
     text = 'syntax = "proto3";\npackage google.protobuf;\nmessage Timestamp { int64 seconds = %d; int32 nanos = 2; }\n'
     main = 'syntax = "proto3";\nimport "google/protobuf/timestamp.proto";\nmessage A { google.protobuf.Timestamp t = 1; }\n'
     write(tmp_path / "a.proto", main)
