@@ -20,6 +20,7 @@ from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import Holder
+    from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.record import Entry
 
 
@@ -215,8 +216,9 @@ class MapField(Dictionary):
         return value
 
     def GetEntryClass(self) -> type[Holder]:  # noqa: N802  as protobuf names it
-        """The class of messages that are one pair: a ``key`` and a ``value``. Pairs are such messages in bytes and in protobuf's text format."""
-        family, field = self.message.access_.family, cast("Any", self.message).DESCRIPTOR.fields_by_name[self.entry.name]
+        """The class of messages with a ``key`` and a ``value``, as the pairs are in bytes and in protobuf's text format."""
+        family = cast("HolderFamily", self.message.access_.family)
+        field = cast("Any", self.message).DESCRIPTOR.fields_by_name[self.entry.name]
         return holder_class(field.message_type.struct, family.schema, family.manners)
 
     def MergeFrom(self, other: Mapping[Any, Any]) -> None:  # noqa: N802  as protobuf names it

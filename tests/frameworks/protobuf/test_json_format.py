@@ -1,4 +1,4 @@
-"""protobuf's own `json_format` and `text_format` read and write holders: what it makes of them is what it makes of its own messages, both ways."""
+"""protobuf's own `json_format` and `text_format` read and write holders, and make the same of them as of messages of its package."""
 
 from __future__ import annotations
 
