@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
     import inspect
@@ -65,13 +65,14 @@ class DescribedProgram:
     def __init__(self, text: str | None) -> None:
         self._text = text or ""
 
-    def __get__(self, program: Any, owner: object = None) -> str:
+    def __get__(self, program: object, owner: object = None) -> str:
         if program is None:
             return self._text
         import inspect  # slow
 
-        made_of: type[Any] = type(program)
         names = [name for name in dir(program) if not name.startswith("_")]
-        texts = {name: inspect.getdoc(inspect.getattr_static(made_of, name)) or "" for name in names}
+        texts = {name: inspect.getdoc(inspect.getattr_static(type(program), name)) or "" for name in names}
         lines = (f"{name}: {' '.join(text.partition(chr(10) * 2)[0].split())}" for name, text in texts.items())
-        return "\n".join((self._text.partition("\n")[0], "", str(program.holder_type.__doc__), "", "Methods and attributes:", "", *lines))
+        return "\n".join(
+            (self._text.partition("\n")[0], "", str(cast("Any", program).holder_type.__doc__), "", "Methods and attributes:", "", *lines)
+        )
