@@ -34,6 +34,8 @@ RESET = (
     "    /* Forgets all messages: state is what the mapping says that it is at first. */",
     "    void reset() { kept = state(); }",
 )
+SELDOM = re.compile(r"^static int64_t (?:fail|fail_here|full)\(", re.MULTILINE)
+"""The functions that are called where something is wrong."""
 SAID = """    if (where.scratch >= 0) { /* the mapping has put this text together */
         const std::size_t first = rosetta_jit::detail::indices_in(where.path);
         found.detail.assign(reinterpret_cast<const char *>(holder.scratch[where.scratch].bytes) + failure.indices[first],
@@ -179,7 +181,7 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
         structs="\n\n".join(_struct(unit, parts, each) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
         holder=_holder(unit, parts, containers),
-        support=support(without_unused(called, printed)),
+        support=SELDOM.sub(r"ROSETTA_JIT_COLD \g<0>", support(without_unused(called, printed))),
         kernels="\n\n".join(kernels),
         walks=between,
         lanes=",\n    ".join(

@@ -65,7 +65,7 @@ struct failure {
     int64_t indices[4];
 };
 
-static int64_t fail(struct failure *failure, int64_t site, int64_t offset)
+ROSETTA_JIT_COLD static int64_t fail(struct failure *failure, int64_t site, int64_t offset)
 {
     failure->site = site;
     failure->offset = offset;
@@ -73,7 +73,7 @@ static int64_t fail(struct failure *failure, int64_t site, int64_t offset)
 }
 
 /* A lane lacks room. */
-static int64_t full(struct failure *failure, int64_t lane, int64_t missing)
+ROSETTA_JIT_COLD static int64_t full(struct failure *failure, int64_t lane, int64_t missing)
 {
     failure->site = 0;
     failure->offset = lane;
@@ -441,7 +441,7 @@ const char *const lanes[] = {
 };
 
 /* The error of a failure. `available` is how many bytes there are behind its offset. */
-rosetta_jit::error report(const site *sites, const struct failure &failure, int64_t available, const torso_state_holder &holder)
+ROSETTA_JIT_COLD rosetta_jit::error report(const site *sites, const struct failure &failure, int64_t available, const torso_state_holder &holder)
 {
     static_cast<void>(holder);
     const site &where = sites[failure.site];

@@ -24,11 +24,13 @@
 #include <span>
 #endif
 
-/* Code that is as quick as what it stands for only where a compiler sees both. */
+/* INLINE: code that is as quick as what it stands for only where a compiler sees both. COLD: code that seldom runs, which must not slow down what is around it. */
 #if defined(__GNUC__)
 #define ROSETTA_JIT_INLINE __attribute__((always_inline)) inline
+#define ROSETTA_JIT_COLD __attribute__((noinline, cold))
 #else
 #define ROSETTA_JIT_INLINE inline
+#define ROSETTA_JIT_COLD
 #endif
 
 namespace rosetta_jit {
@@ -284,7 +286,7 @@ template <class Row> struct lane {
     }
 
     /* Makes room for more rows; false where that would be more than `most`. */
-    bool grow(std::int64_t missing, std::int64_t most)
+    ROSETTA_JIT_COLD bool grow(std::int64_t missing, std::int64_t most)
     {
         if (missing > most - capacity) {
             return false;
@@ -308,7 +310,7 @@ struct scratch {
     std::int64_t size = 0;
     std::unique_ptr<std::int64_t[]> memory;
 
-    bool grow(std::int64_t missing, std::int64_t most)
+    ROSETTA_JIT_COLD bool grow(std::int64_t missing, std::int64_t most)
     {
         if (missing > 4096 * (most / 64) - size) {
             return false;
@@ -365,7 +367,7 @@ template <class Container> std::int64_t count_of(const Container &from)
 template <class Container> void resize_to(Container &target, std::int64_t count)
 {
     if constexpr (is_repeated<Container>::value) {
-        if constexpr (std::is_arithmetic_v<std::remove_reference_t<decltype(*target.mutable_data())>>) {
+        if constexpr (std::is_arithmetic_v<typename Container::value_type>) {
             target.Resize(static_cast<int>(count), {});
         } else {
             target.Reserve(static_cast<int>(count));
@@ -568,7 +570,7 @@ template <class Row, class Container> struct field_lane {
         used = capacity;
     }
 
-    bool grow(std::int64_t missing, std::int64_t most)
+    ROSETTA_JIT_COLD bool grow(std::int64_t missing, std::int64_t most)
     {
         if (missing > most - capacity) {
             return false;
@@ -608,13 +610,20 @@ private:
 template <class Message, class = void> struct shows_unknown : std::false_type {};
 template <class Message> struct shows_unknown<Message, std::void_t<decltype(std::declval<Message &>().mutable_unknown_fields())>> : std::true_type {};
 
+/* The reflection of a class of protobuf's, for which a message looks each time that it is asked. */
+template <class Message> const auto &reflection_of(const Message &message)
+{
+    static const auto *const reflection = message.GetReflection();
+    return *reflection;
+}
+
 /* The unknown fields of a protobuf message: of proto3 only its reflection has them. */
 template <class Message> const auto &unknown_fields(const Message &message)
 {
     if constexpr (shows_unknown<Message>::value) {
         return message.unknown_fields();
     } else {
-        return message.GetReflection()->GetUnknownFields(message);
+        return reflection_of(message).GetUnknownFields(message);
     }
 }
 
@@ -623,7 +632,7 @@ template <class Message> auto &mutable_unknown_fields(Message &message)
     if constexpr (shows_unknown<Message>::value) {
         return *message.mutable_unknown_fields();
     } else {
-        return *message.GetReflection()->MutableUnknownFields(&message);
+        return *reflection_of(message).MutableUnknownFields(&message);
     }
 }
 
