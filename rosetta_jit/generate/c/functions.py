@@ -162,8 +162,10 @@ def _tables(writer: Writer, scope: Scope) -> None:
 
 
 def _declared(parameters: tuple[str, ...], direction: Direction, lanes: Lanes) -> list[str]:
+    reads = direction != "decode"
+    holder = "_source" if reads and lanes.dialect == "c++" else "_holder"
     kinds = {
-        "holder": f"{'' if direction == 'decode' or lanes.dialect == 'c++' else 'const '}{lanes.prefix}_holder *holder",
+        "holder": f"{'const ' if reads and lanes.dialect == 'c' else ''}{lanes.prefix}{holder} *holder",
         "given_row": f"const {lanes.type(0)} &given_row",
         "bytes": f"{'' if direction == 'encode' else 'const '}unsigned char *restrict bytes",
         "end": "int64_t end",

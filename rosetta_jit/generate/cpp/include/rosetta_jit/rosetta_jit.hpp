@@ -270,14 +270,6 @@ template <class Row> struct lane {
         used = 0;
     }
 
-    /* No rows, and a place in memory for each. */
-    void address()
-    {
-        rows = nullptr;
-        capacity = 0;
-        used = INT64_MAX;
-    }
-
     void show(const Row *elements, std::int64_t count)
     {
         rows = const_cast<Row *>(elements); /* the functions that write messages change no row */
@@ -545,6 +537,20 @@ template <class Lane, class Span, class Container> void point_span(Lane &, Span 
     span.count = count_of(from);
 }
 
+/* To write a message: rows that are the elements of a container; or anywhere in memory, by their addresses. */
+template <class Row> struct shown {
+    Row *rows = nullptr;
+    std::int64_t used = INT64_MAX;
+
+    template <class Container> void read(const Container &from)
+    {
+        static_assert(same_numbers<std::remove_cv_t<std::remove_reference_t<decltype(*std::data(from))>>, Row>,
+                      "the class has elements of another type than the schema");
+        rows = const_cast<Row *>(reinterpret_cast<const Row *>(std::data(from))); /* the functions that write messages change no row */
+        used = count_of(from);
+    }
+};
+
 /* Rows that are the elements of a container, so that nothing is copied. */
 template <class Row, class Container> struct field_lane {
     Row *rows = nullptr;
@@ -555,19 +561,10 @@ template <class Row, class Container> struct field_lane {
     using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(std::declval<Container &>()))>>;
     static_assert(same_numbers<Number, Row>, "the class has elements of another type than the schema");
 
-    void reset() { used = 0; }
-
     void fill(Container &target)
     {
         container = &target;
         look();
-    }
-
-    void read(const Container &from)
-    {
-        container = const_cast<Container *>(&from); /* the functions that write messages change no row */
-        look();
-        used = capacity;
     }
 
     ROSETTA_JIT_COLD bool grow(std::int64_t missing, std::int64_t most)
