@@ -88,8 +88,7 @@ def _check(arguments: argparse.Namespace) -> None:
     from rosetta_jit.catalogue.generate import needless
     from rosetta_jit.errors import SchemaError
 
-    numpy = arguments.arrays == "numpy"
-    of_source = {"--holder": arguments.holder, "--include": arguments.include, "--arrays": numpy, "--freestanding": arguments.freestanding}
+    of_source = {"--holder": arguments.holder, "--include": arguments.include, "--arrays": arguments.arrays == "numpy"}
     given = of_source if arguments.emit == "object" else {"--target": arguments.target, "--cpu": arguments.cpu}
     if wrong := tuple(needless(option, arguments.emit) for option, value in given.items() if value):
         raise SchemaError(wrong)
@@ -113,7 +112,7 @@ def _object(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:
     if arguments.language != "c":
         raise SchemaError((no_object(arguments.language),))
     name, triple = arguments.name or _name(arguments.subject), arguments.target or binding.get_default_triple()
-    return object_of(_request(arguments), arguments.directions, name, triple, arguments.cpu)
+    return object_of(_request(arguments), arguments.directions, name, triple, arguments.cpu, freestanding=arguments.freestanding)
 
 
 def _request(arguments: argparse.Namespace) -> Request:
