@@ -110,8 +110,8 @@ class LiveRoute:
 
     @property
     def waiting(self) -> int:
-        """Messages that wait for the target."""
-        return len(self._waiting) + self._held
+        """Messages that wait for the target; none once it is closed: they are counted as dropped."""
+        return 0 if self._given_up else len(self._waiting) + self._held
 
     def deliver(self, message: Message, wire: str = "") -> None:
         """Take a message from the source, or from that of one of several wires; send what it becomes, or let that wait."""
