@@ -115,13 +115,13 @@ class Channel:
     ) -> Iterator[Part]:
         """The messages, decoded some megabytes at a time into one batch that is filled again and again. State begins anew."""
         self.decoder.reset()
-        yield from Collector(self.decoder, on_error, expected=self.count).parts(ahead(self._blocks(start, end, pieces)))
+        blocks = ahead(self._blocks(start, end, pieces), lambda each: each.data.size)
+        yield from Collector(self.decoder, on_error, expected=self.count).parts(blocks)
 
     def decoded(self, block: Block, rows: Rows, on_error: OnError = "raise") -> Batch:
         """Messages of a block, in a batch of their own; an error says of which topic and time the message is."""
-        data = block.data.copy() if self.decoder.borrows_ else block.data  # whose memory is used again
         with self._named(rows):
-            return self.decoder.many(data.data, np.stack([rows.begins, rows.ends]), on_error=on_error)
+            return self.decoder.many(block.data.data, np.stack([rows.begins, rows.ends]), on_error=on_error)
 
     def bridge_to(self, type_: str, encode: Options) -> Bridge:
         """What turns the messages into those of another type, which has the same fields (`rosetta_jit.api.bridges.Bridge.of`)."""

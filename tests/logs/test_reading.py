@@ -167,7 +167,7 @@ def test_parts_of_many_blocks(folder):
 
 
 def test_bytes_that_are_lent(folder):
-    """A batch borrows from one block, whose memory is used again: messages keep a copy of their bytes."""
+    """A batch borrows from one block, whose memory is not used again as long as a message shows it."""
     from mcap.writer import Writer
 
     path = folder / "lent.mcap"
