@@ -248,6 +248,17 @@ def test_a_url(log):
         rj.open("memory://drive/nothing.mcap")
 
 
+def test_an_address_whose_package_is_missing(monkeypatch):
+    import fsspec
+
+    def missing(*_, **__):
+        raise ImportError("install aiohttp")
+
+    monkeypatch.setattr(fsspec, "open", missing)
+    with pytest.raises(LogError, match="cannot be read: install aiohttp"):
+        rj.open("https://host/a.mcap")
+
+
 @pytest.mark.parametrize("size", [1, 40])
 def test_a_definition_that_is_empty(folder, size):
     """It is of a type without fields, or there is none: then the type is looked for on the search path."""
