@@ -4,6 +4,7 @@ floor_divide(x · c + y, c) = x      modulo(x · c + y, c) = y      where 0 ≤ 
 floor_divide(x, c) · c + modulo(x, c) = x
 nanoseconds(x, y) as x · 10⁹ + y, of which 0 ≤ y < 10⁹ is checked
 seconds(iso8601(x, y)) = x          fraction(iso8601(x, y)) = y
+decompress(compress(x, "png", ...), "png", ...) = x, with the same measures
 signal(signal_bytes(n, d, x), d) = x, and signal_bytes of all signals of x is x
 iso8601(seconds(x), fraction(x)) = iso8601(nanoseconds(x)), and timestamp likewise
 """
@@ -18,12 +19,15 @@ from rosetta_jit.language.laws.chain import come_back, field_in
 from rosetta_jit.language.signal_bits import signal_of
 from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Call, Const, Convert
 from rosetta_jit.language.walk import rebuilt
-from rosetta_jit.model.types import Array, Bytes, Int
+from rosetta_jit.model.types import Array, Bytes, Int, String
 
 if TYPE_CHECKING:
     from rosetta_jit.language.typed import Expr
 
 SECOND, ZERO = Const(10**9, INT64), Const(0, INT64)
+
+JPEG = Const("jpeg", String())
+"""The format of which pixels do not come back."""
 
 Truth = Callable[["Expr"], "bool | None"]
 
@@ -41,6 +45,10 @@ def simplified(expr: Expr, truth: Truth) -> Expr | None:
             return whole if function == "seconds" else behind
         case Call("repeated", (Call("run_values", (array,)), Call("run_lengths", (other,)))) if array == other:
             return array
+        case Call("decompress", (Call("compress", (pixels, *told)), *asked)) if told == asked and told[0] != JPEG:
+            return pixels
+        case Call(("image_width" | "image_height" | "image_channels") as measure, (Call("compress", (_, _, width, height, channels, _)),)):
+            return {"image_width": width, "image_height": height, "image_channels": channels}[measure]
         case Call("signal", (Call("signal_bytes", (_, *signals)), described)):
             return _signal(expr, signals, described)
         case Call("signal_bytes", (Const(size), *signals)):
