@@ -11,11 +11,11 @@ from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in,
 from rosetta_jit.language.both_ways.inverse_parts import below, part, plain, put_together, rest_of, taken_part
 from rosetta_jit.language.both_ways.knowledge import Beside, Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.presence import flag_of, is_kept
-from rosetta_jit.language.both_ways.signal_relations import frames_of
+from rosetta_jit.language.both_ways.signal_relations import frames_of, told_in_all
 from rosetta_jit.language.both_ways.text_parts import numbers_of_texts
 from rosetta_jit.language.function import Affine, written
 from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
-from rosetta_jit.model.mapping import Arranged, For, Relation
+from rosetta_jit.model.mapping import Arranged, For, Relation, When
 from rosetta_jit.model.walk import Field, fields_of, parts, path_of, rebuilt
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops, is_assigned: 
     for rule in rules:
         if (flag := flag_of(rule)) is not None and not is_assigned(flag[1]) and is_kept(flag, rules):
             known.learn_flag(*flag, loops)
+        if isinstance(rule, When) and not loops:
+            known.signals |= told_in_all(rule, known.type_of)
     relations = [each for each in _relations(rules, loops) if not _is_left(each[0], is_assigned)]
     done = _pairs(known, relations) | _texts(known, relations, is_assigned) | _frames(known, relations, is_assigned)
     done |= _images(known, relations, is_assigned)
