@@ -199,6 +199,24 @@ def _undone(other: str) -> Callable[[model.Call, model.Expr], tuple[model.Expr, 
     return solved
 
 
+def _pixels_again(call: typed.Call) -> typed.Expr | None:
+    """The pixels that were compressed with the same format and measures, but by JPEG."""
+    match call.arguments:
+        case typed.Call("compress", (pixels, *told)), *asked if told == asked and told[0] != typed.Const("jpeg", String()):
+            return pixels
+        case _:
+            return None
+
+
+def _measure_again(call: typed.Call) -> typed.Expr | None:
+    """What an image was said to measure that was compressed."""
+    match call.arguments:
+        case (typed.Call("compress", (_, _, *measures)),):
+            return measures[MEASURES.index(call.function)]
+        case _:
+            return None
+
+
 PIXELS = Row("images", "`decompress(b)`", ("bytes of a PNG or JPEG image", "its pixels, as bytes"))
 MEASURED = Row(
     "images",
@@ -219,12 +237,10 @@ DEPTH = Row("images", "`image_depth(b)`", ("bytes of an image", "int64: bits of 
 JPEG, ANEW = "JPEG changes pixels a little", "what is compressed anew has other bytes"
 OF_PIXELS = replace(undone_by(compress=loses(ANEW)), of_several=JPEG)
 OF_IMAGES = replace(undone_by(decompress=loses(JPEG)), of_several=ANEW)
-"""What comes back; that of PNG all pixels do, `rosetta_jit.language.laws.parts` knows."""
-
 of_images = partial(Function, operation="image compression", kept=False)
 FUNCTIONS = (
-    of_images("decompress", _type_of_image, _lower_image, _undone("compress"), OF_PIXELS, (PIXELS, MEASURED)),
+    of_images("decompress", _type_of_image, _lower_image, _undone("compress"), OF_PIXELS, (PIXELS, MEASURED), undoes=_pixels_again),
     of_images("compress", _type_of_image, _lower_image, _undone("decompress"), OF_IMAGES, (IMAGE,)),
-    *(of_images(name, _type_of_image, _lower_measure, SEVERAL, NOT_FOLLOWED, (SIZES,)) for name in MEASURES[:3]),
+    *(of_images(name, _type_of_image, _lower_measure, SEVERAL, NOT_FOLLOWED, (SIZES,), undoes=_measure_again) for name in MEASURES[:3]),
     of_images("image_depth", _type_of_image, _lower_measure, SEVERAL, NOT_FOLLOWED, (DEPTH,)),
 )

@@ -15,7 +15,7 @@ from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Select, Unary
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.affine_steps import Error, LostError
-from rosetta_jit.language.conversions import FLOAT64
+from rosetta_jit.language.conversions import FLOAT64, bare
 from rosetta_jit.language.function import SEVERAL, ByType, Function, Texts, Whole
 from rosetta_jit.language.functions.texts import TEXT, is_textual, type_texts
 from rosetta_jit.language.typed import INT64
@@ -201,6 +201,24 @@ def _spelt_again(opening: typed.Call, _step: typed.Call, _before: Value) -> Valu
     raise LostError(DATE if opening.function == "nanoseconds" else "it becomes a whole second, in UTC")
 
 
+def _part_again(number: int, call: typed.Call) -> typed.Expr | None:
+    """The seconds, or the nanoseconds behind them, of a date that is spelt from both."""
+    match call.arguments:
+        case (typed.Call("iso8601", (_, _) as both),):
+            return both[number]
+        case _:
+            return None
+
+
+def _whole_moment(call: typed.Call) -> typed.Expr | None:
+    """What both parts of one moment make: where they do not fit an int64 of nanoseconds, this is not computed."""
+    match tuple(map(bare, call.arguments)):
+        case typed.Call("seconds", (moment,)), typed.Call("fraction", (other,)) if moment == other:
+            return replace(call, arguments=(typed.Call("nanoseconds", (moment,), INT64),))
+        case _:
+            return None
+
+
 of_moments = partial(Function, operation="date manipulation", kept=False)
 
 AS_TEXT = row(
@@ -231,6 +249,7 @@ FUNCTIONS = (
         _nanoseconds_of,
         undone_by(nanoseconds=_dated_again, seconds=_whole_again),
         AS_TEXT,
+        undoes=_whole_moment,
         split=_split,
     ),
     of_moments(
@@ -240,6 +259,7 @@ FUNCTIONS = (
         _nanoseconds_of,
         replace(undone_by(nanoseconds=loses(FLOATING), seconds=loses("large integers are rounded to a float")), of_several=FLOATING),
         AS_FLOAT,
+        undoes=_whole_moment,
         split=_split,
     ),
     of_moments(
@@ -249,9 +269,10 @@ FUNCTIONS = (
         ByType(_moment_of_seconds),
         undone_by(iso8601=_spelt_again, timestamp=loses("what is behind the point is dropped")),
         (*OF_TEXT, *OF_FLOAT),
+        undoes=partial(_part_again, 0),
         whole=Whole("fraction", _below, _joined),
     ),
-    of_moments("fraction", OF_MOMENT, _lower_fraction, SEVERAL, undone_by(), (*OF_TEXT, *OF_FLOAT)),
+    of_moments("fraction", OF_MOMENT, _lower_fraction, SEVERAL, undone_by(), (*OF_TEXT, *OF_FLOAT), undoes=partial(_part_again, 1)),
     of_moments(
         "nanoseconds",
         _type_nanoseconds,

@@ -286,6 +286,15 @@ def row(forms: str, gives: str, kind: str = "") -> tuple[Row]:
     return (Row("arrays", forms, (gives, kind)),)
 
 
+def _runs_again(call: typed.Call) -> typed.Expr | None:
+    """The array of which there are all runs."""
+    match call.arguments:
+        case typed.Call("run_values", (array,)), typed.Call("run_lengths", (other,)) if array == other:
+            return array
+        case _:
+            return None
+
+
 INTEGERS, OCTETS, BITS, ANY = (NUMBERS, _is_integer), (BYTES, _is_octet), (FLAGS, _is_flag), (SCALARS, _is_scalar)
 AS_ONE = "runs of the same value come back as one, and empty ones not at all"
 of_arrays = partial(Function, operation="array reorder")
@@ -313,6 +322,7 @@ FUNCTIONS = (
         SEVERAL,
         replace(undone_by(), of_several=AS_ONE),
         row("`repeated(a, counts)`", "each element so many times, end to end; the arrays are of one length", "`count`"),
+        undoes=_runs_again,
         split=_split_runs,
     ),
     of_arrays(

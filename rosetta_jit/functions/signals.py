@@ -13,7 +13,7 @@ from rosetta_jit.catalogue import signals as words
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Wire
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
-from rosetta_jit.language.conversions import as_int64, describe
+from rosetta_jit.language.conversions import as_int64, bare, describe
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
 from rosetta_jit.language.functions.texts import is_bytes
 from rosetta_jit.language.limits import MAX_SIGNAL_BYTES
@@ -171,6 +171,35 @@ def _and(value: Expr, mask: int) -> Expr:
     return Binary("and", value, Const("u64", mask))
 
 
+# --- laws ----------------------------------------------------------------------------------------------------------------
+
+
+def _number_again(call: typed.Call) -> typed.Expr | None:
+    """The number that was put into a frame at this place."""
+    match call.arguments:
+        case typed.Call("signal_bytes", (_, *signals)), described:
+            number = dict(zip(signals[::2], map(bare, signals[1::2]), strict=True)).get(described)
+            return number if number is None or number.type == call.type else typed.Convert(number, call.type, "exact", call.span)
+        case _:
+            return None
+
+
+def _frame_again(call: typed.Call) -> typed.Expr | None:
+    """The frame whose signals are put where they were read, if they are all of its bits."""
+    size, *signals = call.arguments
+    bits: set[int] = set()
+    frames: list[typed.Expr] = []
+    for described, number in zip(signals[::2], map(bare, signals[1::2]), strict=True):
+        match number:
+            case typed.Call("signal", (frame, also)) if also == described:
+                bits |= _described(described).bits
+                frames.append(frame)
+            case _:
+                return None
+    is_whole = isinstance(size, typed.Const) and len(bits) == 8 * int(size.value) == 8 * (_fixed_size(frames[0].type) or 0)
+    return frames[0] if is_whole and all(each == frames[0] for each in frames) else None
+
+
 # --- records -------------------------------------------------------------------------------------------------------------
 
 SIGNAL = Row(
@@ -188,6 +217,6 @@ FRAME = Row(
 )
 
 FUNCTIONS = (
-    Function("signal", _type_signal, _lower_signal, SEVERAL, NOT_FOLLOWED, (SIGNAL,)),
-    Function("signal_bytes", _type_frame, _lower_frame, SEVERAL, NOT_FOLLOWED, (FRAME,), kept=False),
+    Function("signal", _type_signal, _lower_signal, SEVERAL, NOT_FOLLOWED, (SIGNAL,), undoes=_number_again),
+    Function("signal_bytes", _type_frame, _lower_frame, SEVERAL, NOT_FOLLOWED, (FRAME,), undoes=_frame_again, kept=False),
 )

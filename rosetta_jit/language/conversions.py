@@ -244,6 +244,16 @@ def other_way(source: Type, target: Type) -> str:
             return ""
 
 
+def bare(value: Expr) -> Expr:
+    """An integer, bool or enum without the conversions that leave it the same number."""
+    whole = Int | Bool | Enum
+    while isinstance(value, Convert) and value.rule in {"widen", "exact"} and isinstance(value.type, whole):
+        if not isinstance(value.operand.type, whole):
+            break
+        value = value.operand
+    return value
+
+
 def as_int64(value: Expr) -> Expr | None:
     """An integer of any type but uint64 as int64."""
     return convert(value, INT64) if isinstance(value.type, Int) else None

@@ -40,6 +40,9 @@ if TYPE_CHECKING:
     Back = Callable[[typed.Call, typed.Call, Value], Value | None]
     """Of a call, the one behind it, and the value before both: the value behind both; None where it is not undone."""
 
+    Undoes = Callable[[typed.Call], Expr | None]
+    """Of a call, the value that comes back in it; None where its arguments are not undone."""
+
 GROUP = "rosetta_jit.functions"
 """The entry-point group in which packages offer functions of their own: a `Function` each."""
 
@@ -257,6 +260,9 @@ class Function:
         why there is none.
     law
         What comes back of its argument.
+    undoes
+        What a call comes to whose arguments are calls that it undoes, where one value becomes several or several one:
+        `seconds(iso8601(n, i))` is n.
     rows
         Its rows in the reference; functions that share a row share the record of it.
     operation
@@ -285,6 +291,7 @@ class Function:
     rows: tuple[Row, ...]
     operation: Operation = "arithmetic"
     units: Units = Units()
+    undoes: Undoes | None = None
     split: Split | None = None
     whole: Whole | None = None
     remark: str = ""

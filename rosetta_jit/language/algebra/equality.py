@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.algebra.polynomial import TooComplexError, polynomial_of
-from rosetta_jit.language.algebra.quotients import NOTHING, are_same, mentions, only_atom
-from rosetta_jit.language.typed import BOOL, Access, Binary, Const, Convert, Has, IndexStep, LenOf, Local, Nearest, StateVariable
+from rosetta_jit.language.algebra.quotients import NOTHING, QUOTIENTS, are_same, mentions, only_atom
+from rosetta_jit.language.typed import BOOL, Access, Binary, Call, Const, Convert, Has, IndexStep, LenOf, Local, Nearest, StateVariable
 from rosetta_jit.language.walk import operands, parts, renamed
 from rosetta_jit.model.types import Int
 
@@ -102,6 +102,15 @@ def same_number(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:
         return are_same(polynomial_of(value), polynomial_of(goal), facts)
     except TooComplexError:
         return False
+
+
+def own_part(expr: Expr, facts: Callable[[], Facts]) -> Expr | None:
+    """The part of an integer that it is the same as: of `floor_divide(x * c + y, c)` the x, if y is known to be from 0 to below c."""
+    if not isinstance(expr.type, Int) or not any(isinstance(each, Call) and each.function in QUOTIENTS for each in parts(expr)):
+        return None
+    known = facts()
+    inner = (each for each in parts(expr) if each is not expr and isinstance(each.type, Int) and not isinstance(each, Const | Local))
+    return next((each for each in inner if same_number(expr, each, known)), None)
 
 
 def given_back(value: Expr) -> Expr:

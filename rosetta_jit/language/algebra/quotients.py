@@ -7,6 +7,7 @@ nanoseconds(x, y) = x · 10⁹ + y     of which 0 ≤ y < 10⁹ is checked
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.algebra.polynomial import Atom, Polynomial, add, multiply, number, product, shown_atom, subtract
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
 
 
 SECOND = 10**9
+
+QUOTIENTS = frozenset(("divide", "floor_divide", "modulo", "nanoseconds"))
+"""Functions by which integers are taken apart and put together."""
 
 Fact = tuple[Atom, Polynomial]
 """What an atom is equal to."""
@@ -93,14 +97,20 @@ def _known(atom: Atom, facts: Facts) -> Polynomial | None:
         case Atom("divide", (total, divisor)):
             return _quotient(_reduced(total, facts), divisor)
         case Atom("floor_divide", (total, divisor)) if (by := divisor.constant() or 0) > 0:
-            return _floored(_reduced(total, facts), by, facts)
+            return _floored(_reduced(total, facts), by, _with_checked(total, facts))
         case Atom("modulo", (total, divisor)) if (by := divisor.constant() or 0) > 0:
             reduced = _reduced(total, facts)
-            return add(reduced, _floored(reduced, by, facts), -by)
+            return add(reduced, _floored(reduced, by, _with_checked(total, facts)), -by)
         case Atom("nanoseconds", (whole, behind)):
             return _reduced(add(behind, whole, SECOND), facts)
         case _:
             return None
+
+
+def _with_checked(total: Polynomial, facts: Facts) -> Facts:
+    """What is known besides where a number is computed: `nanoseconds(x, y)` has checked that y is less than a second."""
+    pairs = (atom.arguments for atom in _atoms(total) if atom.head == "nanoseconds" and len(atom.arguments) == 2)
+    return replace(facts, digits=(*facts.digits, *((behind, SECOND) for _, behind in pairs)))
 
 
 def _floored(total: Polynomial, by: int, facts: Facts) -> Polynomial:

@@ -20,7 +20,7 @@ from rosetta_jit.language.affine_steps import UNSHOWN as NOT_SHOWN
 from rosetta_jit.language.conversions import EXACT_BITS
 from rosetta_jit.language.function import Affine, NotFollowed, Undone, functions
 from rosetta_jit.language.laws.integers import as_whole, squeezed
-from rosetta_jit.language.typed import Access, Binary, Call, Choice, Const, Convert, Given, LenOf, Nearest, Unary
+from rosetta_jit.language.typed import Binary, Call, Choice, Const, Convert, Given, Nearest, Unary
 from rosetta_jit.model.types import Float, Int
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -75,12 +75,9 @@ def come_back(expr: Expr, goal: Expr) -> Outcome:
     return UNSHOWN if value.opened else _outcome(value)
 
 
-def field_in(expr: Expr) -> Access | LenOf | None:
-    """The field that an expression is a chain of steps from."""
-    while not isinstance(expr, Access | LenOf):
-        inner = _inner(expr)
-        if inner is None:
-            return None
+def source_of(expr: Expr) -> Expr:
+    """What an expression is a chain of steps from: a field, or a value of several."""
+    while (inner := _inner(expr)) is not None:
         expr = inner
     return expr
 

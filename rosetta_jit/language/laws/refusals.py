@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.conversions import bounds, same
-from rosetta_jit.language.laws.chain import come_back, field_in
-from rosetta_jit.language.typed import Convert
+from rosetta_jit.language.laws.chain import come_back, source_of
+from rosetta_jit.language.typed import Access, Convert, LenOf
 from rosetta_jit.language.walk import parts
 from rosetta_jit.model.types import Float, Int
 
@@ -36,8 +36,8 @@ def _exact(expr: Expr) -> Iterator[Convert]:
 
 def _fits(conversion: Convert, of: Callable[[Expr], Expr]) -> bool:
     made = of(conversion)
-    field = field_in(made)
-    if field is not None and same(field.type, conversion.type) and come_back(made, field) is None:
+    source = source_of(made)
+    if isinstance(source, Access | LenOf) and same(source.type, conversion.type) and come_back(made, source) is None:
         return True
     source = of(conversion.operand).type
     if not isinstance(source, Int) or not isinstance(conversion.type, Int):

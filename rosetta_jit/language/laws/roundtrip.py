@@ -9,12 +9,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.algebra.equality import digit, fact, has_local, reads_other, same_number, same_place, same_ranges, unify
+from rosetta_jit.language.algebra.equality import digit, fact, has_local, own_part, reads_other, same_number, same_place, same_ranges, unify
 from rosetta_jit.language.algebra.quotients import Facts
 from rosetta_jit.language.conversions import adapt, same
-from rosetta_jit.language.laws.chain import come_back, field_in
+from rosetta_jit.language.function import functions
+from rosetta_jit.language.laws.chain import come_back, source_of
 from rosetta_jit.language.laws.loop_orders import round_of
-from rosetta_jit.language.laws.parts import simplified
 from rosetta_jit.language.laws.refusals import may_refuse
 from rosetta_jit.language.laws.writes import Write, changed, is_left_absent, is_part_of, is_within, union_depths, writes_of
 from rosetta_jit.language.limits import MAX_LOOKED, MAX_ORDERED
@@ -332,12 +332,16 @@ class Trip:
                 return _logic(operator == "and", left, right, expr)
             case Choice(cases, otherwise):
                 return _decided(cases, otherwise, expr)
-            case Convert() | Unary() | Binary() | Nearest():
-                return _itself(expr) or simplified(expr, self.truth) or expr
-            case Call():
-                return simplified(expr, self.truth) or expr
+            case Convert() | Unary() | Nearest():
+                return _before(expr) or expr
+            case Binary() | Call():
+                return _before(expr) or self.own_part(expr) or _undoing(expr) or expr
             case _:
                 return expr
+
+    def own_part(self, expr: Expr) -> Expr | None:
+        """The part of an integer that it is the same as."""
+        return None if reads_other(expr, self.origin) else own_part(expr, lambda: self.facts(self.origin))
 
 
 def _logic(is_and: bool, left: Expr, right: Expr, expr: Expr) -> Expr:
@@ -363,10 +367,16 @@ def _decided(cases: tuple[tuple[Expr, Expr], ...], otherwise: Expr | None, choic
     return replace(choice, cases=tuple(left), otherwise=otherwise)
 
 
-def _itself(expr: Expr) -> Expr | None:
-    """The field that an expression is, when all that is done to it is undone."""
-    leaf = field_in(expr)
-    return leaf if leaf is not None and same(leaf.type, expr.type) and come_back(expr, leaf) is None else None
+def _before(expr: Expr) -> Expr | None:
+    """The value before all steps of an expression, if they leave it as it was."""
+    source = source_of(expr)
+    return source if source is not expr and same(source.type, expr.type) and come_back(expr, source) is None else None
+
+
+def _undoing(expr: Expr) -> Expr | None:
+    """What a call comes to that undoes the calls in its arguments."""
+    undoes = functions()[expr.function].undoes if isinstance(expr, Call) else None
+    return None if undoes is None or not isinstance(expr, Call) else undoes(expr)
 
 
 def _without_span(expr: Expr) -> Expr:
