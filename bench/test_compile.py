@@ -15,11 +15,12 @@ from bench.processes import run, took_s
 COMPILE = """
 import json, sys, time
 import rosetta_jit as rj
-of = {"decode": rj.Decoder.of, "encode": rj.Encoder.of}
-of[sys.argv[1]]("std_msgs/Header", encoding="ros1")
-for type, options in map(json.loads, sys.argv[2:]):
+program = {"decode": rj.Decoder, "encode": rj.Encoder}[sys.argv[1]]
+program.of("std_msgs/Header", encoding="ros1")
+for what, options in map(json.loads, sys.argv[2:]):
+    make = program if what.endswith(".mapping") else program.of
     started = time.process_time()
-    of[sys.argv[1]](type, **options)
+    make(what, **options)
     print(time.process_time() - started)
 """
 """After a first program, which pays for the compiler's import."""
@@ -116,7 +117,7 @@ def test_conformance_type(record):
     if folder is None:
         pytest.skip("CONFORMANCE_PROTOS does not name the folder of protobuf's own test messages")
     name = "google/protobuf/test_messages_proto3.proto"
-    options = {"encoding": "protobuf", "schema": str(Path(folder) / name)}
+    options = {"encoding": "protobuf", "schema": {name: (Path(folder) / name).read_text("utf-8")}}
     for direction, does in (("decode", "decoder"), ("encode", "encoder")):
         took = compiled_s(direction, ("protobuf_test_messages.proto3.TestAllTypesProto3", options))
         record(f"compile, protobuf's TestAllTypesProto3, {does}", Spread.of(took), None, "s", "aim 3 s")
@@ -135,8 +136,32 @@ def test_fifty(record, tmp_path):
     record("fifty everyday types, from the cache", more, None, "ms", "beyond a process that imports us and numpy; aim 100 ms")
 
 
-@pytest.mark.parametrize(("what", "kind"), [("fields", "float64"), ("texts", "string")])
-def test_growth(what, kind, effort, draw):
+def nested(count):
+    """A message of so many types, each of them once."""
+    inner = {f"bench/msg/Inner{index}.msg": "string name\nfloat64 value" for index in range(count)}
+    text = "\n".join(f"Inner{index} field{index}" for index in range(count))
+    return "bench/Fields", {"encoding": "ros1", "schema": {"bench/msg/Fields.msg": text, **inner}}
+
+
+def mapped(count):
+    """A mapping of so many rules."""
+    fields = "\n".join(f"float64 field{index}" for index in range(count))
+    rules = "\n".join(f"  .field{index} = radians(.field{index})" for index in range(count))
+    head = 'import "bench/msg/Wire.msg"\nimport "bench/msg/Held.msg"\ndata-holder: bench/Held\nwire-schema: bench/Wire\nunpack-rules:'
+    files = {"bench/msg/Wire.msg": fields, "bench/msg/Held.msg": fields, "m.mapping": f"{head}\n{rules}\n"}
+    return "m.mapping", {"encoding": "ros1", "schema": files}
+
+
+GROWING = {
+    "a ROS 1 message of fields": lambda count: ros1(count, "float64"),
+    "a ROS 1 message of texts": lambda count: ros1(count, "string"),
+    "a ROS 1 message of nested types": nested,
+    "a mapping of rules": mapped,
+}
+
+
+@pytest.mark.parametrize("what", GROWING)
+def test_growth(what, effort, draw):
     counts = [10, 100] if effort.quick else [30, 100, 300, 1000]
-    points = [(count, Spread.of(compiled_s("decode", ros1(count, kind)))) for count in counts]
-    draw(f"compile of a ROS 1 message of {what}", what, "s", (Series("decoder", "ours", tuple(points)),))
+    points = [(count, Spread.of(compiled_s("decode", GROWING[what](count)))) for count in counts]
+    draw(f"compile of {what}", what.rpartition(" of ")[2], "s", (Series("decoder", "ours", tuple(points)),))

@@ -104,7 +104,8 @@ def __getattr__(name: str) -> Any:
     if name in _LAZY:
         from rosetta_jit.startup.garbage import imported
 
-        return getattr(imported(_LAZY[name]), name)
+        found = globals()[name] = getattr(imported(_LAZY[name]), name)
+        return found
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

@@ -132,10 +132,10 @@ def interpreted_kernel(build: Any, number: int) -> run.Run:
     return run.python_run(runner_of(build.backend)(kernel, functions), keeps=bool(kernel.registers))
 
 
-def sites_of(header: Mapping[str, Any], kernel: int) -> tuple[run.Site, ...]:
+def sites_of(header: Mapping[str, Any], kernel: int) -> run.Sites:
     """Where a kernel can fail, by number."""
     sites = header["sites"]
-    return tuple(run.Site.of(site) for site in sites[kernel]) if kernel < len(sites) else ()
+    return run.Sites(sites[kernel]) if kernel < len(sites) else run.NO_SITES
 
 
 def _warn(why: str) -> None:

@@ -52,11 +52,6 @@ def needs_library(name: str, what: str) -> Diagnostic:
     )
 
 
-def not_in_language(name: str, what: str, language: str) -> Diagnostic:
-    """What a kernel does and generated source in that language cannot."""
-    return Diagnostic("error", "not-generated", f"{name} needs {what}, which source in `{language}` cannot have", help="generate C or C++")
-
-
 def needs_c_library(name: str, what: str) -> Diagnostic:
     """Freestanding source that needs what a C library has."""
     return Diagnostic("error", "not-freestanding", f"{name} needs {what} of the C library", help="generate it without --freestanding")

@@ -75,8 +75,14 @@ def log_cut(name: str, at: int) -> Diagnostic:
 
 def file_cut(name: str, size: int, promised: int) -> Diagnostic:
     """A file that is shorter than its header says."""
-    help_ = "what is there is read; bytes that are missing of the last page are taken as zeros, also within messages and their times"
+    help_ = "what is whole is read"
     return Diagnostic("warning", "log-cut", f"{name} is cut short: it has {size} bytes of {promised}", help=help_)
+
+
+def rows_cut(name: str, count: int) -> Diagnostic:
+    """Messages of a file of SQLite that lie partly behind its end."""
+    what = "a message reaches" if count == 1 else f"{count} messages reach"
+    return Diagnostic("warning", "log-cut", f"{name}: {what} beyond the end of the file", help="left out")
 
 
 def damaged(name: str, at: int) -> Diagnostic:

@@ -90,7 +90,7 @@ class Program:
         What is told to a kernel before a message, and taken back where that cannot be decoded; None of kernels that do not ask.
     """
 
-    sites: tuple[run.Site, ...]
+    sites: run.Sites
     limit: int
     tell: Callable[[Lanes, int], None] | None
     untell: Callable[[Lanes], None]

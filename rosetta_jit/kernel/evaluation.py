@@ -4,33 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.kernel import arithmetic, decimals
+from rosetta_jit.kernel import arithmetic, decimals, ir
 from rosetta_jit.kernel.arithmetic import demand
-from rosetta_jit.kernel.ir import (
-    WIDTH,
-    Binary,
-    Bits,
-    Capacity,
-    Compare,
-    Const,
-    Convert,
-    Digits,
-    Fits,
-    Get,
-    HostValue,
-    IsText,
-    Load,
-    Local,
-    Lookup,
-    Nearest,
-    Place,
-    Register,
-    Scale,
-    Select,
-    Unary,
-    Used,
-    Wire,
-)
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -39,7 +14,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.kernel.arithmetic import Value
     from rosetta_jit.kernel.host import Functions
-    from rosetta_jit.kernel.ir import Address, Expr, Known, Routine
 
 
 @dataclass(slots=True)
@@ -51,14 +25,14 @@ class Machine:
     lanes: list[memoryview]
     capacities: list[int]
     used: list[int]
-    routines: Mapping[str, Routine]
+    routines: Mapping[str, ir.Routine]
     told: Mapping[str, int]
     registers: tuple[int, ...]
     functions: Functions
     locals: dict[str, Value]
 
 
-def integer(machine: Machine, expr: Expr) -> int:
+def integer(machine: Machine, expr: ir.Expr) -> int:
     """What an expression is worth that is an integer."""
     value = value_of(machine, expr)
     if not isinstance(value, int):
@@ -66,39 +40,39 @@ def integer(machine: Machine, expr: Expr) -> int:
     return value
 
 
-def value_of(machine: Machine, expr: Expr) -> Value:
+def value_of(machine: Machine, expr: ir.Expr) -> Value:
     """What an expression is worth."""
     match expr:
-        case Const(type_, value):
+        case ir.Const(type_, value):
             return arithmetic.constant(type_, value)
-        case Local(_, name):
+        case ir.Local(_, name):
             return machine.locals[name]
-        case Load(type_, at, order):
-            return arithmetic.from_bytes(type_, bytes(bytes_at(machine, Wire(at), WIDTH[type_])), order)
-        case Get(type_, place):
-            return arithmetic.from_bytes(type_, bytes(field(machine, place, WIDTH[type_])))
-        case Used() | Capacity() | HostValue() | Register():
+        case ir.Load(type_, at, order):
+            return arithmetic.from_bytes(type_, bytes(bytes_at(machine, ir.Wire(at), ir.WIDTH[type_])), order)
+        case ir.Get(type_, place):
+            return arithmetic.from_bytes(type_, bytes(field(machine, place, ir.WIDTH[type_])))
+        case ir.Used() | ir.Capacity() | ir.HostValue() | ir.Register():
             return _known(machine, expr)
-        case Unary(function, operand):
+        case ir.Unary(function, operand):
             return arithmetic.unary(type_of(operand), function, value_of(machine, operand))
-        case Binary(op, left, right):
+        case ir.Binary(op, left, right):
             return arithmetic.binary(type_of(left), op, value_of(machine, left), value_of(machine, right))
-        case Compare(op, left, right):
+        case ir.Compare(op, left, right):
             return arithmetic.compare(op, value_of(machine, left), value_of(machine, right))
-        case Fits(op, left, right):
+        case ir.Fits(op, left, right):
             return arithmetic.fits(op, integer(machine, left), integer(machine, right))
-        case Convert(type_, operand) | Bits(type_, operand):
+        case ir.Convert(type_, operand) | ir.Bits(type_, operand):
             value = value_of(machine, operand)
-            is_bits = isinstance(expr, Bits)
+            is_bits = isinstance(expr, ir.Bits)
             return arithmetic.same_bits(type_, type_of(operand), value) if is_bits else arithmetic.convert(type_, value)
-        case Select(condition, then, otherwise):
+        case ir.Select(condition, then, otherwise):
             chosen, other = value_of(machine, then), value_of(machine, otherwise)
             return chosen if value_of(machine, condition) else other
-        case IsText(address, size):
+        case ir.IsText(address, size):
             return _is_text(bytes(bytes_at(machine, address, integer(machine, size))))
-        case Nearest() | Digits() | Scale():
+        case ir.Nearest() | ir.Digits() | ir.Scale():
             return _decimal(machine, expr)
-        case Lookup(_, values, index):
+        case ir.Lookup(_, values, index):
             number = integer(machine, index)
             demand(0 <= number < len(values), f"no value {number} among {len(values)}")
             return values[number]
@@ -106,27 +80,27 @@ def value_of(machine: Machine, expr: Expr) -> Value:
             assert_never(expr)
 
 
-def _known(machine: Machine, expr: Known) -> int:
+def _known(machine: Machine, expr: ir.Known) -> int:
     match expr:
-        case Used(lane):
+        case ir.Used(lane):
             return machine.used[lane]
-        case Capacity(lane):
+        case ir.Capacity(lane):
             return machine.capacities[lane]
-        case HostValue(what):
+        case ir.HostValue(what):
             return machine.told[what]
-        case Register(number):
+        case ir.Register(number):
             return machine.registers[number]
         case _:
             assert_never(expr)
 
 
-def _decimal(machine: Machine, expr: Nearest | Digits | Scale) -> Value:
+def _decimal(machine: Machine, expr: ir.Nearest | ir.Digits | ir.Scale) -> Value:
     match expr:
-        case Nearest(address, size, exponent):
+        case ir.Nearest(address, size, exponent):
             return decimals.nearest(bytes(bytes_at(machine, address, integer(machine, size))), integer(machine, exponent))
-        case Digits(value, places):
+        case ir.Digits(value, places):
             return decimals.digits(type_of(value), float(value_of(machine, value)), places)
-        case Scale(value):
+        case ir.Scale(value):
             return decimals.scale(type_of(value), float(value_of(machine, value)))
         case _:
             assert_never(expr)
@@ -140,16 +114,16 @@ def _is_text(data: bytes) -> bool:
     return True
 
 
-def bytes_at(machine: Machine, address: Address, size: int) -> memoryview:
+def bytes_at(machine: Machine, address: ir.Address, size: int) -> memoryview:
     """``size`` bytes of the message or of a lane, which must lie inside."""
     demand(size >= 0, "a negative size")
     match address:
-        case Wire(at):
+        case ir.Wire(at):
             start = integer(machine, at)
             low, high = integer(machine, BEGIN), integer(machine, END)
             demand(low <= start <= high - size, f"[{start}, {start + size}) is outside the message")
             return machine.message[start : start + size]
-        case Place(lane, row, offset):
+        case ir.Place(lane, row, offset):
             stride, index = machine.strides[lane], integer(machine, row)
             start = index * stride + offset
             demand(index >= 0 <= offset, "a negative place")
@@ -159,7 +133,7 @@ def bytes_at(machine: Machine, address: Address, size: int) -> memoryview:
             assert_never(address)
 
 
-def field(machine: Machine, place: Place, width: int) -> memoryview:
+def field(machine: Machine, place: ir.Place, width: int) -> memoryview:
     """One field of one row."""
     demand(place.offset + width <= machine.strides[place.lane], "a field outside its row")
     return bytes_at(machine, place, width)

@@ -8,32 +8,10 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from rosetta_jit.kernel import arithmetic
+from rosetta_jit.kernel import arithmetic, ir
 from rosetta_jit.kernel.arithmetic import demand
 from rosetta_jit.kernel.evaluation import Machine, bytes_at, field, integer, value_of
 from rosetta_jit.kernel.host import NO_FUNCTIONS, RefusedError
-from rosetta_jit.kernel.ir import (
-    WIDTH,
-    Advance,
-    Assign,
-    Call,
-    Copy,
-    Expect,
-    Fill,
-    For,
-    HostCall,
-    If,
-    Let,
-    Require,
-    Reserve,
-    Return,
-    SetField,
-    Store,
-    Switch,
-    Var,
-    While,
-    Wire,
-)
 from rosetta_jit.kernel.shape import extents_of
 from rosetta_jit.kernel.state import (
     CAPACITY,
@@ -55,7 +33,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, MutableSequence, Sequence
 
     from rosetta_jit.kernel.host import Functions
-    from rosetta_jit.kernel.ir import Block, Failure, Kernel, Stmt
 
     Memory = bytes | bytearray | memoryview
     State = np.ndarray[tuple[int], np.dtype[np.int64]]
@@ -90,13 +67,13 @@ _Outcome = _Done | _Failed | _Full | None
 """What a statement did: a message done, a failure, a full lane, or None to go on."""
 
 
-def runnable(kernel: Kernel, functions: Functions) -> Callable[..., int]:
+def runnable(kernel: ir.Kernel, functions: Functions) -> Callable[..., int]:
     """A kernel as a function that runs it; ``functions`` are those of the host."""
     return partial(run, kernel, functions=functions)
 
 
 def run(
-    kernel: Kernel,
+    kernel: ir.Kernel,
     buffer: Memory,
     begin: int,
     end: int,
@@ -167,7 +144,7 @@ def run(
     return _report(state, worst)
 
 
-def _machine(kernel: Kernel, buffer: Memory, state: State, lanes: Sequence[Memory], row: int, functions: Functions) -> Machine:
+def _machine(kernel: ir.Kernel, buffer: Memory, state: State, lanes: Sequence[Memory], row: int, functions: Functions) -> Machine:
     """What each attempt starts with."""
     views = [memoryview(lane).cast("B") for lane in lanes]
     views += [memoryview(bytearray())] * (len(kernel.strides) - len(views))
@@ -187,7 +164,7 @@ def _report(state: State, failed: _Failed) -> int:
     return -1 - failed.site
 
 
-def _block(machine: Machine, block: Block) -> _Outcome:
+def _block(machine: Machine, block: ir.Block) -> _Outcome:
     for stmt in block:
         outcome = _statement(machine, stmt)
         if outcome is not None:
@@ -195,43 +172,43 @@ def _block(machine: Machine, block: Block) -> _Outcome:
     return None
 
 
-def _statement(machine: Machine, stmt: Stmt) -> _Outcome:
+def _statement(machine: Machine, stmt: ir.Stmt) -> _Outcome:
     match stmt:
-        case Require(at, size, failure):
+        case ir.Require(at, size, failure):
             start, length = integer(machine, at), integer(machine, size)
             inside = start >= 0 and length >= 0 and start + length <= integer(machine, END)
             return None if inside else _failed(machine, failure)
-        case Expect(condition, failure):
+        case ir.Expect(condition, failure):
             return None if value_of(machine, condition) else _failed(machine, failure)
-        case Let(name, value) | Var(name, value) | Assign(name, value):
+        case ir.Let(name, value) | ir.Var(name, value) | ir.Assign(name, value):
             machine.locals[name] = value_of(machine, value)
             return None
-        case Return(position, registers):
+        case ir.Return(position, registers):
             changed = tuple((number, integer(machine, value)) for number, value in registers)
             return _Done(integer(machine, position), changed)
-        case Reserve(lane, count):
+        case ir.Reserve(lane, count):
             rows = integer(machine, count)
             demand(rows >= 0, "a negative count of rows")
             room = machine.capacities[lane] - machine.used[lane]
             return None if rows <= room else _Full(lane, rows - room)
-        case Advance(lane, count):
+        case ir.Advance(lane, count):
             rows = integer(machine, count)
             demand(0 <= rows <= machine.capacities[lane] - machine.used[lane], "rows that were not reserved")
             machine.used[lane] += rows
             return None
-        case Store() | SetField() | Copy() | Fill():
+        case ir.Store() | ir.SetField() | ir.Copy() | ir.Fill():
             return _effect(machine, stmt)
-        case For() | While() | If() | Switch():
+        case ir.For() | ir.While() | ir.If() | ir.Switch():
             return _nested(machine, stmt)
-        case Call():
+        case ir.Call():
             return _call(machine, stmt)
-        case HostCall():
+        case ir.HostCall():
             return _host_call(machine, stmt)
         case _:
             assert_never(stmt)
 
 
-def _call(machine: Machine, call: Call) -> _Outcome:
+def _call(machine: Machine, call: ir.Call) -> _Outcome:
     routine = machine.routines[call.routine]
     names = BEGIN.name, END.name, *(parameter.name for parameter in routine.parameters)
     values = (value_of(machine, expr) for expr in (BEGIN, END, *call.arguments))
@@ -246,7 +223,7 @@ def _call(machine: Machine, call: Call) -> _Outcome:
     return outcome
 
 
-def _host_call(machine: Machine, call: HostCall) -> _Failed | None:
+def _host_call(machine: Machine, call: ir.HostCall) -> _Failed | None:
     given = [value_of(machine, argument) for argument in call.arguments]
     extents = [bytes_at(machine, each.address, integer(machine, each.size)) for each in extents_of(call)]
     read = extents[: len(call.inputs)]
@@ -258,44 +235,44 @@ def _host_call(machine: Machine, call: HostCall) -> _Failed | None:
     return None
 
 
-def _effect(machine: Machine, stmt: Store | SetField | Copy | Fill) -> None:
+def _effect(machine: Machine, stmt: ir.Store | ir.SetField | ir.Copy | ir.Fill) -> None:
     match stmt:
-        case Store(at, value, order):
+        case ir.Store(at, value, order):
             type_ = type_of(value)
-            bytes_at(machine, Wire(at), WIDTH[type_])[:] = arithmetic.to_bytes(type_, value_of(machine, value), order)
-        case SetField(place, value):
+            bytes_at(machine, ir.Wire(at), ir.WIDTH[type_])[:] = arithmetic.to_bytes(type_, value_of(machine, value), order)
+        case ir.SetField(place, value):
             type_ = type_of(value)
-            field(machine, place, WIDTH[type_])[:] = arithmetic.to_bytes(type_, value_of(machine, value))
-        case Copy(target, source, size):
+            field(machine, place, ir.WIDTH[type_])[:] = arithmetic.to_bytes(type_, value_of(machine, value))
+        case ir.Copy(target, source, size):
             length = integer(machine, size)
             bytes_at(machine, target, length)[:] = bytes(bytes_at(machine, source, length))
-        case Fill(target, size, byte):
+        case ir.Fill(target, size, byte):
             length = integer(machine, size)
             bytes_at(machine, target, length)[:] = bytes([byte]) * length
         case _:
             assert_never(stmt)
 
 
-def _nested(machine: Machine, stmt: For | While | If | Switch) -> _Outcome:
+def _nested(machine: Machine, stmt: ir.For | ir.While | ir.If | ir.Switch) -> _Outcome:
     match stmt:
-        case For(variable, count, body):
+        case ir.For(variable, count, body):
             for index in range(integer(machine, count)):
                 machine.locals[variable] = index
                 outcome = _block(machine, body)
                 if outcome is not None:
                     return outcome
             return None
-        case While():
+        case ir.While():
             return _while(machine, stmt)
-        case If(condition, then, otherwise):
+        case ir.If(condition, then, otherwise):
             return _block(machine, then if value_of(machine, condition) else otherwise)
-        case Switch(value, cases, default):
+        case ir.Switch(value, cases, default):
             return _block(machine, dict(cases).get(integer(machine, value), default))
         case _:
             assert_never(stmt)
 
 
-def _while(machine: Machine, loop: While) -> _Outcome:
+def _while(machine: Machine, loop: ir.While) -> _Outcome:
     while True:
         demand(all(value_of(machine, kept) for kept in loop.invariant), "an invariant does not hold")
         if not value_of(machine, loop.condition):
@@ -307,5 +284,5 @@ def _while(machine: Machine, loop: While) -> _Outcome:
         demand(integer(machine, loop.measure) > before, "a round made no progress")
 
 
-def _failed(machine: Machine, failure: Failure) -> _Failed:
+def _failed(machine: Machine, failure: ir.Failure) -> _Failed:
     return _Failed(integer(machine, failure.at), failure.site, tuple(integer(machine, i) for i in failure.indices))

@@ -2,99 +2,76 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import (
-    Binary,
-    Bits,
-    Capacity,
-    Compare,
-    Const,
-    Convert,
-    Digits,
-    Expr,
-    Fits,
-    Get,
-    HostValue,
-    IsText,
-    Load,
-    Local,
-    Lookup,
-    Nearest,
-    Register,
-    Scalar,
-    Scale,
-    Select,
-    Unary,
-    Used,
-)
+from rosetta_jit.kernel import ir
 
-BEGIN, END, ROW = Local("i64", "begin"), Local("i64", "end"), Local("i64", "row")
+BEGIN, END, ROW = ir.Local("i64", "begin"), ir.Local("i64", "end"), ir.Local("i64", "row")
 
 
-def index(value: int) -> Const:
+def index(value: int) -> ir.Const:
     """An int64 constant."""
-    return Const("i64", value)
+    return ir.Const("i64", value)
 
 
-def add(left: Expr, right: Expr | int) -> Expr:
+def add(left: ir.Expr, right: ir.Expr | int) -> ir.Expr:
     """``left + right`` in i64, with constants folded to the right: the normal form of a position."""
-    if isinstance(right, Const) and right.type == "i64":
+    if isinstance(right, ir.Const) and right.type == "i64":
         right = int(right.value)
     if not isinstance(right, int):
-        return right if left == index(0) else Binary("add", left, right)
+        return right if left == index(0) else ir.Binary("add", left, right)
     match left:
-        case Const("i64", value):
+        case ir.Const("i64", value):
             return index(int(value) + right)
-        case Binary("add", base, Const("i64", value)):
+        case ir.Binary("add", base, ir.Const("i64", value)):
             total = int(value) + right
-            return Binary("add", base, index(total)) if total else base
+            return ir.Binary("add", base, index(total)) if total else base
         case _:
-            return Binary("add", left, index(right)) if right else left
+            return ir.Binary("add", left, index(right)) if right else left
 
 
-def split(expr: Expr) -> tuple[Expr, int]:
+def split(expr: ir.Expr) -> tuple[ir.Expr, int]:
     """An int64 expression without the constant that `add` has put behind it, and that constant."""
     match expr:
-        case Binary("add", base, Const("i64", value)):
+        case ir.Binary("add", base, ir.Const("i64", value)):
             return base, int(value)
         case _:
             return expr, 0
 
 
-def mul(left: Expr, right: Expr | int) -> Expr:
+def mul(left: ir.Expr, right: ir.Expr | int) -> ir.Expr:
     """``left * right`` in i64, with constants folded."""
     if isinstance(right, int):
         right = index(right)
     match left, right:
-        case Const("i64", a), Const("i64", b):
+        case ir.Const("i64", a), ir.Const("i64", b):
             return index(int(a) * int(b))
-        case _, Const("i64", 1):
+        case _, ir.Const("i64", 1):
             return left
-        case Const("i64", 1), _:
+        case ir.Const("i64", 1), _:
             return right
-        case Const(), _:
-            return Binary("mul", right, left)
+        case ir.Const(), _:
+            return ir.Binary("mul", right, left)
         case _:
-            return Binary("mul", left, right)
+            return ir.Binary("mul", left, right)
 
 
-def type_of(expr: Expr) -> Scalar:
+def type_of(expr: ir.Expr) -> ir.Scalar:
     """The type of an expression."""
     match expr:
-        case Const() | Local() | Load() | Get() | Convert() | Bits() | Lookup():
+        case ir.Const() | ir.Local() | ir.Load() | ir.Get() | ir.Convert() | ir.Bits() | ir.Lookup():
             return expr.type
-        case Used() | Capacity() | HostValue() | Register():
+        case ir.Used() | ir.Capacity() | ir.HostValue() | ir.Register():
             return "i64"
-        case Unary(_, operand):
+        case ir.Unary(_, operand):
             return type_of(operand)
-        case Binary(_, left, _):
+        case ir.Binary(_, left, _):
             return type_of(left)
-        case Compare() | Fits() | IsText():
+        case ir.Compare() | ir.Fits() | ir.IsText():
             return "bool"
-        case Select(_, then, _):
+        case ir.Select(_, then, _):
             return type_of(then)
-        case Nearest():
+        case ir.Nearest():
             return "f64"
-        case Digits():
+        case ir.Digits():
             return "u64"
-        case Scale():
+        case ir.Scale():
             return "i64"

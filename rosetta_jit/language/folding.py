@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rosetta_jit.model.expr import Binary, Choice, Expr, Held, Literal, Name, Nearest, Unary
+from rosetta_jit.model.expr import Binary, Choice, Coerced, Expr, Literal, Name, Nearest, Unary
 from rosetta_jit.model.walk import rebuilt
 
 TRUE, FALSE = Literal(value=True), Literal(value=False)
@@ -61,7 +61,7 @@ def _logic(is_and: bool, left: Expr, right: Expr, expr: Expr) -> Expr:
 def _bare(expr: Expr) -> Expr:
     """What a place holds of a constant that it holds as it is."""
     match expr:
-        case Held(value=(Literal(bool() | int() | str()) | Name() | Choice()) as value):
+        case Coerced(value=(Literal(bool() | int() | str()) | Name() | Choice()) as value):
             return value
         case _:
             return expr

@@ -20,7 +20,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.language.function import GROUPS, family_of
-from rosetta_jit.model.expr import Call, Choice, Held, Item, List, Literal
+from rosetta_jit.model.expr import Call, Choice, Coerced, Item, List, Literal
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
 
@@ -139,7 +139,7 @@ def group_of(expr: Expr) -> Group | None:
         case Call():
             function = function_of(expr)
             return None if function is None else function.gives
-        case Choice(((_, value), *_)) | Held(value=value):
+        case Choice(((_, value), *_)) | Coerced(value=value):
             return group_of(value)
         case _:
             return None

@@ -1,6 +1,6 @@
 """One expression language: mapping rules, counts, and constants that are computed.
 
-    Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List | Item | Given | Held | Nearest
+    Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List | Item | Given | Coerced | Nearest
     Path = Root, Step*         Step = Member(name) | Index(Expr) | Keyed(name*, Expr, name*) | Slice(Expr, Expr, Expr) | Pick(int*) | Each
 
 A `Path` starts at one of the two sides of a mapping; which one is `side`. Inside a wire schema's own expressions (a computed
@@ -193,8 +193,8 @@ class Given:
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
-    """A value as a place holds it: in its unit, of its type. No text has one; rules for both directions are made of them."""
+class Coerced:
+    """A value converted to the unit and the type of a place. No text has one; rules for both directions are made of them."""
 
     place: Path
     value: Expr
@@ -220,4 +220,4 @@ class Nearest:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List | Item | Given | Held | Nearest
+Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List | Item | Given | Coerced | Nearest

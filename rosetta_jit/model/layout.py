@@ -19,28 +19,13 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.model import types
 from rosetta_jit.model.limits import MAX_ROW_BYTES, MAX_SLOTS
-from rosetta_jit.model.types import (
-    Array,
-    Bool,
-    Bytes,
-    Enum,
-    Float,
-    Int,
-    Map,
-    Optional,
-    Ref,
-    Schema,
-    String,
-    Struct,
-    Union,
-)
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.model.types import Field, Type
 
 SPAN_BYTES = 16
 LINK_WORDS = 6
@@ -145,7 +130,7 @@ class Layout:
         return self.lanes[0].element
 
 
-def layout(type_: Type, schema: Schema, *, padded: bool = False) -> Layout:
+def layout(type_: types.Type, schema: types.Schema, *, padded: bool = False) -> Layout:
     """The layout of a type.
 
     Parameters
@@ -186,20 +171,20 @@ def _moved(slot: Slot, by: int) -> Slot:
             assert_never(slot)
 
 
-def scalar_of(type_: Bool | Int | Float | Enum) -> str:
+def scalar_of(type_: types.Bool | types.Int | types.Float | types.Enum) -> str:
     """The scalar that holds a value of the type."""
     match type_:
-        case Bool():
+        case types.Bool():
             return "bool"
-        case Int(bits, signed, _):
+        case types.Int(bits, signed, _):
             return f"{'i' if signed else 'u'}{bits}"
-        case Float(bits, _):
+        case types.Float(bits, _):
             return f"f{bits}"
-        case Enum():
+        case types.Enum():
             return "i32"
 
 
-def recursive_structs(type_: Type, schema: Schema) -> frozenset[str]:
+def recursive_structs(type_: types.Type, schema: types.Schema) -> frozenset[str]:
     """Names of the structs that contain themselves, through whatever fields."""
     reached: dict[str, frozenset[str]] = {}
     pending = sorted(_references(type_, schema))
@@ -249,18 +234,18 @@ def _popped(stack: list[str], name: str) -> Iterator[str]:
             return
 
 
-def _references(type_: Type, schema: Schema) -> frozenset[str]:
+def _references(type_: types.Type, schema: types.Schema) -> frozenset[str]:
     """Names of the structs that a type refers to directly; the fields of an unnamed reference count as its own."""
     match type_:
-        case Ref(name):
-            return frozenset([name]) if isinstance(schema.types[name], Struct) else frozenset()
-        case Array(element) | Optional(element):
+        case types.Ref(name):
+            return frozenset([name]) if isinstance(schema.types[name], types.Struct) else frozenset()
+        case types.Array(element) | types.Optional(element):
             return _references(element, schema)
-        case Map(key, value):
+        case types.Map(key, value):
             return _references(key, schema) | _references(value, schema)
-        case Struct(_, fields) | Union(_, fields):
+        case types.Struct(_, fields) | types.Union(_, fields):
             return frozenset[str]().union(*(_references(each.type, schema) for each in fields))
-        case Bool() | Int() | Float() | String() | Bytes() | Enum():
+        case types.Bool() | types.Int() | types.Float() | types.String() | types.Bytes() | types.Enum():
             return frozenset()
         case _:
             assert_never(type_)
@@ -270,7 +255,7 @@ def _references(type_: Type, schema: Schema) -> frozenset[str]:
 class _Building:
     """Lanes in the order in which their fields come; None while a lane's element is being laid out."""
 
-    schema: Schema
+    schema: types.Schema
     recursive: frozenset[str]
     padded: bool = False
     lanes: list[Lane | None] = field(default_factory=list[Lane | None])
@@ -279,12 +264,12 @@ class _Building:
     linked: list[tuple[int, str]] = field(default_factory=list[tuple[int, str]])
     within: int = 1
 
-    def lane(self, element: Type, name: str, key: str) -> int:
+    def lane(self, element: types.Type, name: str, key: str) -> int:
         """The lane for elements of a type: a new one, or that of a recursive struct which is reached through the same field.
 
         ``name`` is the path from the message, ``key`` that from the innermost recursive struct.
         """
-        struct = element.name if isinstance(element, Ref) and element.name in self.recursive and self.lanes else None
+        struct = element.name if isinstance(element, types.Ref) and element.name in self.recursive and self.lanes else None
         if struct is not None and key in self.by_key:
             return self.by_key[key]
         index = len(self.lanes)
@@ -303,72 +288,72 @@ class _Building:
         self.lanes[index] = Lane(name, max(stride, 1), slot, links, self.within)
         return index
 
-    def element(self, type_: Type, name: str, key: str) -> tuple[Slot, int]:
+    def element(self, type_: types.Type, name: str, key: str) -> tuple[Slot, int]:
         """The slot of a lane's element, and its size."""
         resolved = self.schema.resolve(type_)
-        if isinstance(resolved, Struct):
+        if isinstance(resolved, types.Struct):
             return self.row(resolved, 0, name, key)
         return self.slot(resolved, 0, name, key)
 
-    def slot(self, type_: Type, offset: int, name: str, key: str) -> tuple[Slot, int]:
+    def slot(self, type_: types.Type, offset: int, name: str, key: str) -> tuple[Slot, int]:
         """The slot of a type at the next suitable offset, and the offset behind it."""
         self.slots += 1
         if self.slots > MAX_SLOTS or offset > MAX_ROW_BYTES:
             raise ValueError(f"{name or 'the message'} unfolds to too many fields")
         match type_:
-            case Bool() | Int() | Float() | Enum():
+            case types.Bool() | types.Int() | types.Float() | types.Enum():
                 scalar = scalar_of(type_)
                 at = _align(offset, WIDTH[scalar])
                 return Number(at, scalar), at + WIDTH[scalar]
-            case String(encoding):
-                return self.span(Int(16 if encoding == "utf-16" else 8, signed=False), offset, name, key)
-            case Bytes(_, length):
-                return self.span(Int(8, signed=False), offset, name, key, length)
-            case Array(element, length):
+            case types.String(encoding):
+                return self.span(types.Int(16 if encoding == "utf-16" else 8, signed=False), offset, name, key)
+            case types.Bytes(_, length):
+                return self.span(types.Int(8, signed=False), offset, name, key, length)
+            case types.Array(element, length):
                 return self.span(element, offset, name, key, length)
-            case Map(of, value):
+            case types.Map(of, value):
                 return self.span(map_entry(of, value), offset, name, key)
-            case Struct():
+            case types.Struct():
                 return self.row(type_, offset, name, key)
-            case Union(_, cases):
+            case types.Union(_, cases):
                 return self.variant(cases, offset, name, key)
-            case Optional(value):
+            case types.Optional(value):
                 return self.slot(value, offset, name, key)
-            case Ref(target):
+            case types.Ref(target):
                 if target in self.recursive:
                     return self.span(type_, offset, name, key)
                 return self.slot(self.schema.types[target], offset, name, key)
             case _:
                 assert_never(type_)
 
-    def span(self, element: Type, offset: int, name: str, key: str, length: object = None) -> tuple[Span, int]:
+    def span(self, element: types.Type, offset: int, name: str, key: str, length: object = None) -> tuple[Span, int]:
         at, around = _align(offset, 8), self.within
         self.within *= max(length, 1) if isinstance(length, int) else 1
         lane = self.lane(element, name, key)
         self.within = around
         return Span(at, lane), at + SPAN_BYTES
 
-    def row(self, struct: Struct, offset: int, name: str, key: str) -> tuple[Row, int]:
-        bits = sum(isinstance(each.type, Optional) for each in struct.fields)
+    def row(self, struct: types.Struct, offset: int, name: str, key: str) -> tuple[Row, int]:
+        bits = sum(isinstance(each.type, types.Optional) for each in struct.fields)
         words = (bits + 63) // 64
         start = _align(offset, 8) if struct.fields or self.padded else offset
         behind = start + 8 * words
         unknown = None
         if struct.option("unknown"):
-            unknown, behind = self.span(Int(8, signed=False), _align(behind, 8), _join(name, UNKNOWN), _join(key, UNKNOWN))
+            unknown, behind = self.span(types.Int(8, signed=False), _align(behind, 8), _join(name, UNKNOWN), _join(key, UNKNOWN))
             start = unknown.offset - 8 * words
         members: list[Member] = []
         presence = 0
         start_of_key = struct.name if struct.name in self.recursive else key
         for each in struct.fields:
             slot, behind = self.slot(each.type, behind, _join(name, each.name), _join(start_of_key, each.name))
-            members.append(Member(each.name, slot, presence if isinstance(each.type, Optional) else None))
-            presence += isinstance(each.type, Optional)
+            members.append(Member(each.name, slot, presence if isinstance(each.type, types.Optional) else None))
+            presence += isinstance(each.type, types.Optional)
         if self.padded:
             behind = max(_align(behind, 8), start + 8)
         return Row(start, struct.name, words, Members(members), unknown), behind
 
-    def variant(self, cases: tuple[Field, ...], offset: int, name: str, key: str) -> tuple[Variant, int]:
+    def variant(self, cases: tuple[types.Field, ...], offset: int, name: str, key: str) -> tuple[Variant, int]:
         start = _align(offset, 8)
         behind = start + 8
         members: list[Member] = []
@@ -378,11 +363,9 @@ class _Building:
         return Variant(start, Members(members)), _align(behind, 8) if self.padded else behind
 
 
-def map_entry(key: Type, value: Type) -> Struct:
+def map_entry(key: types.Type, value: types.Type) -> types.Struct:
     """A map is an array of these."""
-    from rosetta_jit.model.types import Field
-
-    return Struct("", (Field("key", key), Field("value", value)))
+    return types.Struct("", (types.Field("key", key), types.Field("value", value)))
 
 
 def _alignment(slot: Slot) -> int:

@@ -85,8 +85,8 @@ def show_expr(value: expr.Expr) -> str:
             return f"{show_expr(items)}[{show_expr(at)}]"
         case expr.Given(name, arguments):
             return name + "".join(f"[{show_expr(argument)}]" for argument in arguments)
-        case expr.Held(value=held) | expr.Nearest(held):
-            return show_expr(held)
+        case expr.Coerced(value=inner) | expr.Nearest(inner):
+            return show_expr(inner)
         case _:
             assert_never(value)
 

@@ -12,35 +12,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
+from rosetta_jit.model import types
 from rosetta_jit.model.limits import MAX_SERIAL_DEPTH
-from rosetta_jit.model.types import (
-    Array,
-    Bool,
-    Bytes,
-    Enum,
-    Field,
-    Float,
-    Int,
-    Map,
-    NamedConstant,
-    Optional,
-    Ref,
-    Schema,
-    String,
-    Struct,
-    Type,
-    Union,
-)
 
 if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.types import Constant
 
 Plain = dict[str, Any]
 """What JSON can carry."""
 
 
-def to_plain(type_: Type, schema: Schema) -> Plain:
+def to_plain(type_: types.Type, schema: types.Schema) -> Plain:
     """The type and every declaration that it reaches, as plain data.
 
     Raises
@@ -58,7 +40,7 @@ def to_plain(type_: Type, schema: Schema) -> Plain:
     return {"type": root, "declared": dict(sorted(declared.items()))}
 
 
-def from_plain(plain: Plain) -> tuple[Type, Schema]:
+def from_plain(plain: Plain) -> tuple[types.Type, types.Schema]:
     """The type, and a schema of the declarations that it reaches.
 
     Raises
@@ -71,7 +53,7 @@ def from_plain(plain: Plain) -> tuple[Type, Schema]:
         root = _type(plain["type"], 0)
     except (KeyError, IndexError, TypeError, AttributeError) as problem:
         raise ValueError(f"not a type: {problem}") from None
-    return root, Schema({name: each for name, each in declared.items() if isinstance(each, Struct | Enum)})
+    return root, types.Schema({name: each for name, each in declared.items() if isinstance(each, types.Struct | types.Enum)})
 
 
 class _Writing:
@@ -80,41 +62,41 @@ class _Writing:
     def __init__(self) -> None:
         self.pending: list[str] = []
 
-    def type(self, type_: Type, depth: int) -> list[Any]:
+    def type(self, type_: types.Type, depth: int) -> list[Any]:
         if depth > MAX_SERIAL_DEPTH:
             raise ValueError(f"types nest more than {MAX_SERIAL_DEPTH} deep")
         match type_:
-            case Bool(spelling):
+            case types.Bool(spelling):
                 return ["bool", spelling]
-            case Int(bits, signed, spelling):
+            case types.Int(bits, signed, spelling):
                 return ["int", bits, signed, spelling]
-            case Float(bits, spelling):
+            case types.Float(bits, spelling):
                 return ["float", bits, spelling]
-            case String(encoding, spelling, maximum):
+            case types.String(encoding, spelling, maximum):
                 return ["string", encoding, spelling, maximum]
-            case Bytes(spelling, length, maximum):
+            case types.Bytes(spelling, length, maximum):
                 return ["bytes", spelling, _plain_length(length), maximum]
-            case Enum(name, values, closed, _, bits):
+            case types.Enum(name, values, closed, _, bits):
                 return ["enum", name, [list(pair) for pair in values], closed, bits]
-            case Array(element, length, maximum):
+            case types.Array(element, length, maximum):
                 return ["array", self.type(element, depth + 1), _plain_length(length), maximum]
-            case Struct(name, fields):
+            case types.Struct(name, fields):
                 constants = [[each.name, self.type(each.type, depth + 1), _plain_constant(each.value)] for each in type_.constants]
                 return ["struct", name, [self.field(each, depth + 1) for each in fields], constants, _plain_options(type_.options)]
-            case Union(name, cases, _, discriminator, labels, default):
+            case types.Union(name, cases, _, discriminator, labels, default):
                 fields = [self.field(each, depth + 1) for each in cases]
                 return ["union", name, fields, discriminator, [list(each) for each in labels], default]
-            case Optional(value):
+            case types.Optional(value):
                 return ["optional", self.type(value, depth + 1)]
-            case Map(key, value, maximum):
+            case types.Map(key, value, maximum):
                 return ["map", self.type(key, depth + 1), self.type(value, depth + 1), maximum]
-            case Ref(name):
+            case types.Ref(name):
                 self.pending.append(name)
                 return ["ref", name]
             case _:
                 assert_never(type_)
 
-    def field(self, field: Field, depth: int) -> list[Any]:
+    def field(self, field: types.Field, depth: int) -> list[Any]:
         default, options = _plain_constant(field.default), _plain_options(field.options)
         computed = [_plain_expr(field.constant), _plain_expr(field.length)]
         parts = [[list(path), unit] for path, unit in field.part_units]
@@ -155,51 +137,51 @@ def _length(plain: Any) -> Any:
     return path_of(cast("list[str]", plain))
 
 
-def _plain_options(options: tuple[tuple[str, Constant], ...]) -> list[Any]:
+def _plain_options(options: tuple[tuple[str, types.Constant], ...]) -> list[Any]:
     return [[name, _plain_constant(value)] for name, value in options]
 
 
-def _options(plain: list[Any]) -> tuple[tuple[str, Constant], ...]:
+def _options(plain: list[Any]) -> tuple[tuple[str, types.Constant], ...]:
     return tuple((name, _constant(value)) for name, value in plain)
 
 
-def _type(plain: list[Any], depth: int) -> Type:
+def _type(plain: list[Any], depth: int) -> types.Type:
     if depth > MAX_SERIAL_DEPTH:
         raise ValueError(f"types nest more than {MAX_SERIAL_DEPTH} deep")
     match plain:
         case ["bool", spelling]:
-            return Bool(spelling)
+            return types.Bool(spelling)
         case ["int", bits, signed, spelling]:
-            return Int(bits, signed, spelling)
+            return types.Int(bits, signed, spelling)
         case ["float", bits, spelling]:
-            return Float(bits, spelling)
+            return types.Float(bits, spelling)
         case ["string", encoding, spelling, maximum]:
-            return String(encoding, spelling, maximum)
+            return types.String(encoding, spelling, maximum)
         case ["bytes", spelling, length, maximum]:
-            return Bytes(spelling, _length(length), maximum)
+            return types.Bytes(spelling, _length(length), maximum)
         case ["enum", name, values, closed, bits]:
-            return Enum(name, tuple((each, number) for each, number in values), closed, bits=bits)
+            return types.Enum(name, tuple((each, number) for each, number in values), closed, bits=bits)
         case ["array", element, length, maximum]:
-            return Array(_type(element, depth + 1), _length(length), maximum)
+            return types.Array(_type(element, depth + 1), _length(length), maximum)
         case ["struct", name, fields, constants, options]:
-            named = tuple(NamedConstant(each, _type(type_, depth + 1), _constant(value)) for each, type_, value in constants)
-            return Struct(name, tuple(_field(each, depth + 1) for each in fields), constants=named, options=_options(options))
+            named = tuple(types.NamedConstant(each, _type(type_, depth + 1), _constant(value)) for each, type_, value in constants)
+            return types.Struct(name, tuple(_field(each, depth + 1) for each in fields), constants=named, options=_options(options))
         case ["union", name, cases, discriminator, labels, default]:
             fields = tuple(_field(each, depth + 1) for each in cases)
-            return Union(name, fields, None, discriminator, tuple(tuple(each) for each in labels), default)
+            return types.Union(name, fields, None, discriminator, tuple(tuple(each) for each in labels), default)
         case ["optional", value]:
-            return Optional(_type(value, depth + 1))
+            return types.Optional(_type(value, depth + 1))
         case ["map", key, value, maximum]:
-            return Map(_type(key, depth + 1), _type(value, depth + 1), maximum)
+            return types.Map(_type(key, depth + 1), _type(value, depth + 1), maximum)
         case ["ref", name]:
-            return Ref(name)
+            return types.Ref(name)
         case _:
             raise ValueError(f"not a type: {plain!r:.80}")
 
 
-def _field(plain: list[Any], depth: int) -> Field:
+def _field(plain: list[Any], depth: int) -> types.Field:
     name, type_, number, unit, default, required, options, constant, length, parts = plain
-    return Field(
+    return types.Field(
         name,
         _type(type_, depth),
         number=number,

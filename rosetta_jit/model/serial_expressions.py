@@ -35,7 +35,7 @@ def plain_expression(value: expr.Expr | None) -> list[Any] | None:
             return ["call", function, [plain_expression(each) for each in arguments]]
         case expr.Choice(cases, otherwise, reason):
             return ["choice", [[plain_expression(part) for part in case] for case in cases], plain_expression(otherwise), reason]
-        case expr.List() | expr.Item() | expr.Given() | expr.Held() | expr.Nearest():
+        case expr.List() | expr.Item() | expr.Given() | expr.Coerced() | expr.Nearest():
             raise AssertionError(value)
         case _:
             assert_never(value)

@@ -13,8 +13,8 @@ from rosetta_jit.model.expr import (
     Binary,
     Call,
     Choice,
+    Coerced,
     Given,
-    Held,
     Index,
     Item,
     Keyed,
@@ -64,7 +64,7 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
             return replace(expr, items=change(items), index=change(index))
         case Given(arguments=arguments):
             return replace(expr, arguments=tuple(map(change, arguments)))
-        case Held(place, value):
+        case Coerced(place, value):
             return replace(expr, place=with_indices(place, change), value=change(value))
         case Nearest(value, again, origin):
             return replace(expr, value=change(value), again=change(again), place=change(origin))

@@ -65,7 +65,7 @@ class LoadedBridge:
 
     layout: Layout
     kernels: tuple[run.Run, run.Run, run.Run]
-    sites: tuple[tuple[run.Site, ...], ...]
+    sites: tuple[run.Sites, ...]
     references: tuple[int, ...] = ()
     library: Library | None = None
     told: bool = False

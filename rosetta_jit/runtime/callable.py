@@ -18,23 +18,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rosetta_jit.runtime import specs
-from rosetta_jit.runtime.specs import (
-    BASETYPE,
-    DEFAULT,
-    FASTCALL,
-    KEYWORDS,
-    READONLY,
-    SSIZE_T,
-    TP_CALL,
-    TP_MEMBERS,
-    Member,
-    Method,
-    address_of,
-    from_spec,
-    read_word,
-    with_attributes,
-    write_word,
-)
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -114,19 +97,21 @@ def callable_class(base: type, *, native: bool | None = None) -> type:
     """
     if not _chosen(native) or base.__basicsize__ > VECTORCALL:
         return type(base.__name__, (base,), {"__call__": _call_slow, "_is_native": False, **_names(base)})
-    members = (Member * 2)(Member(b"__vectorcalloffset__", SSIZE_T, VECTORCALL, READONLY, None))
-    slots = ((TP_MEMBERS, ctypes.addressof(members)), (TP_CALL, address_of("PyVectorcall_Call")))
-    created = from_spec(base.__name__, base, CALLABLE_BYTES, DEFAULT | specs.VECTORCALL | BASETYPE, slots)
-    return with_attributes(created, {"_is_native": True, "_members": members, **_names(base)})
+    members = (specs.Member * 2)(specs.Member(b"__vectorcalloffset__", specs.SSIZE_T, VECTORCALL, specs.READONLY, None))
+    slots = ((specs.TP_MEMBERS, ctypes.addressof(members)), (specs.TP_CALL, specs.address_of("PyVectorcall_Call")))
+    created = specs.from_spec(base.__name__, base, CALLABLE_BYTES, specs.DEFAULT | specs.VECTORCALL | specs.BASETYPE, slots)
+    return specs.with_attributes(created, {"_is_native": True, "_members": members, **_names(base)})
 
 
 def message_base(*, native: bool | None = None) -> type:
     """A class to derive messages from, with room for what compiled code must know of them (`bind_message`); ``index_`` is a part of it."""
     if not _chosen(native):
         return type("MessageBase", (), {"_is_native": False, "__module__": __name__, "__slots__": ("index_",)})
-    members = (Member * 2)(Member(b"index_", SSIZE_T, INDEX, 0, None))
-    created = from_spec("MessageBase", object, MESSAGE_BYTES, DEFAULT | BASETYPE, ((TP_MEMBERS, ctypes.addressof(members)),))
-    return with_attributes(created, {"_is_native": True, "__module__": __name__, "__qualname__": "MessageBase", "_members": members})
+    members = (specs.Member * 2)(specs.Member(b"index_", specs.SSIZE_T, INDEX, 0, None))
+    created = specs.from_spec(
+        "MessageBase", object, MESSAGE_BYTES, specs.DEFAULT | specs.BASETYPE, ((specs.TP_MEMBERS, ctypes.addressof(members)),)
+    )
+    return specs.with_attributes(created, {"_is_native": True, "__module__": __name__, "__qualname__": "MessageBase", "_members": members})
 
 
 def bind_call(target: Any, entry: int | None, context: Context) -> None:
@@ -141,8 +126,8 @@ def bind_call(target: Any, entry: int | None, context: Context) -> None:
     if entry is None:
         target.__class__ = _without_entry(target.__class__)
     else:
-        write_word(id(target) + CONTEXT, words.ctypes.data)
-        write_word(id(target) + VECTORCALL, entry)
+        specs.write_word(id(target) + CONTEXT, words.ctypes.data)
+        specs.write_word(id(target) + VECTORCALL, entry)
 
 
 def builtin_of(target: Any, name: str, doc: str) -> Callable[..., Any]:
@@ -150,11 +135,11 @@ def builtin_of(target: Any, name: str, doc: str) -> Callable[..., Any]:
 
     Its ``__self__`` is the target, which it keeps alive.
     """
-    entry = read_word(id(target) + VECTORCALL) if target._is_native else 0  # noqa: SLF001 - the class is ours
+    entry = specs.read_word(id(target) + VECTORCALL) if target._is_native else 0  # noqa: SLF001 - the class is ours
     if not entry:
         return target._context[0].slow  # noqa: SLF001 - as above
     if "_method" not in vars(target):
-        target._method = Method(name.encode(), entry, FASTCALL | KEYWORDS, doc.encode())  # noqa: SLF001 - as above
+        target._method = specs.Method(name.encode(), entry, specs.FASTCALL | specs.KEYWORDS, doc.encode())  # noqa: SLF001 - as above
     create = ctypes.pythonapi.PyCFunction_NewEx
     create.restype, create.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p]
     return create(ctypes.addressof(target._method), target, None)  # noqa: SLF001 - as above
@@ -163,7 +148,7 @@ def builtin_of(target: Any, name: str, doc: str) -> Callable[..., Any]:
 def bind_state(holder: Any, address: int) -> None:
     """Tell the entries where the state of a holder, an instance of a subclass of a `message_base`, lies. The holder must keep it alive."""
     if holder._is_native:  # noqa: SLF001 - the class is ours
-        write_word(id(holder) + STATE, address)
+        specs.write_word(id(holder) + STATE, address)
 
 
 @cache

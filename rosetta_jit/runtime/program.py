@@ -73,10 +73,10 @@ class Loaded:
     """
 
     holder_type: type[Holder]
-    sites: tuple[run.Site, ...]
+    sites: run.Sites
     kernel: run.Run
     size: run.Run | None = None
-    size_sites: tuple[run.Site, ...] = ()
+    size_sites: run.Sites = run.NO_SITES
     library: Library | None = None
     borrow: bool = False
     told: bool = False

@@ -189,6 +189,24 @@ class Site:
         return cls(kind, path, detail, line, tuple(Part(*part) for part in parts), lane)
 
 
+class Sites:
+    """The sites of a kernel by their numbers, as headers of programs have them. Each is made when it is asked for: few messages fail."""
+
+    __slots__ = ("_plain",)
+
+    def __init__(self, plain: Sequence[Sequence[Any]] = ()) -> None:
+        self._plain = plain
+
+    def __len__(self) -> int:
+        return len(self._plain)
+
+    def __getitem__(self, number: int) -> Site:
+        return Site.of(self._plain[number])
+
+
+NO_SITES = Sites()
+
+
 def decode_error(site: Site, lanes: Lanes, begin: int, end: int) -> DecodeError:
     """What a failed kernel has left in the state, as an error. Offsets count from the message's begin."""
     at = lanes.words[ERROR_OFFSET]

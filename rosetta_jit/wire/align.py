@@ -11,30 +11,7 @@ from dataclasses import replace
 from typing import assert_never
 
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.wire.codec import (
-    Align,
-    Blob,
-    Cases,
-    Choice,
-    Codec,
-    Computed,
-    Constant,
-    Count,
-    Delimited,
-    Maybe,
-    Members,
-    Number,
-    Padding,
-    Parameter,
-    Parameters,
-    Recursion,
-    Repeat,
-    Seq,
-    Table,
-    Tagged,
-    Utf16,
-    Varint,
-)
+from rosetta_jit.wire import codec as wire
 from rosetta_jit.wire.size import count_width, fixed_size
 
 
@@ -65,72 +42,72 @@ ANYWHERE = Phase(1, 0)
 ORIGIN = Phase(8, 0)
 
 
-def settle(codec: Codec, phase: Phase) -> tuple[Codec, Phase]:
+def settle(codec: wire.Codec, phase: Phase) -> tuple[wire.Codec, Phase]:
     """The codec with all alignment resolved that a position of that phase tells, and the phase behind it."""
     match codec:
-        case Number() | Table() | Constant() | Computed() | Padding():
+        case wire.Number() | wire.Table() | wire.Constant() | wire.Computed() | wire.Padding():
             return codec, phase.after(fixed_size(codec))
-        case Align(size):
+        case wire.Align(size):
             known = phase.padding(size)
-            return (codec, Phase(size, 0)) if known is None else (Seq(_paddings(known)), phase.after(known))
-        case Blob(_, count):
+            return (codec, Phase(size, 0)) if known is None else (wire.Seq(_paddings(known)), phase.after(known))
+        case wire.Blob(_, count):
             return codec, phase.after(fixed_size(codec)) if isinstance(count.value, int) else ANYWHERE
-        case Seq(items):
+        case wire.Seq(items):
             return _settle_all(items, phase)
-        case Repeat():
+        case wire.Repeat():
             return _settle_repeat(codec, phase)
-        case Cases(_, discriminator, cases):
+        case wire.Cases(_, discriminator, cases):
             discriminator, phase = settle(discriminator, phase)
             settled = [settle(each, phase) for _, each in cases]
             bodies = tuple((labels, each) for (labels, _), (each, _) in zip(cases, settled, strict=True))
             behind = phase if codec.default is None else settled[0][1]
             return replace(codec, discriminator=discriminator, cases=bodies), _joined([behind, *(each for _, each in settled)])
-        case Maybe(path, value):
+        case wire.Maybe(path, value):
             value, behind = settle(value, phase.after(1))
-            return Maybe(path, value), phase.after(1).join(behind)
-        case Delimited(_, value):
+            return wire.Maybe(path, value), phase.after(1).join(behind)
+        case wire.Delimited(_, value):
             value, behind = settle(value, phase.after(4))
             return replace(codec, value=value), behind
-        case Members():
+        case wire.Members():
             members = tuple(replace(each, value=settle(each.value, Phase(4, 0))[0]) for each in codec.members)
             return replace(codec, members=members), ANYWHERE
-        case Parameter(member):
+        case wire.Parameter(member):
             inside = Phase(4, 0) if codec.second else ORIGIN
             return replace(codec, member=replace(member, value=settle(member.value, inside)[0])), ANYWHERE
-        case Parameters():
+        case wire.Parameters():
             members = tuple(replace(each, value=settle(each.value, ORIGIN)[0]) for each in codec.members)
             return replace(codec, members=members), ANYWHERE
-        case Utf16() | Recursion() | Tagged() | Varint() | Choice():
+        case wire.Utf16() | wire.Recursion() | wire.Tagged() | wire.Varint() | wire.Choice():
             return codec, ANYWHERE
         case _:
             assert_never(codec)
 
 
-def leading(codec: Codec) -> int:
+def leading(codec: wire.Codec) -> int:
     """The alignment with which a codec begins."""
     match codec:
-        case Align(size):
+        case wire.Align(size):
             return size
-        case Seq(items) if items:
+        case wire.Seq(items) if items:
             return leading(items[0])
-        case Cases(_, discriminator):
+        case wire.Cases(_, discriminator):
             return leading(discriminator)
         case _:
             return 1
 
 
-def _settle_all(items: tuple[Codec, ...], phase: Phase) -> tuple[Codec, Phase]:
-    settled: list[Codec] = []
+def _settle_all(items: tuple[wire.Codec, ...], phase: Phase) -> tuple[wire.Codec, Phase]:
+    settled: list[wire.Codec] = []
     for item in items:
         each, phase = settle(item, phase)
-        settled += each.items if isinstance(each, Seq) else [each]
-    return Seq(tuple(settled)), phase
+        settled += each.items if isinstance(each, wire.Seq) else [each]
+    return wire.Seq(tuple(settled)), phase
 
 
-def _settle_repeat(repeat: Repeat, phase: Phase) -> tuple[Codec, Phase]:
+def _settle_repeat(repeat: wire.Repeat, phase: Phase) -> tuple[wire.Codec, Phase]:
     """Elements start where the one before them ends, so their phase is what is known of all of them."""
     head, phase = _settle_all(repeat.head, phase.after(_count_size(repeat.count)))
-    assert isinstance(head, Seq)
+    assert isinstance(head, wire.Seq)
     align = 1 if phase.padding(repeat.align) == 0 else repeat.align
     start = phase if align == 1 else Phase(align, 0)
     item, behind = settle(repeat.item, start)
@@ -140,7 +117,7 @@ def _settle_repeat(repeat: Repeat, phase: Phase) -> tuple[Codec, Phase]:
     return replace(repeat, item=item, head=head.items, align=align), phase.join(behind)
 
 
-def _count_size(count: Count) -> int | None:
+def _count_size(count: wire.Count) -> int | None:
     return None if count.scalar == "varint" else count_width(count)
 
 
@@ -151,11 +128,11 @@ def _joined(phases: list[Phase]) -> Phase:
     return result
 
 
-def _paddings(size: int) -> tuple[Codec, ...]:
+def _paddings(size: int) -> tuple[wire.Codec, ...]:
     """Zeros, as the fewest numbers."""
     widths = {"u32": 4, "u16": 2, "u8": 1}
-    found: list[Codec] = []
+    found: list[wire.Codec] = []
     for scalar, width in widths.items():
-        found += [Padding(scalar, 0)] * (size // width)
+        found += [wire.Padding(scalar, 0)] * (size // width)
         size %= width
     return tuple(found)

@@ -5,38 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.model.printer import show_expr
-from rosetta_jit.wire.codec import (
-    Align,
-    Blob,
-    Cases,
-    Choice,
-    Codec,
-    Computed,
-    Constant,
-    Count,
-    Delimited,
-    Maybe,
-    Members,
-    Number,
-    Padding,
-    Parameter,
-    Parameters,
-    Recursion,
-    Repeat,
-    Seq,
-    Table,
-    Tagged,
-    Utf16,
-    Varint,
-)
+from rosetta_jit.wire import codec as wire
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.wire.codec import Encoding, Entry, Member, Order, Path
 
-
-def show_encoding(encoding: Encoding) -> str:
+def show_encoding(encoding: wire.Encoding) -> str:
     """What is tried in turn when reading, what is written, and the messages of recursive structs."""
     lines = [f"encoding {encoding.name}"]
     for number, attempt in enumerate(encoding.attempts, 1):
@@ -54,34 +29,34 @@ def show_encoding(encoding: Encoding) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _lines(codec: Codec, depth: int) -> Iterator[str]:
+def _lines(codec: wire.Codec, depth: int) -> Iterator[str]:
     indent = "  " * depth
     match codec:
-        case Seq(items):
+        case wire.Seq(items):
             for item in items:
                 yield from _lines(item, depth)
-        case Repeat(path, count, item, head, extra, align):
+        case wire.Repeat(path, count, item, head, extra, align):
             aligned = f" aligned to {align}" if align > 1 else ""
             yield f"{indent}{_path(path)}: {_count(count)} elements{aligned}" + (f", {extra} fields among them:" if extra else ", each:")
             for each in (*head, item):
                 yield from _lines(each, depth + 1)
-        case Choice() | Cases():
+        case wire.Choice() | wire.Cases():
             yield from _alternatives(codec, depth)
-        case Maybe(path, value):
+        case wire.Maybe(path, value):
             yield f"{indent}{_path(path)}: u8 that says whether it follows"
             yield from _lines(value, depth + 1)
-        case Delimited(path, value, order):
+        case wire.Delimited(path, value, order):
             yield f"{indent}{_path(path)}: {_scalar('u32', order)} bytes of"
             yield from _lines(value, depth + 1)
-        case Members(path, members, order):
+        case wire.Members(path, members, order):
             yield f"{indent}{_path(path)}: {_scalar('u32', order)} bytes of members"
             yield from _members(members, depth + 1)
-        case Parameter(member):
+        case wire.Parameter(member):
             yield from _members((member,), depth)
-        case Parameters(path, members):
+        case wire.Parameters(path, members):
             yield f"{indent}{_path(path)}: parameters up to a sentinel"
             yield from _members(members, depth + 1)
-        case Tagged(path, entries, required, delimited, group):
+        case wire.Tagged(path, entries, required, delimited, group):
             kind = "delimited message" if delimited else "message" if group is None else f"group {group}"
             yield f"{indent}{_path(path)}: {kind}" + (f", required: {', '.join(required)}" if required else "")
             for entry in entries:
@@ -90,16 +65,16 @@ def _lines(codec: Codec, depth: int) -> Iterator[str]:
             yield indent + _leaf(codec)
 
 
-def _alternatives(codec: Choice | Cases, depth: int) -> Iterator[str]:
+def _alternatives(codec: wire.Choice | wire.Cases, depth: int) -> Iterator[str]:
     """What follows a number that says which of several it is."""
     indent = "  " * depth
     match codec:
-        case Choice(path, scalar, alternatives, _, order, labels):
+        case wire.Choice(path, scalar, alternatives, _, order, labels):
             yield f"{indent}{_scalar(scalar, order)} that says the form of {_path(path)}"
             for number, (value, each) in enumerate(alternatives):
                 yield f"{indent}{value}{f', written for {labels[number]}' if number < len(labels) else ''}:"
                 yield from _lines(each, depth + 1)
-        case Cases(path, discriminator, cases, default):
+        case wire.Cases(path, discriminator, cases, default):
             yield from _lines(discriminator, depth)
             for number, (labels, each) in enumerate(cases):
                 words = [*map(str, labels), *(["any other"] if number == default else [])]
@@ -107,56 +82,67 @@ def _alternatives(codec: Choice | Cases, depth: int) -> Iterator[str]:
                 yield from _lines(each, depth + 1)
 
 
-def _members(members: tuple[Member, ...], depth: int) -> Iterator[str]:
+def _members(members: tuple[wire.Member, ...], depth: int) -> Iterator[str]:
     for member in members:
         yield f"{'  ' * depth}{member.number}{' optional' if member.optional else ''} {_path(member.path)}"
         yield from _lines(member.value, depth + 1)
 
 
-def _leaf(codec: Number | Table | Varint | Constant | Computed | Padding | Align | Blob | Utf16 | Recursion) -> str:
+def _leaf(
+    codec: wire.Number
+    | wire.Table
+    | wire.Varint
+    | wire.Constant
+    | wire.Computed
+    | wire.Padding
+    | wire.Align
+    | wire.Blob
+    | wire.Utf16
+    | wire.Recursion,
+) -> str:
     match codec:
-        case Number(path, scalar, order):
+        case wire.Number(path, scalar, order):
             return f"{_path(path)}: {_scalar(scalar, order)}"
-        case Table(path, scalar, pairs, order):
+        case wire.Table(path, scalar, pairs, order):
             if scalar is None:
                 return f"{_path(path)}: {pairs[0][1]}, without a byte"
-            return f"{_path(path)}: {_scalar(scalar, order)}, {', '.join(f'{wire} for {value}' for wire, value in pairs)}"
-        case Varint(path, zigzag):
+            return f"{_path(path)}: {_scalar(scalar, order)}, {', '.join(f'{stored} for {value}' for stored, value in pairs)}"
+        case wire.Varint(path, zigzag):
             return f"{_path(path)}: {'zigzag ' if zigzag else ''}varint"
-        case Constant(path, value, scalar, order, kind):
+        case wire.Constant(path, value, scalar, order, kind):
             text = repr(value) if isinstance(value, bytes) else f"{_scalar(scalar, order)} {value}"
             return f"{kind} {text}" + (f" ({_path(path)})" if path else "")
-        case Computed(path, scalar, value, order):
+        case wire.Computed(path, scalar, value, order):
             return f"{_path(path)}: {_scalar(scalar, order)} = {show_expr(value)}"
-        case Padding(scalar, value, order):
+        case wire.Padding(scalar, value, order):
             return f"padding {_scalar(scalar, order)} {value}"
-        case Align(size):
+        case wire.Align(size):
             return f"padding to a multiple of {size} bytes"
-        case Blob(path, count, text, terminated):
+        case wire.Blob(path, count, text, terminated):
             return f"{_path(path)}: {_count(count)} bytes{' of text' if text else ''}{' and NUL' if terminated else ''}"
-        case Utf16(path, count):
+        case wire.Utf16(path, count):
             return f"{_path(path)}: {_count(count)} bytes of UTF-16"
-        case Recursion(path, struct, _):
+        case wire.Recursion(path, struct, _):
             return f"{_path(path)}: message {struct}"
         case _:
             assert_never(codec)
 
 
-def _entry(entry: Entry, depth: int) -> Iterator[str]:
+def _entry(entry: wire.Entry, depth: int) -> Iterator[str]:
     label = entry.label if not entry.implicit else "implicit"
     yield f"{'  ' * depth}{entry.number} {label} {_path(entry.path)}"
     yield from _lines(entry.value, depth + 1)
 
 
-def _path(path: Path) -> str:
+def _path(path: wire.Path) -> str:
     return "".join(f".{name}" for name in path) or "element"
 
 
-def _scalar(scalar: str, order: Order) -> str:
+def _scalar(scalar: str, order: wire.Order) -> str:
     return scalar if order == "<" else f"big-endian {scalar}"
 
 
-def _count(count: Count) -> str:
+def _count(count: wire.Count) -> str:
     bound = "" if count.maximum is None else f" at most {count.maximum}"
     bound += "" if count.unit == 1 else f" {count.unit} each"
     if count.scalar is None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import pickle
+import sys
 import threading
+import time
 from itertools import pairwise
 
 import numpy as np
@@ -204,6 +206,33 @@ def test_the_cache_has_it(tmp_path, monkeypatch, bottle):
     made = rj.Bridge(TORSO, decode={"encoding": "yarp4"})(bottle)
     monkeypatch.setattr("rosetta_jit.pipeline.bridge.BridgeBuild.kernels", property(lambda _: pytest.fail("compiled again")))
     assert rj.Bridge(TORSO, decode={"encoding": "yarp4"})(bottle) == made
+
+
+def test_many_runs_without_the_interpreter_lock(bottle):
+    """Nothing else lets this thread run while the other one is in its calls: Python asks for no switch meanwhile."""
+    bridge = rj.Bridge(TORSO, decode={"encoding": "yarp4"})
+    messages, offsets = bottle * 100_000, np.arange(100_001) * len(bottle)
+    inside, seen, before = [False], False, sys.getswitchinterval()
+
+    def run():
+        for _ in range(100):
+            inside[0] = True
+            bridge.many(messages, offsets)
+            inside[0] = False
+            if seen:
+                return
+
+    thread = threading.Thread(target=run)
+    sys.setswitchinterval(1000)
+    try:
+        thread.start()
+        while thread.is_alive() and not seen:
+            time.sleep(0.0005)
+            seen = inside[0]
+        thread.join()
+    finally:
+        sys.setswitchinterval(before)
+    assert seen
 
 
 def test_threads_share_a_bridge(wire, by_two_calls):

@@ -132,10 +132,15 @@ def mutants(module: str, share: int = 1) -> Iterator[Mutant]:
             for change, edit in _changes(node):
                 if change.startswith("demands"):
                     yield _made(module, function, stmt, node, change, edit)
-                elif crc32(f"{function} {ast.unparse(stmt)}".encode()) % share == 0:
+                elif _number_of(f"{function} {ast.unparse(stmt)}") % share == 0:
                     lines.setdefault(_line(node), []).append(_made(module, function, stmt, node, change, edit))
     for _, made in sorted(lines.items()):
-        yield made[crc32(made[0].was.encode()) % len(made)]
+        yield made[_number_of(made[0].was) % len(made)]
+
+
+def _number_of(text: str) -> int:
+    """A number that a text has whether it calls the nodes of kernels by their module or not."""
+    return crc32(text.replace("ir.", "").encode())
 
 
 def _line(node: ast.AST) -> int:

@@ -1,7 +1,10 @@
-"""Values that very many checks ask about, one check after another, are other values to LLVM from time to time.
+"""What LLVM would take more than linear time for in long bodies: very many checks of one value, very many stores in one block.
+
+Values that very many checks ask about, one check after another, are other values to LLVM from time to time.
 
 Of each value LLVM remembers all that was asked of it before, and goes through that again for the next question: of a thousand checks it
-would make a million. An instruction that does nothing, but may do anything for all that LLVM knows, ends its memory.
+would make a million. An instruction that does nothing, but may do anything for all that LLVM knows, ends its memory. So it does for
+stores, each of which LLVM compares with all before it.
 """
 
 from __future__ import annotations
@@ -13,7 +16,7 @@ from llvmlite import ir
 
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
 from rosetta_jit.backends.llvm.frame import F32, F64, I32, I64, Variable, forgotten
-from rosetta_jit.kernel.ir import Expect, If
+from rosetta_jit.kernel.ir import Expect, If, SetField, Store
 from rosetta_jit.kernel.rewrite import locals_in
 
 if TYPE_CHECKING:
@@ -23,6 +26,12 @@ if TYPE_CHECKING:
 OFTEN = 64
 """Checks of one value from which on it is another one."""
 
+STORES = 128
+"""Stores one behind another among which LLVM may look for those that belong together."""
+
+ANY_MEMORY = ir.FunctionType(ir.VoidType(), [])
+"""The type of an instruction that does nothing, but may write to all memory for all that LLVM can tell."""
+
 BITS: dict[ir.Type, ir.Type] = {I32: I32, I64: I64, F32: I32, F64: I64}
 """The types of values that fit in a register, and the integers of their size."""
 
@@ -30,9 +39,14 @@ BITS: dict[ir.Type, ir.Type] = {I32: I32, I64: I64, F32: I32, F64: I64}
 def body(frame: Frame, statements: Block) -> None:
     """Print a body's statements."""
     asked: Counter[str] = Counter()
+    stores = 0
     many = sum(isinstance(each, Expect | If) for each in statements) > OFTEN
     for part in llvm_stmt.parts(frame, statements):
         llvm_stmt.print_part(frame, part)
+        stores += isinstance(part, SetField | Store)
+        if stores == STORES and not frame.builder.block.is_terminated:
+            frame.builder.asm(ANY_MEMORY, "", "~{memory}", [], side_effect=True)
+            stores = 0
         if many and isinstance(part, Expect | If):
             asked.update(locals_in(part.condition))
             for name in [name for name, times in asked.items() if times >= OFTEN]:

@@ -14,36 +14,7 @@ from llvmlite import ir
 
 from rosetta_jit.backends.llvm.frame import F32, I1, I8, I64, LLVM_TYPES, POINTER, Variable, constant, intrinsic, is_float, is_signed
 from rosetta_jit.backends.llvm.support import declared
-from rosetta_jit.kernel.ir import (
-    WIDTH,
-    Address,
-    Binary,
-    Bits,
-    Capacity,
-    Compare,
-    Const,
-    Convert,
-    Digits,
-    Expr,
-    Fits,
-    Get,
-    HostValue,
-    IsText,
-    Known,
-    Load,
-    Local,
-    Lookup,
-    Nearest,
-    Order,
-    Place,
-    Register,
-    Scalar,
-    Scale,
-    Select,
-    Unary,
-    Used,
-    Wire,
-)
+from rosetta_jit.kernel import ir as kernel
 from rosetta_jit.kernel.terms import BEGIN, type_of
 from rosetta_jit.startup.sha import sha256
 
@@ -58,77 +29,77 @@ ANGULAR = frozenset(("sin", "cos", "tan", "asin", "acos", "atan"))
 BITWISE = {"and": "and_", "or": "or_", "xor": "xor", "shl": "shl"}
 
 
-def expression(frame: Frame, expr: Expr) -> ir.Value:
+def expression(frame: Frame, expr: kernel.Expr) -> ir.Value:
     """The value of an expression, computed where the frame's builder stands."""
     match expr:
-        case Const(type_, value):
+        case kernel.Const(type_, value):
             return _constant(type_, value)
-        case Local(_, name):
+        case kernel.Local(_, name):
             return _local(frame, name)
-        case Load(type_, at, order):
+        case kernel.Load(type_, at, order):
             return load(frame, wire_pointer(frame, at), type_, alignment=1, order=order)
-        case Get(type_, place):
+        case kernel.Get(type_, place):
             return load(frame, place_pointer(frame, place), type_, alignment=place_alignment(frame, place, type_))
-        case Used() | Capacity() | HostValue() | Register():
+        case kernel.Used() | kernel.Capacity() | kernel.HostValue() | kernel.Register():
             return _known(frame, expr)
-        case Unary(function, operand):
+        case kernel.Unary(function, operand):
             return _unary(frame, function, expression(frame, operand), type_of(operand))
-        case Binary(op, left, right):
+        case kernel.Binary(op, left, right):
             return _binary(frame, op, expression(frame, left), expression(frame, right), type_of(left))
-        case Compare(op, left, right):
+        case kernel.Compare(op, left, right):
             return _compare(frame, op, expression(frame, left), expression(frame, right), type_of(left))
-        case Fits(op, left, right):
+        case kernel.Fits(op, left, right):
             return _fits(frame, op, expression(frame, left), expression(frame, right))
-        case Convert(type_, operand) | Bits(type_, operand):
+        case kernel.Convert(type_, operand) | kernel.Bits(type_, operand):
             value = expression(frame, operand)
-            is_bits = isinstance(expr, Bits)
+            is_bits = isinstance(expr, kernel.Bits)
             return frame.builder.bitcast(value, LLVM_TYPES[type_]) if is_bits else _convert(frame, value, type_of(operand), type_)
-        case Select(condition, then, otherwise):
+        case kernel.Select(condition, then, otherwise):
             values = expression(frame, then), expression(frame, otherwise)
             return frame.builder.select(expression(frame, condition), *values)
-        case IsText(address, size):
+        case kernel.IsText(address, size):
             return frame.builder.call(declared(frame.module, "rosetta_is_text"), [pointer(frame, address), expression(frame, size)])
-        case Nearest() | Digits() | Scale():
+        case kernel.Nearest() | kernel.Digits() | kernel.Scale():
             return _decimal(frame, expr)
-        case Lookup(type_, values, index):
+        case kernel.Lookup(type_, values, index):
             return _looked_up(frame, type_, values, expression(frame, index))
         case _:
             assert_never(expr)
 
 
-def _known(frame: Frame, expr: Known) -> ir.Value:
+def _known(frame: Frame, expr: kernel.Known) -> ir.Value:
     match expr:
-        case Used(lane):
+        case kernel.Used(lane):
             return frame.builder.load(frame.used_slot(lane), typ=I64)
-        case Capacity(lane):
+        case kernel.Capacity(lane):
             return frame.capacity(lane)
-        case HostValue(what):
+        case kernel.HostValue(what):
             return frame.told(what)
-        case Register(number):
+        case kernel.Register(number):
             return frame.register(number)
         case _:
             assert_never(expr)
 
 
-def _decimal(frame: Frame, expr: Nearest | Digits | Scale) -> ir.Value:
+def _decimal(frame: Frame, expr: kernel.Nearest | kernel.Digits | kernel.Scale) -> ir.Value:
     from rosetta_jit.backends.llvm import decimals as llvm_decimals
 
     match expr:
-        case Nearest(address, size, exponent):
+        case kernel.Nearest(address, size, exponent):
             text, length, power = pointer(frame, address), expression(frame, size), expression(frame, exponent)
             return llvm_decimals.nearest(frame.module, frame.builder, text, length, power)
-        case Digits(value, places):
+        case kernel.Digits(value, places):
             number = expression(frame, value)
             if places is None:
                 return llvm_decimals.shortest(frame.module, frame.builder, number, 0)
             return llvm_decimals.fixed(frame.module, frame.builder, number, places)
-        case Scale(value):
+        case kernel.Scale(value):
             return llvm_decimals.shortest(frame.module, frame.builder, expression(frame, value), 1)
         case _:
             assert_never(expr)
 
 
-def _looked_up(frame: Frame, type_: Scalar, values: tuple[int, ...], index: ir.Value) -> ir.Value:
+def _looked_up(frame: Frame, type_: kernel.Scalar, values: tuple[int, ...], index: ir.Value) -> ir.Value:
     """A value of a constant of the module; equal tables are one."""
     kind = LLVM_TYPES[type_]
     name = f"rosetta_table_{type_}_{sha256(repr(values).encode()).hexdigest()[:16]}"
@@ -138,15 +109,15 @@ def _looked_up(frame: Frame, type_: Scalar, values: tuple[int, ...], index: ir.V
         table = ir.GlobalVariable(frame.module, array, name)
         table.linkage, table.global_constant, table.initializer = "internal", True, ir.Constant(array, list(values))
     builder = frame.builder
-    return builder.load(builder.gep(table, [index], inbounds=True, source_etype=kind), typ=kind, align=WIDTH[type_])
+    return builder.load(builder.gep(table, [index], inbounds=True, source_etype=kind), typ=kind, align=kernel.WIDTH[type_])
 
 
-def pointer(frame: Frame, address: Address) -> ir.Value:
+def pointer(frame: Frame, address: kernel.Address) -> ir.Value:
     """The machine address of a place or of a byte of the message."""
-    return wire_pointer(frame, address.at) if isinstance(address, Wire) else place_pointer(frame, address)
+    return wire_pointer(frame, address.at) if isinstance(address, kernel.Wire) else place_pointer(frame, address)
 
 
-def wire_pointer(frame: Frame, at: Expr) -> ir.Value:
+def wire_pointer(frame: Frame, at: kernel.Expr) -> ir.Value:
     """The machine address of a byte of the message."""
     base, offset = _parts(at)
     if base == BEGIN:
@@ -159,7 +130,7 @@ def wire_pointer(frame: Frame, at: Expr) -> ir.Value:
     return _moved(frame, frame.based(("message", place), start), offset)
 
 
-def place_pointer(frame: Frame, place: Place) -> ir.Value:
+def place_pointer(frame: Frame, place: kernel.Place) -> ir.Value:
     """The machine address of a field of a row."""
     builder, stride = frame.builder, frame.strides[place.lane]
     base, rows = _parts(place.row)
@@ -176,10 +147,10 @@ def place_pointer(frame: Frame, place: Place) -> ir.Value:
     return builder.gep(_moved(frame, address, rows * stride), [offset], source_etype=I8)
 
 
-def _parts(index: Expr) -> tuple[Expr, int]:
+def _parts(index: kernel.Expr) -> tuple[kernel.Expr, int]:
     """What is computed of an index, and the constant behind it: LLVM would find it with more effort."""
     match index:
-        case Binary("add", base, Const("i64", offset)):
+        case kernel.Binary("add", base, kernel.Const("i64", offset)):
             return base, int(offset)
         case _:
             return index, 0
@@ -189,35 +160,35 @@ def _moved(frame: Frame, address: ir.Value, offset: int) -> ir.Value:
     return frame.builder.gep(address, [constant(offset)], source_etype=I8) if offset else address
 
 
-def place_alignment(frame: Frame, place: Place, type_: Scalar) -> int:
+def place_alignment(frame: Frame, place: kernel.Place, type_: kernel.Scalar) -> int:
     """What rows and offsets guarantee, at most the width of the scalar."""
-    return gcd(WIDTH[type_], frame.strides[place.lane], place.offset)
+    return gcd(kernel.WIDTH[type_], frame.strides[place.lane], place.offset)
 
 
-def load(frame: Frame, address: ir.Value, type_: Scalar, *, alignment: int, order: Order = "<") -> ir.Value:
+def load(frame: Frame, address: ir.Value, type_: kernel.Scalar, *, alignment: int, order: kernel.Order = "<") -> ir.Value:
     """A scalar from memory; a bool is any byte but 0."""
     builder = frame.builder
     if type_ == "bool":
         return builder.icmp_unsigned("!=", builder.load(address, typ=I8, align=1), ir.Constant(I8, 0))
-    if order == "<" or WIDTH[type_] == 1:
+    if order == "<" or kernel.WIDTH[type_] == 1:
         return builder.load(address, typ=LLVM_TYPES[type_], align=alignment)
-    bits = ir.IntType(8 * WIDTH[type_])
+    bits = ir.IntType(8 * kernel.WIDTH[type_])
     value = builder.bswap(builder.load(address, typ=bits, align=alignment))
     return builder.bitcast(value, LLVM_TYPES[type_]) if is_float(type_) else value
 
 
-def store(frame: Frame, address: ir.Value, value: ir.Value, type_: Scalar, *, alignment: int, order: Order = "<") -> None:
+def store(frame: Frame, address: ir.Value, value: ir.Value, type_: kernel.Scalar, *, alignment: int, order: kernel.Order = "<") -> None:
     """A scalar to memory; a bool is the byte 0 or 1."""
     builder = frame.builder
     if type_ == "bool":
         value = builder.zext(value, I8)
-    elif order == ">" and WIDTH[type_] > 1:
-        bits = ir.IntType(8 * WIDTH[type_])
+    elif order == ">" and kernel.WIDTH[type_] > 1:
+        bits = ir.IntType(8 * kernel.WIDTH[type_])
         value = builder.bswap(builder.bitcast(value, bits) if is_float(type_) else value)
     builder.store(value, address, align=alignment)
 
 
-def _constant(type_: Scalar, value: float) -> ir.Value:
+def _constant(type_: kernel.Scalar, value: float) -> ir.Value:
     if type_ == "i64":
         return constant(int(value))
     if not is_float(type_):
@@ -239,7 +210,7 @@ def _local(frame: Frame, name: str) -> ir.Value:
     return frame.builder.load(value.slot, typ=value.type) if isinstance(value, Variable) else value
 
 
-def _unary(frame: Frame, function: str, value: ir.Value, type_: Scalar) -> ir.Value:
+def _unary(frame: Frame, function: str, value: ir.Value, type_: kernel.Scalar) -> ir.Value:
     builder, kind = frame.builder, LLVM_TYPES[type_]
     if function == "not":
         return builder.not_(value)
@@ -261,7 +232,7 @@ def _unary(frame: Frame, function: str, value: ir.Value, type_: Scalar) -> ir.Va
             return value  # an integer is its own floor; an unsigned one its own absolute value
 
 
-def _binary(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: Scalar) -> ir.Value:
+def _binary(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: kernel.Scalar) -> ir.Value:
     builder = frame.builder
     if op in ("min", "max"):
         return _extremum(frame, op, left, right, type_)
@@ -284,13 +255,13 @@ def _binary(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: Scala
             raise AssertionError(op)
 
 
-def _extremum(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: Scalar) -> ir.Value:
+def _extremum(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: kernel.Scalar) -> ir.Value:
     """The left operand where it compares as the smaller (greater) one, else the right one: also if either is NaN."""
     beyond = _compare(frame, "lt" if op == "min" else "gt", left, right, type_)
     return frame.builder.select(beyond, left, right)
 
 
-def _compare(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: Scalar) -> ir.Value:
+def _compare(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: kernel.Scalar) -> ir.Value:
     builder, predicate = frame.builder, PREDICATES[op]
     if is_float(type_):  # IEEE 754, 5.11: of all comparisons NaN satisfies `ne` alone
         return builder.fcmp_unordered(predicate, left, right) if op == "ne" else builder.fcmp_ordered(predicate, left, right)
@@ -303,7 +274,7 @@ def _fits(frame: Frame, op: str, left: ir.Value, right: ir.Value) -> ir.Value:
     return builder.not_(builder.extract_value(both, 1))
 
 
-def _convert(frame: Frame, value: ir.Value, source: Scalar, target: Scalar) -> ir.Value:
+def _convert(frame: Frame, value: ir.Value, source: kernel.Scalar, target: kernel.Scalar) -> ir.Value:
     builder, kind = frame.builder, LLVM_TYPES[target]
     if target == "bool":
         return _compare(frame, "ne", value, _constant(source, 0), source)
@@ -321,11 +292,11 @@ def _convert(frame: Frame, value: ir.Value, source: Scalar, target: Scalar) -> i
             return _resize(frame, value, source, target)
 
 
-def _resize(frame: Frame, value: ir.Value, source: Scalar, target: Scalar) -> ir.Value:
+def _resize(frame: Frame, value: ir.Value, source: kernel.Scalar, target: kernel.Scalar) -> ir.Value:
     builder, kind = frame.builder, LLVM_TYPES[target]
     if value.type == kind:
         return value
-    if WIDTH[source] > WIDTH[target]:
+    if kernel.WIDTH[source] > kernel.WIDTH[target]:
         return builder.trunc(value, kind)
     return builder.sext(value, kind) if is_signed(source) else builder.zext(value, kind)
 

@@ -9,50 +9,13 @@ from math import gcd
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from rosetta_jit.kernel.ir import (
-    Advance,
-    Assign,
-    Binary,
-    Bits,
-    Call,
-    Capacity,
-    Compare,
-    Const,
-    Convert,
-    Copy,
-    Digits,
-    Expect,
-    Fill,
-    Fits,
-    For,
-    Get,
-    HostCall,
-    HostValue,
-    IsText,
-    Let,
-    Load,
-    Local,
-    Lookup,
-    Nearest,
-    Place,
-    Register,
-    Require,
-    Reserve,
-    Return,
-    SetField,
-    Store,
-    Switch,
-    Unary,
-    Used,
-    Var,
-)
+from rosetta_jit.kernel import ir as kernel
 from rosetta_jit.kernel.shape import blocks_of, expressions_of, operands
 from rosetta_jit.kernel.terms import BEGIN, END, ROW
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Sequence
 
-    from rosetta_jit.kernel.ir import Address, Expr, Scalar, Stmt
 
 FIXED = frozenset((BEGIN.name, END.name, ROW.name))
 """Names that mean the same in all statements."""
@@ -71,7 +34,7 @@ class Slot(NamedTuple):
     number: int = 0
     lane: int = 0
     others: tuple[int, ...] = (0,)
-    type: Scalar = "i64"
+    type: kernel.Scalar = "i64"
 
     @property
     def is_use(self) -> bool:
@@ -81,7 +44,7 @@ class Slot(NamedTuple):
 class Outline:
     """The shape of a statement and its slots: those of its expressions from left to right, then those of its blocks."""
 
-    def __init__(self, stmt: Stmt, strides: Sequence[int], own_lanes: int) -> None:
+    def __init__(self, stmt: kernel.Stmt, strides: Sequence[int], own_lanes: int) -> None:
         self.strides, self.own_lanes = strides, own_lanes
         self._shape = list["Hashable"]()
         self.slots = list[Slot]()
@@ -90,7 +53,7 @@ class Outline:
 
     # --- statements ------------------------------------------------------------------------------------------------------
 
-    def _statement(self, stmt: Stmt) -> None:
+    def _statement(self, stmt: kernel.Stmt) -> None:
         self._shape.append(type(stmt))
         self._own(stmt)
         for expr in expressions_of(stmt):
@@ -100,41 +63,41 @@ class Outline:
             for each in block:
                 self._statement(each)
 
-    def _own(self, stmt: Stmt) -> None:
+    def _own(self, stmt: kernel.Stmt) -> None:
         """What is a statement's own, besides its expressions and blocks."""
         match stmt:
-            case Require(_, _, failure) | Expect(_, failure):
+            case kernel.Require(_, _, failure) | kernel.Expect(_, failure):
                 self._shape.append(len(failure.indices))
                 self._sites((failure.site,))
-            case Let(name, _) | Var(name, _) | For(name, _, _):
+            case kernel.Let(name, _) | kernel.Var(name, _) | kernel.For(name, _, _):
                 self.slots.append(Slot("bound", name))
-            case Assign(name, _):
+            case kernel.Assign(name, _):
                 self.slots.append(Slot("assigned", name))
-            case Reserve(lane, _) | Advance(lane, _):
+            case kernel.Reserve(lane, _) | kernel.Advance(lane, _):
                 self._lane(lane)
-            case Switch(_, cases, _):
+            case kernel.Switch(_, cases, _):
                 self._shape.append(tuple(number for number, _ in cases))
-            case Call(routine, _, results, sites, indices):
+            case kernel.Call(routine, _, results, sites, indices):
                 self._shape += [routine, len(indices)]
                 self.slots += [Slot("bound", each.name) for each in results]
                 self._sites(sites)
-            case HostCall() | Return():
+            case kernel.HostCall() | kernel.Return():
                 self._shape.append(object())  # which is like no other
-            case Store() | SetField() | Copy() | Fill():
+            case kernel.Store() | kernel.SetField() | kernel.Copy() | kernel.Fill():
                 self._effect(stmt)
             case _:
                 pass
 
-    def _effect(self, stmt: Store | SetField | Copy | Fill) -> None:
+    def _effect(self, stmt: kernel.Store | kernel.SetField | kernel.Copy | kernel.Fill) -> None:
         match stmt:
-            case Store(_, _, order):
+            case kernel.Store(_, _, order):
                 self._shape.append(order)
-            case SetField(place, _):
+            case kernel.SetField(place, _):
                 self._place(place)
-            case Copy(target, source, _):
+            case kernel.Copy(target, source, _):
                 self._address(target)
                 self._address(source)
-            case Fill(target, _, byte):
+            case kernel.Fill(target, _, byte):
                 self._address(target)
                 self._shape.append(byte)
 
@@ -146,12 +109,12 @@ class Outline:
 
     # --- places ----------------------------------------------------------------------------------------------------------
 
-    def _address(self, address: Address) -> None:
+    def _address(self, address: kernel.Address) -> None:
         self._shape.append(type(address))
-        if isinstance(address, Place):
+        if isinstance(address, kernel.Place):
             self._place(address)
 
-    def _place(self, place: Place) -> None:
+    def _place(self, place: kernel.Place) -> None:
         lane, offset = place.lane, place.offset
         self._lane(lane)
         self._shape.append(gcd(WIDEST, self.strides[lane], offset))  # how far it is aligned
@@ -165,28 +128,28 @@ class Outline:
 
     # --- expressions -----------------------------------------------------------------------------------------------------
 
-    def _expression(self, expr: Expr) -> None:
+    def _expression(self, expr: kernel.Expr) -> None:
         self._shape.append(type(expr))
         match expr:
-            case Local(type_, name):
+            case kernel.Local(type_, name):
                 self._shape += [type_, name if name in FIXED else ""]
                 if name not in FIXED:
                     self.slots.append(Slot("read", name, type=type_))
-            case Const(type_, value):
+            case kernel.Const(type_, value):
                 is_integer = is_number(expr)
                 self._shape += [type_, "" if is_integer else repr(value)]
                 if is_integer:
                     self.slots.append(Slot("number", number=int(value)))
-            case Used(lane) | Capacity(lane):
+            case kernel.Used(lane) | kernel.Capacity(lane):
                 self._lane(lane)
             case _:
                 self._parts(expr)
 
-    def _parts(self, expr: Expr) -> None:
+    def _parts(self, expr: kernel.Expr) -> None:
         match expr:
-            case Get(_, place):
+            case kernel.Get(_, place):
                 self._place(place)
-            case IsText(address, _) | Nearest(address, _, _):
+            case kernel.IsText(address, _) | kernel.Nearest(address, _, _):
                 self._address(address)
             case _:
                 pass
@@ -197,19 +160,19 @@ class Outline:
             self._expression(each)
 
 
-_LITERALS: dict[type[Expr], Callable[[Any], Hashable]] = {
-    **dict.fromkeys((Binary, Compare, Fits), attrgetter("op")),
-    **dict.fromkeys((Convert, Bits, Get), attrgetter("type")),
-    Load: attrgetter("type", "order"),
-    Unary: attrgetter("function"),
-    Digits: attrgetter("places"),
-    Lookup: attrgetter("type", "values"),
-    HostValue: attrgetter("what"),
-    Register: attrgetter("number"),
+_LITERALS: dict[type[kernel.Expr], Callable[[Any], Hashable]] = {
+    **dict.fromkeys((kernel.Binary, kernel.Compare, kernel.Fits), attrgetter("op")),
+    **dict.fromkeys((kernel.Convert, kernel.Bits, kernel.Get), attrgetter("type")),
+    kernel.Load: attrgetter("type", "order"),
+    kernel.Unary: attrgetter("function"),
+    kernel.Digits: attrgetter("places"),
+    kernel.Lookup: attrgetter("type", "values"),
+    kernel.HostValue: attrgetter("what"),
+    kernel.Register: attrgetter("number"),
 }
 """What is an expression's own, besides its operands."""
 
 
-def is_number(expr: Const) -> bool:
+def is_number(expr: kernel.Const) -> bool:
     """Whether a constant is an integer."""
     return expr.type not in ("bool", "f32", "f64")

@@ -29,33 +29,7 @@ from rosetta_jit.backends.llvm.host import host_called
 from rosetta_jit.backends.llvm.rounds import print_switch, rounds_of
 from rosetta_jit.backends.llvm.series import print_cases, print_series
 from rosetta_jit.backends.llvm.swap import Run, print_run, swapped, with_runs
-from rosetta_jit.kernel.ir import (
-    Advance,
-    Assign,
-    Binary,
-    Block,
-    Call,
-    Const,
-    Copy,
-    Expect,
-    Expr,
-    Failure,
-    Fill,
-    For,
-    HostCall,
-    If,
-    Let,
-    Require,
-    Reserve,
-    Return,
-    Routine,
-    SetField,
-    Stmt,
-    Store,
-    Switch,
-    Var,
-    While,
-)
+from rosetta_jit.kernel import ir as kernel
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
@@ -70,19 +44,19 @@ GOLDEN = 0x9E3779B1
 """2**32 over the golden ratio: its multiples leave the numbers below 2**32 in an order without a pattern."""
 
 
-def block(frame: Frame, statements: Block) -> None:
+def block(frame: Frame, statements: kernel.Block) -> None:
     """Print statements until one ends the block; what follows a Return is never reached."""
     for part in parts(frame, statements):
         print_part(frame, part)
 
 
-def parts(frame: Frame, statements: Block) -> Sequence[Stmt | Series | Run]:
+def parts(frame: Frame, statements: kernel.Block) -> Sequence[kernel.Stmt | Series | Run]:
     """What a block is printed as."""
     found = frame.alike.parts(statements)
     return with_runs(found) if frame.is_rare else found
 
 
-def print_part(frame: Frame, part: Stmt | Series | Run) -> None:
+def print_part(frame: Frame, part: kernel.Stmt | Series | Run) -> None:
     """Print a part of a block, unless one before it has ended it."""
     if frame.builder.block.is_terminated:
         return
@@ -94,49 +68,49 @@ def print_part(frame: Frame, part: Stmt | Series | Run) -> None:
         _statement(frame, part)
 
 
-def _statement(frame: Frame, statement: Stmt) -> None:
+def _statement(frame: Frame, statement: kernel.Stmt) -> None:
     match statement:
-        case Require(at, size, failure):
+        case kernel.Require(at, size, failure):
             _require(frame, at, size, failure)
-        case Expect(condition, failure):
+        case kernel.Expect(condition, failure):
             _check(frame, expression(frame, condition), failure)
-        case Let(name, value):
+        case kernel.Let(name, value):
             frame.locals[name] = _value(frame, name, value)
-        case Var(name, value):
+        case kernel.Var(name, value):
             start = expression(frame, value)
             frame.builder.store(start, frame.variable(name, LLVM_TYPES[type_of(value)]).slot)
-        case Assign(name, value):
+        case kernel.Assign(name, value):
             _assign(frame, name, value)
-        case Store(at, value, order):
+        case kernel.Store(at, value, order):
             store(frame, wire_pointer(frame, at), expression(frame, value), type_of(value), alignment=1, order=order)
-        case SetField(place, value):
+        case kernel.SetField(place, value):
             alignment = place_alignment(frame, place, type_of(value))
             store(frame, place_pointer(frame, place), expression(frame, value), type_of(value), alignment=alignment)
-        case Reserve(lane, count):
+        case kernel.Reserve(lane, count):
             _reserve(frame, lane, expression(frame, count))
-        case Advance(lane, count):
+        case kernel.Advance(lane, count):
             slot = frame.used_slot(lane)
             rows = frame.builder.add(frame.builder.load(slot, typ=I64), expression(frame, count), flags=("nsw",))
             # One text behind another: what LLVM works out for a sum of sums takes exponential time.
             frame.builder.store(forgotten(frame.builder, rows) if frame.is_hidden(lane) else rows, slot)
-        case Copy(target, source, size):
+        case kernel.Copy(target, source, size):
             copy_memory(frame, pointer(frame, target), pointer(frame, source), expression(frame, size))
-        case Fill(target, size, byte):
+        case kernel.Fill(target, size, byte):
             fill_memory(frame, pointer(frame, target), byte, expression(frame, size))
-        case For() | While() | If() | Switch():
+        case kernel.For() | kernel.While() | kernel.If() | kernel.Switch():
             _nested(frame, statement)
-        case Return(position, registers):
+        case kernel.Return(position, registers):
             _keep(frame, registers)
             frame.done.enter(frame.builder, [expression(frame, position)])
-        case Call():
+        case kernel.Call():
             _call(frame, statement)
-        case HostCall():
+        case kernel.HostCall():
             _host_call(frame, statement)
         case _:
             assert_never(statement)
 
 
-def _value(frame: Frame, name: str, value: Expr) -> ir.Value:
+def _value(frame: Frame, name: str, value: kernel.Expr) -> ir.Value:
     """The value of a local: of a place in the message LLVM does not know how it was found.
 
     A place is a sum of the sizes of all that stands before it. What LLVM tries with the summands, for the addresses in each loop, takes
@@ -148,53 +122,55 @@ def _value(frame: Frame, name: str, value: Expr) -> ir.Value:
         frame.indices.add(name)
         return number
     match value:
-        case Binary("add", left, right) if not isinstance(left, Const) and not isinstance(right, Const) and type_of(left) == "i64":
+        case kernel.Binary("add", left, right) if (
+            not isinstance(left, kernel.Const) and not isinstance(right, kernel.Const) and type_of(left) == "i64"
+        ):
             return forgotten(frame.builder, number)
         case _:
             return number
 
 
-def _keep(frame: Frame, registers: tuple[tuple[int, Expr], ...]) -> None:
+def _keep(frame: Frame, registers: tuple[tuple[int, kernel.Expr], ...]) -> None:
     """Let registers hold other values from now on, all of which are computed from the old ones."""
     values = [expression(frame, value) for _, value in registers]
     for (number, _), value in zip(registers, values, strict=True):
         frame.builder.store(value, frame.register_word(frame.builder, number), align=8)
 
 
-def _nested(frame: Frame, statement: For | While | If | Switch) -> None:
+def _nested(frame: Frame, statement: kernel.For | kernel.While | kernel.If | kernel.Switch) -> None:
     match statement:
-        case For() if frame.is_rare and swapped(frame, statement):
+        case kernel.For() if frame.is_rare and swapped(frame, statement):
             pass
-        case For(variable, count, body):
+        case kernel.For(variable, count, body):
             _for(frame, variable, expression(frame, count), body)
-        case While():
+        case kernel.While():
             _while(frame, statement)
-        case If(condition, then, otherwise):
+        case kernel.If(condition, then, otherwise):
             _if(frame, expression(frame, condition), then, otherwise)
-        case Switch():
+        case kernel.Switch():
             _switch(frame, statement)
 
 
-def _require(frame: Frame, at: Expr, size: Expr, failure: Failure) -> None:
+def _require(frame: Frame, at: kernel.Expr, size: kernel.Expr, failure: kernel.Failure) -> None:
     """Check ``at >= 0``, ``size >= 0`` and ``size <= end - at``: a difference that cannot wrap where the first holds."""
     builder = frame.builder
     start, length = expression(frame, at), expression(frame, size)
     holds = builder.icmp_signed("<=", length, builder.sub(frame.parameters.end, start))
-    for value, is_positive in ((start, _is_behind_begin(at)), (length, isinstance(size, Const))):
+    for value, is_positive in ((start, _is_behind_begin(at)), (length, isinstance(size, kernel.Const))):
         if not is_positive:
             holds = builder.and_(holds, builder.icmp_signed(">=", value, constant(0)))
     _check(frame, holds, failure)
 
 
-def _is_behind_begin(at: Expr) -> bool:
+def _is_behind_begin(at: kernel.Expr) -> bool:
     match at:
-        case Binary("add", base, Const(_, offset)):
+        case kernel.Binary("add", base, kernel.Const(_, offset)):
             return base == BEGIN and offset >= 0
         case _:
-            return at == BEGIN or isinstance(at, Const)
+            return at == BEGIN or isinstance(at, kernel.Const)
 
 
-def _check(frame: Frame, holds: ir.Value, failure: Failure) -> None:
+def _check(frame: Frame, holds: ir.Value, failure: kernel.Failure) -> None:
     """Go on where the condition holds."""
     good = _cold(frame, holds)
     _fail(frame, (failure.site,), constant(1), expression(frame, failure.at), failure.indices)
@@ -209,7 +185,7 @@ def _cold(frame: Frame, holds: ir.Value) -> ir.Block:
     return good
 
 
-def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Value, indices: tuple[Expr, ...]) -> None:
+def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Value, indices: tuple[kernel.Expr, ...]) -> None:
     """Leave the body at the site of a number, counted from 1; what a routine's sites and indices are, its caller says."""
     while frame.caller is not None:
         frame, call = frame.caller
@@ -218,9 +194,9 @@ def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Val
     frame.failed.enter(frame.builder, [*values, *[constant(0)] * (len(frame.failed.phis) - len(values))])
 
 
-def _call(frame: Frame, call: Call) -> None:
+def _call(frame: Frame, call: kernel.Call) -> None:
     routine = frame.routines[call.routine]
-    if isinstance(routine, Routine):
+    if isinstance(routine, kernel.Routine):
         _inline(frame, call, routine)
         return
     builder, parameters = frame.builder, frame.parameters
@@ -234,7 +210,7 @@ def _call(frame: Frame, call: Call) -> None:
         frame.locals[result.name] = builder.extract_value(outcome, position)
 
 
-def _inline(frame: Frame, call: Call, routine: Routine) -> None:
+def _inline(frame: Frame, call: kernel.Call, routine: kernel.Routine) -> None:
     """The routine's statements instead of a call."""
     names = {name: frame.locals[name] for name in (BEGIN.name, END.name)}
     given = {each.name: expression(frame, value) for each, value in zip(routine.parameters, call.arguments, strict=True)}
@@ -244,7 +220,7 @@ def _inline(frame: Frame, call: Call, routine: Routine) -> None:
         frame.locals[here.name] = expression(inside, there)
 
 
-def _host_call(frame: Frame, call: HostCall) -> None:
+def _host_call(frame: Frame, call: kernel.HostCall) -> None:
     status, result = host_called(frame, call)
     good = _cold(frame, frame.builder.icmp_signed("==", status, ir.Constant(status.type, 0)))
     _fail(frame, (call.failure.site,), constant(1), expression(frame, call.failure.at), call.failure.indices)
@@ -266,7 +242,7 @@ def _site(frame: Frame, number: ir.Value, sites: tuple[int, ...]) -> ir.Value:
     return builder.add(first, builder.add(number, further))
 
 
-def _assign(frame: Frame, name: str, value: Expr) -> None:
+def _assign(frame: Frame, name: str, value: kernel.Expr) -> None:
     variable = frame.locals[name]
     if not isinstance(variable, Variable):
         raise AssertionError(f"{name} is no Var")  # noqa: TRY004 - our bug, not a caller's
@@ -291,7 +267,7 @@ def _reserve(frame: Frame, lane: int, count: ir.Value) -> None:
     builder.position_at_end(enough)
 
 
-def _for(frame: Frame, variable: str, count: ir.Value, body: Block) -> None:
+def _for(frame: Frame, variable: str, count: ir.Value, body: kernel.Block) -> None:
     builder = frame.builder
     before, head, inside, behind = builder.block, frame.block("for"), frame.block("each"), frame.block("after")
     builder.branch(head)
@@ -308,7 +284,7 @@ def _for(frame: Frame, variable: str, count: ir.Value, body: Block) -> None:
     builder.position_at_end(behind)
 
 
-def _while(frame: Frame, loop: While) -> None:
+def _while(frame: Frame, loop: kernel.While) -> None:
     builder = frame.builder
     head, inside, behind = frame.block("while"), frame.block("round"), frame.block("after")
     builder.branch(head)
@@ -326,7 +302,7 @@ def _while(frame: Frame, loop: While) -> None:
     builder.position_at_end(behind)
 
 
-def _if(frame: Frame, condition: ir.Value, then: Block, otherwise: Block) -> None:
+def _if(frame: Frame, condition: ir.Value, then: kernel.Block, otherwise: kernel.Block) -> None:
     builder = frame.builder
     yes, behind = frame.block("then"), frame.block("after")
     no = frame.block("else") if otherwise else behind
@@ -339,7 +315,7 @@ def _if(frame: Frame, condition: ir.Value, then: Block, otherwise: Block) -> Non
     builder.position_at_end(behind)
 
 
-def _switch(frame: Frame, statement: Switch) -> None:
+def _switch(frame: Frame, statement: kernel.Switch) -> None:
     builder, value = frame.builder, expression(frame, statement.value)
     other, behind = frame.block("default"), frame.block("after")
     switch = builder.switch(value, other)
@@ -354,7 +330,7 @@ def _switch(frame: Frame, statement: Switch) -> None:
     builder.position_at_end(behind)
 
 
-def _shuffled(cases: tuple[tuple[int, Block], ...]) -> list[tuple[int, Block]]:
+def _shuffled(cases: tuple[tuple[int, kernel.Block], ...]) -> list[tuple[int, kernel.Block]]:
     """The cases, if they are many in no order that means anything: so they will lie in memory.
 
     A processor foretells where a switch jumps to by the addresses that it jumped to before. Of a hundred cases of one size, taken in the
@@ -365,7 +341,7 @@ def _shuffled(cases: tuple[tuple[int, Block], ...]) -> list[tuple[int, Block]]:
     return [case for _, case in sorted(enumerate(cases), key=lambda each: each[0] * GOLDEN % 2**32)]
 
 
-def _branch(frame: Frame, body: Block, behind: ir.Block) -> None:
+def _branch(frame: Frame, body: kernel.Block, behind: ir.Block) -> None:
     block(frame, body)
     if not frame.builder.block.is_terminated:
         frame.builder.branch(behind)

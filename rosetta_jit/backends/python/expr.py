@@ -10,35 +10,7 @@ import math
 from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.kernel.ir import (
-    WIDTH,
-    Address,
-    Binary,
-    Bits,
-    Capacity,
-    Compare,
-    Const,
-    Convert,
-    Digits,
-    Expr,
-    Fits,
-    Get,
-    HostValue,
-    IsText,
-    Known,
-    Load,
-    Local,
-    Lookup,
-    Nearest,
-    Place,
-    Register,
-    Scalar,
-    Scale,
-    Select,
-    Unary,
-    Used,
-    Wire,
-)
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.state import NOW, NUMBER
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -78,83 +50,83 @@ class Names:
         return f"register_{number}"
 
 
-def expression(names: Names, expr: Expr) -> str:
+def expression(names: Names, expr: ir.Expr) -> str:
     """The text of an expression; one with an operator stands in parentheses."""
     match expr:
-        case Const(type_, value):
+        case ir.Const(type_, value):
             return _constant(type_, value)
-        case Local(_, name):
+        case ir.Local(_, name):
             return names.locals.identifier(name)
-        case Load(type_, at, order):
-            return _read(names, type_, Wire(at), order)
-        case Get(type_, place):
+        case ir.Load(type_, at, order):
+            return _read(names, type_, ir.Wire(at), order)
+        case ir.Get(type_, place):
             return _read(names, type_, place, "<")
-        case Used() | Capacity() | HostValue() | Register():
+        case ir.Used() | ir.Capacity() | ir.HostValue() | ir.Register():
             return _known(names, expr)
-        case Unary("not", operand) if type_of(operand) == "bool":
+        case ir.Unary("not", operand) if type_of(operand) == "bool":
             return f"(not {expression(names, operand)})"
-        case Unary(function, operand):
+        case ir.Unary(function, operand):
             return f'unary("{type_of(operand)}", "{function}", {expression(names, operand)})'
-        case Binary(op, left, right):
+        case ir.Binary(op, left, right):
             return _binary(op, type_of(left), expression(names, left), expression(names, right))
-        case Compare(op, left, right):
+        case ir.Compare(op, left, right):
             text = f"({expression(names, left)} {COMPARISONS[op]} {expression(names, right)})"
             return f"bool{text}" if type_of(left) in FLOATS else text
-        case Fits(op, left, right):
+        case ir.Fits(op, left, right):
             return f'fits("{op}", {expression(names, left)}, {expression(names, right)})'
-        case Convert(type_, operand) | Bits(type_, operand):
+        case ir.Convert(type_, operand) | ir.Bits(type_, operand):
             source, text = type_of(operand), expression(names, operand)
-            return f'same_bits("{type_}", "{source}", {text})' if isinstance(expr, Bits) else _convert(type_, source, text)
-        case Select(condition, then, otherwise):
+            return f'same_bits("{type_}", "{source}", {text})' if isinstance(expr, ir.Bits) else _convert(type_, source, text)
+        case ir.Select(condition, then, otherwise):
             return f"({expression(names, then)} if {expression(names, condition)} else {expression(names, otherwise)})"
-        case IsText(address, size):
+        case ir.IsText(address, size):
             return f"is_text({part(names, address, expression(names, size))})"
-        case Nearest() | Digits() | Scale():
+        case ir.Nearest() | ir.Digits() | ir.Scale():
             return _decimal(names, expr)
-        case Lookup(_, values, index):
+        case ir.Lookup(_, values, index):
             return f"{values!r}[{expression(names, index)}]"
         case _:
             assert_never(expr)
 
 
-def _known(names: Names, expr: Known) -> str:
+def _known(names: Names, expr: ir.Known) -> str:
     match expr:
-        case Used(lane):
+        case ir.Used(lane):
             return names.used_name(lane)
-        case Capacity(lane):
+        case ir.Capacity(lane):
             return names.capacity_name(lane)
-        case HostValue(what):
+        case ir.HostValue(what):
             return TOLD[what]
-        case Register(number):
+        case ir.Register(number):
             return names.register_name(number)
         case _:
             assert_never(expr)
 
 
-def _decimal(names: Names, expr: Nearest | Digits | Scale) -> str:
+def _decimal(names: Names, expr: ir.Nearest | ir.Digits | ir.Scale) -> str:
     match expr:
-        case Nearest(address, size, exponent):
+        case ir.Nearest(address, size, exponent):
             return f"nearest({part(names, address, expression(names, size))}, {expression(names, exponent)})"
-        case Digits(value, places):
+        case ir.Digits(value, places):
             return f'digits("{type_of(value)}", {expression(names, value)}, {places})'
-        case Scale(value):
+        case ir.Scale(value):
             return f'scale("{type_of(value)}", {expression(names, value)})'
         case _:
             assert_never(expr)
 
 
-def part(names: Names, address: Address, size: str) -> str:
+def part(names: Names, address: ir.Address, size: str) -> str:
     """A slice of the message or of a lane."""
     memory, start = location(names, address)
     return f"{memory}[{start} : {start} + {size}]"
 
 
-def location(names: Names, address: Address) -> tuple[str, str]:
+def location(names: Names, address: ir.Address) -> tuple[str, str]:
     """The memory and the index of its byte."""
     match address:
-        case Wire(at):
+        case ir.Wire(at):
             return "buffer", expression(names, at)
-        case Place(lane, row, offset):
+        case ir.Place(lane, row, offset):
             stride = names.strides[lane]
             start = expression(names, row) if stride == 1 else f"{expression(names, row)} * {stride}"
             return f"lanes[{lane}]", f"{start} + {offset}" if offset else start
@@ -162,21 +134,21 @@ def location(names: Names, address: Address) -> tuple[str, str]:
             assert_never(address)
 
 
-def _constant(type_: Scalar, value: float) -> str:
+def _constant(type_: ir.Scalar, value: float) -> str:
     if type_ not in FLOATS:
         return repr(bool(value)) if type_ == "bool" else repr(int(value))
     number = repr(float(value))
-    return f"float{8 * WIDTH[type_]}({number if math.isfinite(value) else repr(number)})"
+    return f"float{8 * ir.WIDTH[type_]}({number if math.isfinite(value) else repr(number)})"
 
 
-def _read(names: Names, type_: Scalar, address: Address, order: str) -> str:
+def _read(names: Names, type_: ir.Scalar, address: ir.Address, order: str) -> str:
     if type_ in FLOATS:
-        return f'from_bytes("{type_}", bytes({part(names, address, str(WIDTH[type_]))}), "{order}")'
+        return f'from_bytes("{type_}", bytes({part(names, address, str(ir.WIDTH[type_]))}), "{order}")'
     memory, start = location(names, address)
     return f'unpack_from("{order}{FORMATS[type_]}", {memory}, {start})[0]'
 
 
-def _binary(op: str, type_: Scalar, left: str, right: str) -> str:
+def _binary(op: str, type_: ir.Scalar, left: str, right: str) -> str:
     match op, type_ in FLOATS:
         case (("min" | "max" | "rem" | "atan2"), True):
             return f'binary("{type_}", "{op}", {left}, {right})'
@@ -194,13 +166,13 @@ def _binary(op: str, type_: Scalar, left: str, right: str) -> str:
             return f"({left} {OPERATORS[op]} {right})"
 
 
-def _convert(target: Scalar, source: Scalar, value: str) -> str:
+def _convert(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
     """Nothing where every value of the source is one of the target."""
     is_wider = source not in FLOATS | {"bool"} and target not in FLOATS | {"bool"} and _holds(target, source)
     return value if is_wider or target == source else f'convert("{target}", {value})'
 
 
-def _holds(target: Scalar, source: Scalar) -> bool:
+def _holds(target: ir.Scalar, source: ir.Scalar) -> bool:
     if target[0] == source[0]:
-        return WIDTH[target] >= WIDTH[source]
-    return target[0] == "i" and WIDTH[target] > WIDTH[source]
+        return ir.WIDTH[target] >= ir.WIDTH[source]
+    return target[0] == "i" and ir.WIDTH[target] > ir.WIDTH[source]

@@ -13,41 +13,9 @@ from typing import TYPE_CHECKING, Any, assert_never
 
 from rosetta_jit.backends.base import Namespace, Writer, counted_lanes, emptied_lanes, statements
 from rosetta_jit.backends.python.expr import FLOATS, FORMATS, Names, expression, location, part
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.host import NO_FUNCTIONS
 from rosetta_jit.kernel.interpret import runnable as interpreted
-from rosetta_jit.kernel.ir import (
-    WIDTH,
-    Address,
-    Advance,
-    Assign,
-    Block,
-    Call,
-    Copy,
-    Digits,
-    Expect,
-    Expr,
-    Failure,
-    Fill,
-    For,
-    HostCall,
-    If,
-    Kernel,
-    Let,
-    Nearest,
-    Order,
-    Require,
-    Reserve,
-    Return,
-    Routine,
-    Scale,
-    SetField,
-    Stmt,
-    Store,
-    Switch,
-    Var,
-    While,
-    Wire,
-)
 from rosetta_jit.kernel.shape import expressions_of, extents_of, subexpressions
 from rosetta_jit.kernel.state import CAPACITY, USED, lane_word
 from rosetta_jit.kernel.terms import type_of
@@ -75,7 +43,7 @@ REGISTERS = ", registers"
 """The parameter more of a kernel that has some."""
 
 
-def compile_python(kernel: Kernel, functions: Functions = NO_FUNCTIONS) -> Callable[..., int]:
+def compile_python(kernel: ir.Kernel, functions: Functions = NO_FUNCTIONS) -> Callable[..., int]:
     """The kernel as a Python function, which calls those of the host.
 
     Raises
@@ -88,7 +56,7 @@ def compile_python(kernel: Kernel, functions: Functions = NO_FUNCTIONS) -> Calla
     return scope["kernel"]
 
 
-def runnable(kernel: Kernel, functions: Functions) -> Callable[..., int]:
+def runnable(kernel: ir.Kernel, functions: Functions) -> Callable[..., int]:
     """The same; where Python does not nest so deep, the interpreter, which does what the text would."""
     try:
         return compile_python(kernel, functions)
@@ -96,11 +64,11 @@ def runnable(kernel: Kernel, functions: Functions) -> Callable[..., int]:
         return interpreted(kernel, functions)
 
 
-def python_text(kernel: Kernel) -> str:
+def python_text(kernel: ir.Kernel) -> str:
     """The kernel as the source of a Python module, the same for the same kernel."""
     writer = Writer()
     writer.line(f"# Made by rosetta_jit from the kernel {kernel.name!a}, which is to {kernel.direction}. Changes will be lost.")
-    calls_host = any(isinstance(stmt, HostCall) for body in kernel.bodies for stmt in statements(body))
+    calls_host = any(isinstance(stmt, ir.HostCall) for body in kernel.bodies for stmt in statements(body))
     for line in (*IMPORTS, *(HOST_IMPORTS if calls_host else ()), *([OF_DECIMALS] if _has_decimals(kernel) else [])):
         writer.line(line)
     for routine in kernel.routines:
@@ -123,14 +91,14 @@ def python_text(kernel: Kernel) -> str:
     return writer.text()
 
 
-def _has_decimals(kernel: Kernel) -> bool:
+def _has_decimals(kernel: ir.Kernel) -> bool:
     """Whether a kernel reads or writes floats in decimal."""
     blocks = (*kernel.bodies, *(routine.body for routine in kernel.routines))
     expressions = (expr for block in blocks for stmt in statements(block) for expr in expressions_of(stmt))
-    return any(isinstance(part, Nearest | Digits | Scale) for expr in expressions for part in subexpressions(expr))
+    return any(isinstance(part, ir.Nearest | ir.Digits | ir.Scale) for expr in expressions for part in subexpressions(expr))
 
 
-def _reserved(kernel: Kernel) -> frozenset[str]:
+def _reserved(kernel: ir.Kernel) -> frozenset[str]:
     lanes = range(len(kernel.strides))
     words = {f"{kind}_{lane}" for kind in ("used", "capacity") for lane in lanes}
     words |= {"registers", *(f"register_{number}" for number in range(kernel.registers))}
@@ -142,7 +110,7 @@ def _reserved(kernel: Kernel) -> frozenset[str]:
 class _Attempt:
     """Prints one body."""
 
-    def __init__(self, kernel: Kernel, body: Block, writer: Writer) -> None:
+    def __init__(self, kernel: ir.Kernel, body: ir.Block, writer: Writer) -> None:
         parameters = {name: name for name in ("begin", "end", "row")}
         self.kernel, self.body, self.writer = kernel, body, writer
         self.names = Names(Namespace(_reserved(kernel), parameters), kernel.strides)
@@ -168,51 +136,51 @@ class _Attempt:
         outer.lines += self.writer.lines
         self.writer = outer
 
-    def _block(self, block: Block) -> None:
+    def _block(self, block: ir.Block) -> None:
         for statement in block:
             self._statement(statement)
         if not block:
             self.writer.line("pass")
 
-    def _statement(self, statement: Stmt) -> None:
+    def _statement(self, statement: ir.Stmt) -> None:
         match statement:
-            case Require(at, size, failure):
+            case ir.Require(at, size, failure):
                 self._fail_unless(f"has_room({self._text(at)}, {self._text(size)}, end)", failure)
-            case Expect(condition, failure):
+            case ir.Expect(condition, failure):
                 self._fail_unless(self._text(condition), failure)
-            case Let(name, value) | Var(name, value) | Assign(name, value):
+            case ir.Let(name, value) | ir.Var(name, value) | ir.Assign(name, value):
                 self.writer.line(f"{self.names.locals.identifier(name)} = {self._text(value)}")
-            case Store(at, value, order):
-                self._set(Wire(at), value, order)
-            case SetField(place, value):
+            case ir.Store(at, value, order):
+                self._set(ir.Wire(at), value, order)
+            case ir.SetField(place, value):
                 self._set(place, value, "<")
-            case Reserve(lane, count):
+            case ir.Reserve(lane, count):
                 free = f"{self.names.capacity_name(lane)} - {self.names.used_name(lane)}"
                 self.writer.line(f"reserve({lane}, {self._text(count)}, {free})")
-            case Advance(lane, count):
+            case ir.Advance(lane, count):
                 self.writer.line(f"{self.names.used_name(lane)} += {self._text(count)}")
-            case Copy(target, source, size):
+            case ir.Copy(target, source, size):
                 length = self._text(size)
                 self.writer.line(f"{part(self.names, target, length)} = {part(self.names, source, length)}")
-            case Fill(target, size, byte):
+            case ir.Fill(target, size, byte):
                 length = self._text(size)
                 self.writer.line(f"{part(self.names, target, length)} = bytes([{byte}]) * {length}")
-            case Return(position, registers):
+            case ir.Return(position, registers):
                 for lane in self.counted:
                     self.writer.line(f"state[{lane_word(lane, USED)}] = used_{lane}")
                 for number, value in registers:
                     self.writer.line(f"registers[{number}] = {self._text(value)}")
                 self.writer.line(f"return {self._text(position)}")
-            case For() | While() | If() | Switch():
+            case ir.For() | ir.While() | ir.If() | ir.Switch():
                 self._nested(statement)
-            case Call():
+            case ir.Call():
                 self._call(statement)
-            case HostCall():
+            case ir.HostCall():
                 self._host_call(statement)
             case _:
                 assert_never(statement)
 
-    def _call(self, call: Call) -> None:
+    def _call(self, call: ir.Call) -> None:
         """Results are a tuple; what a failure reports goes in."""
         bound = _items(self.names.locals.identifier(each.name) for each in call.results)
         given = "".join(f", {self._text(each)}" for each in call.arguments)
@@ -220,7 +188,7 @@ class _Attempt:
         reported = f"({sites}), {self._indices(call.indices)}"
         self.writer.line(f"{bound} = {_function(call.routine)}(buffer, begin, end, state, lanes, {reported}{given})")
 
-    def _host_call(self, call: HostCall) -> None:
+    def _host_call(self, call: ir.HostCall) -> None:
         spans = (part(self.names, extent.address, self._text(extent.size)) for extent in extents_of(call))
         given = ", ".join((*map(self._text, call.arguments), *spans))
         bound = self.names.locals.identifier(call.result.name)
@@ -229,17 +197,17 @@ class _Attempt:
         with self.writer.indented("except RefusedError:"):
             self._fail(call.failure, " from None")
 
-    def _nested(self, statement: For | While | If | Switch) -> None:
+    def _nested(self, statement: ir.For | ir.While | ir.If | ir.Switch) -> None:
         match statement:
-            case For(variable, count, body):
+            case ir.For(variable, count, body):
                 self._governed(f"for {self.names.locals.identifier(variable)} in range({self._text(count)}):", body)
-            case While(condition, body, _, _):
+            case ir.While(condition, body, _, _):
                 self._governed(f"while {self._text(condition)}:", body)
-            case If(condition, then, otherwise):
+            case ir.If(condition, then, otherwise):
                 self._governed(f"if {self._text(condition)}:", then)
                 if otherwise:
                     self._governed("else:", otherwise)
-            case Switch(value, cases, default):
+            case ir.Switch(value, cases, default):
                 with self.writer.indented(f"match {self._text(value)}:"):
                     for number, body in cases:
                         self._governed(f"case {number}:", body)
@@ -247,45 +215,45 @@ class _Attempt:
             case _:
                 assert_never(statement)
 
-    def _governed(self, head: str, body: Block) -> None:
+    def _governed(self, head: str, body: ir.Block) -> None:
         with self.writer.indented(head):
             self._block(body)
 
-    def _fail_unless(self, condition: str, failure: Failure) -> None:
+    def _fail_unless(self, condition: str, failure: ir.Failure) -> None:
         with self.writer.indented(f"if not {condition}:"):
             self._fail(failure)
 
-    def _fail(self, failure: Failure, cause: str = "") -> None:
+    def _fail(self, failure: ir.Failure, cause: str = "") -> None:
         reported = f"{self._site(failure.site)}, {self._text(failure.at)}, {self._indices(failure.indices)}"
         self.writer.line(f"raise Failed({reported}){cause}  # {ascii(self._about(failure.site))[1:-1]}")
 
     def _site(self, number: int) -> str:
         return str(number)
 
-    def _indices(self, indices: tuple[Expr, ...]) -> str:
+    def _indices(self, indices: tuple[ir.Expr, ...]) -> str:
         return f"({_items(map(self._text, indices))})"
 
     def _about(self, number: int) -> str:
         site = self.kernel.sites[number]
         return f"{site.kind} {site.path}"
 
-    def _set(self, address: Address, value: Expr, order: Order) -> None:
+    def _set(self, address: ir.Address, value: ir.Expr, order: ir.Order) -> None:
         type_ = type_of(value)
         if type_ in FLOATS:
-            target = part(self.names, address, str(WIDTH[type_]))
+            target = part(self.names, address, str(ir.WIDTH[type_]))
             self.writer.line(f'{target} = to_bytes("{type_}", {self._text(value)}, "{order}")')
         else:
             memory, start = location(self.names, address)
             self.writer.line(f'pack_into("{order}{FORMATS[type_]}", {memory}, {start}, {self._text(value)})')
 
-    def _text(self, expr: Expr) -> str:
+    def _text(self, expr: ir.Expr) -> str:
         return expression(self.names, expr)
 
 
 class _RoutineBody(_Attempt):
     """Prints a routine: it fails at the sites and with the indices that it is given."""
 
-    def __init__(self, kernel: Kernel, routine: Routine, writer: Writer) -> None:
+    def __init__(self, kernel: ir.Kernel, routine: ir.Routine, writer: Writer) -> None:
         super().__init__(kernel, routine.body, writer)
         self.routine, self.counted = routine, []
 
@@ -300,7 +268,7 @@ class _RoutineBody(_Attempt):
     def _site(self, number: int) -> str:
         return f"sites[{number - 1}]"
 
-    def _indices(self, indices: tuple[Expr, ...]) -> str:  # noqa: ARG002 - a routine has the indices of its call
+    def _indices(self, indices: tuple[ir.Expr, ...]) -> str:  # noqa: ARG002 - a routine has the indices of its call
         return "indices"
 
     def _about(self, number: int) -> str:

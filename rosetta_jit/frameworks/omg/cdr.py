@@ -17,38 +17,14 @@ from rosetta_jit.frameworks.omg import cdr_diagnostics as words
 from rosetta_jit.model.layout import map_entry, recursive_structs, scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.wire import codec as wire
 from rosetta_jit.wire.align import ANYWHERE, ORIGIN, Phase, leading, settle
-from rosetta_jit.wire.codec import (
-    Align,
-    Blob,
-    Cases,
-    Codec,
-    Constant,
-    Count,
-    Delimited,
-    Encoding,
-    Ending,
-    Maybe,
-    Member,
-    Members,
-    Number,
-    Padding,
-    Parameter,
-    Parameters,
-    Path,
-    Recursion,
-    Repeat,
-    Seq,
-    Table,
-    Utf16,
-)
 from rosetta_jit.wire.recursion import MAX_OPEN_SIZES, open_sizes, recurses
 from rosetta_jit.wire.size import WIDTH
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Choices
     from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.wire.codec import Order
 
 HEADER_BYTES = 4
 IDENTIFIERS = {
@@ -59,7 +35,7 @@ IDENTIFIERS = {
 PADDING_OF_PAYLOADS = 3
 OPTIONS = 3
 """The byte of the header whose last two bits say how many bytes of padding are behind the value (DDS-XTypes 1.3, 7.6.3.1.2)."""
-ENDINGS = {"cdr": Ending(OPTIONS, untold=4), "cdr2": Ending(OPTIONS, align=4)}
+ENDINGS = {"cdr": wire.Ending(OPTIONS, untold=4), "cdr2": wire.Ending(OPTIONS, align=4)}
 """XCDR2 is written with the padding that the specification asks for; XCDR1 as ROS 2 has it, without any or with untold zeros."""
 SENTINEL = 0x7F02
 """The end of a list of parameters, which must be understood (DDS-XTypes 1.3, 7.4.1.2.1)."""
@@ -67,11 +43,11 @@ DUAL_USE = {1: 5, 4: 6, 8: 7}
 """Length codes of sequences whose count is also their length, by the size of their elements."""
 
 
-def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> Encoding:
+def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> wire.Encoding:
     """The encoding of a message."""
-    orders: dict[str | None, tuple[Order, ...]] = {"little": ("<",), "big": (">",), None: ("<",) if name == "cdr-giop" else ("<", ">")}
-    attempts: list[Codec] = []
-    nested: list[dict[str, Codec]] = []
+    orders: dict[str | None, tuple[wire.Order, ...]] = {"little": ("<",), "big": (">",), None: ("<",) if name == "cdr-giop" else ("<", ">")}
+    attempts: list[wire.Codec] = []
+    nested: list[dict[str, wire.Codec]] = []
     recursive = recursive_structs(Ref(struct.name), schema)
     for order in orders[choices.byte_order]:
         rules = _Rules(schema, name, order, recursive, choices.lenient)
@@ -83,7 +59,7 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
     origin = 0 if name == "cdr-giop" else HEADER_BYTES
     spare = PADDING_OF_PAYLOADS if "trailing" in choices.lenient else 0
     recursion = tuple(nested) if recursive else ()
-    return Encoding(
+    return wire.Encoding(
         name,
         tuple(attempts),
         attempts[0],
@@ -96,7 +72,7 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
     )
 
 
-def _ending(name: str, choices: Choices) -> Ending | None:
+def _ending(name: str, choices: Choices) -> wire.Ending | None:
     ending = ENDINGS.get(name)
     return replace(ending, align=ending.untold) if ending is not None and "padding" in choices.lenient else ending
 
@@ -107,7 +83,7 @@ class _Rules:
 
     schema: Schema
     encoding: str
-    order: Order
+    order: wire.Order
     recursive: frozenset[str]
     lenient: frozenset[str]
 
@@ -115,73 +91,73 @@ class _Rules:
     def second(self) -> bool:
         return self.encoding == "cdr2"
 
-    def message(self, struct: Struct) -> Codec:
+    def message(self, struct: Struct) -> wire.Codec:
         body = self.settled(self.struct(struct, ()), ORIGIN)
-        return body if self.encoding == "cdr-giop" else Seq((*self.header(struct), body))
+        return body if self.encoding == "cdr-giop" else wire.Seq((*self.header(struct), body))
 
-    def settled(self, codec: Codec, phase: Phase) -> Codec:
+    def settled(self, codec: wire.Codec, phase: Phase) -> wire.Codec:
         return settle(codec, phase)[0]
 
-    def header(self, struct: Struct) -> tuple[Codec, ...]:
+    def header(self, struct: Struct) -> tuple[wire.Codec, ...]:
         """The representation identifier, and two bytes of options, of which the `Ending` is the last."""
         base = IDENTIFIERS[self.encoding][_extensibility(struct)]
-        return Constant((), bytes((0, base + (self.order == "<")))), Padding("u16", 0)
+        return wire.Constant((), bytes((0, base + (self.order == "<")))), wire.Padding("u16", 0)
 
-    def aligned(self, codec: Codec, size: int) -> Codec:
-        return Seq((Align(min(size, 4 if self.second else 8)), codec))
+    def aligned(self, codec: wire.Codec, size: int) -> wire.Codec:
+        return wire.Seq((wire.Align(min(size, 4 if self.second else 8)), codec))
 
     # --- structs and unions ------------------------------------------------------------------------------------------
 
-    def struct(self, struct: Struct, path: Path) -> Codec:
+    def struct(self, struct: Struct, path: wire.Path) -> wire.Codec:
         extensibility = _extensibility(struct)
         if extensibility == "mutable":
             return self.mutable(struct, path)
         body = self.members(struct, path)
         return self.sized(body, path) if self.second and extensibility == "appendable" else body
 
-    def sized(self, codec: Codec, path: Path) -> Codec:
+    def sized(self, codec: wire.Codec, path: wire.Path) -> wire.Codec:
         """With the number of its bytes before it (DHEADER)."""
-        return self.aligned(Delimited(path, codec, self.order), 4)
+        return self.aligned(wire.Delimited(path, codec, self.order), 4)
 
-    def members(self, struct: Struct, path: Path) -> Codec:
+    def members(self, struct: Struct, path: wire.Path) -> wire.Codec:
         if not struct.fields:  # rosidl gives a struct without members one, which it calls structure_needs_at_least_one_member
-            return Padding("u8", 0)
+            return wire.Padding("u8", 0)
         union = next((each.type for each in struct.fields if isinstance(each.type, Union) and each.type.discriminator), None)
         told = () if union is None else (union.discriminator,)
-        return Seq(tuple(self.field(each, path, struct) for each in struct.fields if each.name not in told))
+        return wire.Seq(tuple(self.field(each, path, struct) for each in struct.fields if each.name not in told))
 
-    def field(self, field: Field, path: Path, struct: Struct) -> Codec:
+    def field(self, field: Field, path: wire.Path, struct: Struct) -> wire.Codec:
         own = (*path, field.name)
         match field.type:
             case Union() as union:
                 return self.union(union, own, struct)
             case Optional(value):
-                return Maybe(own, self.value(value, own, field)) if self.second else self.optional(field, own, struct)
+                return wire.Maybe(own, self.value(value, own, field)) if self.second else self.optional(field, own, struct)
             case type_:
                 return self.value(type_, own, field)
 
-    def union(self, union: Union, path: Path, struct: Struct) -> Codec:
+    def union(self, union: Union, path: wire.Path, struct: Struct) -> wire.Codec:
         teller = next(each for each in struct.fields if each.name == union.discriminator)
         discriminator = self.value(teller.type, (*path[:-1], teller.name), teller)
         cases = tuple((labels, self.field(case, path, struct)) for labels, case in zip(union.labels, union.cases, strict=True))
-        return Cases(path, discriminator, cases, union.default)
+        return wire.Cases(path, discriminator, cases, union.default)
 
-    def optional(self, field: Field, path: Path, struct: Struct) -> Codec:
+    def optional(self, field: Field, path: wire.Path, struct: Struct) -> wire.Codec:
         if self.encoding == "cdr-giop":
             raise SchemaError((words.no_optionals(field.span, field.name),))
-        return self.aligned(Parameter(self.member(field, struct.fields.index(field), path), self.order), 4)
+        return self.aligned(wire.Parameter(self.member(field, struct.fields.index(field), path), self.order), 4)
 
-    def mutable(self, struct: Struct, path: Path) -> Codec:
+    def mutable(self, struct: Struct, path: wire.Path) -> wire.Codec:
         if self.encoding == "cdr-giop":
             raise SchemaError((words.no_mutables(struct.span, struct.name),))
         union = next((each for each in struct.fields if isinstance(each.type, Union) and each.type.discriminator), None)
         if union is not None:
             return self.mutable_union(union, path, struct)
         members = tuple(self.member(each, number, (*path, each.name)) for number, each in enumerate(struct.fields))
-        kind = Members if self.second else Parameters
+        kind = wire.Members if self.second else wire.Parameters
         return self.aligned(kind(path, members, self.order), 4)
 
-    def member(self, field: Field, position: int, path: Path) -> Member:
+    def member(self, field: Field, position: int, path: wire.Path) -> wire.Member:
         optional = isinstance(field.type, Optional)
         value = self.value(field.type.value if isinstance(field.type, Optional) else field.type, path, field)
         if recurses(value):
@@ -189,9 +165,9 @@ class _Rules:
         number = position if field.number is None else field.number
         must = bool(field.option("must_understand"))
         owed = must or bool(field.option("key"))  # without these no two types are one (DDS-XTypes 1.3, 7.2.4.4.8)
-        return Member(number, path, value, self.length_code(field.type), optional, must, owed)
+        return wire.Member(number, path, value, self.length_code(field.type), optional, must, owed)
 
-    def mutable_union(self, field: Field, path: Path, struct: Struct) -> Codec:
+    def mutable_union(self, field: Field, path: wire.Path, struct: Struct) -> wire.Codec:
         """The discriminator as a member with the id 0, then the case that it selects as another (DDS-XTypes 1.3, 7.4.3.5.3)."""
         union = field.type
         assert isinstance(union, Union)
@@ -202,14 +178,14 @@ class _Rules:
             (labels, self.placed(self.member(case, number, (*own, case.name))))
             for number, (labels, case) in enumerate(zip(union.labels, union.cases, strict=True), 1)
         )
-        body = Cases(own, discriminator, cases, union.default)
+        body = wire.Cases(own, discriminator, cases, union.default)
         if self.second:
             return self.sized(body, path)
-        return Seq((body, Align(4), Constant((), SENTINEL, "u16", self.order), Constant((), 0, "u16", self.order)))
+        return wire.Seq((body, wire.Align(4), wire.Constant((), SENTINEL, "u16", self.order), wire.Constant((), 0, "u16", self.order)))
 
-    def placed(self, member: Member) -> Codec:
+    def placed(self, member: wire.Member) -> wire.Codec:
         """A member of a mutable union; its length has a word of its own, as Cyclone DDS writes it."""
-        return self.aligned(Parameter(replace(member, length_code=4, optional=False), self.order, self.second), 4)
+        return self.aligned(wire.Parameter(replace(member, length_code=4, optional=False), self.order, self.second), 4)
 
     def length_code(self, type_: Type) -> int:
         """How the length of a member is told: by the code, by a word of its own, or by its first word."""
@@ -245,35 +221,36 @@ class _Rules:
 
     # --- values ------------------------------------------------------------------------------------------------------
 
-    def value(self, type_: Type, path: Path, field: Field) -> Codec:
+    def value(self, type_: Type, path: wire.Path, field: Field) -> wire.Codec:
         match type_:
             case Bool():
                 absent = int(field.default is True)
-                return Number(path, "bool", absent=absent) if "bool" in self.lenient else Table(path, "u8", ((0, 0), (1, 1)), absent=absent)
+                strict = wire.Table(path, "u8", ((0, 0), (1, 1)), absent=absent)
+                return wire.Number(path, "bool", absent=absent) if "bool" in self.lenient else strict
             case Int(16, _, "wchar") if self.encoding == "cdr-giop":
-                return Seq((Constant(path[:0], 2, "u8", kind="count"), Number(path, "u16", ">")))
+                return wire.Seq((wire.Constant(path[:0], 2, "u8", kind="count"), wire.Number(path, "u16", ">")))
             case Int() | Float():
                 scalar = scalar_of(type_)
                 absent = field.default if isinstance(field.default, int | float) else 0
-                return self.aligned(Number(path, scalar, self.order, absent), WIDTH[scalar])
+                return self.aligned(wire.Number(path, scalar, self.order, absent), WIDTH[scalar])
             case Enum():
                 return self.enumerator(type_, path, field)
             case String():
                 return self.string(type_, path, field)
             case Bytes(_, length, maximum):
-                blob = Blob(path, Count(None, value=length), absent=field.default if isinstance(field.default, bytes) else b"")
+                blob = wire.Blob(path, wire.Count(None, value=length), absent=field.default if isinstance(field.default, bytes) else b"")
                 return blob if length is not None else self.counted(replace(blob, count=self.count(maximum)))
             case Array():
                 return self.array(type_, path, field)
             case Map(key, value, maximum):
-                entry = Seq(tuple(self.field(each, (), Struct("", ())) for each in map_entry(key, value).fields))
+                entry = wire.Seq(tuple(self.field(each, (), Struct("", ())) for each in map_entry(key, value).fields))
                 if recurses(entry):
                     raise SchemaError((words.nested_recursion(field.span, field.name),))
-                repeat = self.counted(Repeat(path, self.count(maximum), entry, align=leading(entry)))
+                repeat = self.counted(wire.Repeat(path, self.count(maximum), entry, align=leading(entry)))
                 plain = self.primitive(key) is not None and self.primitive(value) is not None
                 return self.sized(repeat, path) if self.second and not plain else repeat
             case Ref(name) if name in self.recursive:
-                return Repeat(path, Count(None, value=1), Recursion((), name))
+                return wire.Repeat(path, wire.Count(None, value=1), wire.Recursion((), name))
             case Ref(name):
                 declared = self.schema.types[name]
                 return self.enumerator(declared, path, field) if isinstance(declared, Enum) else self.struct(declared, path)
@@ -284,59 +261,59 @@ class _Rules:
             case _:
                 assert_never(type_)
 
-    def enumerator(self, enum: Enum, path: Path, field: Field) -> Codec:
+    def enumerator(self, enum: Enum, path: wire.Path, field: Field) -> wire.Codec:
         scalar, size = f"i{enum.bits}", enum.bits // 8
         numbers = dict(enum.values)
         given = numbers.get(field.default) if isinstance(field.default, str) else field.default
         absent = given if isinstance(given, int) else next(iter(numbers.values()), 0)
         if "enum" in self.lenient:
-            return self.aligned(Number(path, scalar, self.order, absent), size)
+            return self.aligned(wire.Number(path, scalar, self.order, absent), size)
         pairs = tuple((number, number) for number in sorted(set(numbers.values())))
-        return self.aligned(Table(path, scalar, pairs, self.order, absent), size)
+        return self.aligned(wire.Table(path, scalar, pairs, self.order, absent), size)
 
-    def string(self, string: String, path: Path, field: Field) -> Codec:
+    def string(self, string: String, path: wire.Path, field: Field) -> wire.Codec:
         default = field.default if isinstance(field.default, str) else ""
         if string.encoding == "utf-16":
             return self.counted(self.wide_string(string, path, default))
         data = default.encode("utf-8", "surrogateescape")
-        return self.counted(Blob(path, self.count(string.maximum), text=string.encoding == "utf-8", terminated=True, absent=data))
+        return self.counted(wire.Blob(path, self.count(string.maximum), text=string.encoding == "utf-8", terminated=True, absent=data))
 
-    def wide_string(self, string: String, path: Path, default: str) -> Codec:
+    def wide_string(self, string: String, path: wire.Path, default: str) -> wire.Codec:
         """On DDS its bytes are counted, and there is no mark (DDS-XTypes 1.3, 7.4.1.1.2); what ROS 2 does instead is a leniency."""
         counted = self.count(string.maximum)
         if self.encoding == "cdr-giop":
-            return Utf16(path, replace(counted, unit=2))
+            return wire.Utf16(path, replace(counted, unit=2))
         data = default.encode("utf-16-le", "surrogatepass")
         absent = tuple(int.from_bytes(data[each : each + 2], "little") for each in range(0, len(data), 2))
-        unit = Number((), "u16", self.order)
+        unit = wire.Number((), "u16", self.order)
         if "wstring" not in self.lenient:
-            return Repeat(path, replace(counted, unit=2), unit, absent=absent)
-        halves = (unit, Constant((), 0, "u16", self.order))
-        return Repeat(path, counted, Seq(halves if self.order == "<" else halves[::-1]), absent=absent)
+            return wire.Repeat(path, replace(counted, unit=2), unit, absent=absent)
+        halves = (unit, wire.Constant((), 0, "u16", self.order))
+        return wire.Repeat(path, counted, wire.Seq(halves if self.order == "<" else halves[::-1]), absent=absent)
 
-    def counted(self, codec: Codec) -> Codec:
+    def counted(self, codec: wire.Codec) -> wire.Codec:
         return self.aligned(codec, 4)
 
-    def count(self, maximum: int | None) -> Count:
-        return Count("u32", self.order, maximum=None if "bounds" in self.lenient else maximum)
+    def count(self, maximum: int | None) -> wire.Count:
+        return wire.Count("u32", self.order, maximum=None if "bounds" in self.lenient else maximum)
 
-    def array(self, array: Array, path: Path, field: Field) -> Codec:
+    def array(self, array: Array, path: wire.Path, field: Field) -> wire.Codec:
         plain = self.elements(array, path, field)
         headed = self.second and self.primitive_element(array) is None
         return self.sized(plain, path) if headed else plain
 
-    def elements(self, array: Array, path: Path, field: Field) -> Codec:
+    def elements(self, array: Array, path: wire.Path, field: Field) -> wire.Codec:
         inner, field = array.element, replace(field, default=None)  # the default is that of the array
         if isinstance(inner, Array) and inner.fixed is not None and array.fixed is not None:
             item = self.elements(inner, (), field)  # the dimensions of one array
         else:
-            item = self.value(inner, (), field) if not self.recurses(inner) else Recursion((), _name(inner))
-        if not isinstance(item, Recursion) and recurses(item):
+            item = self.value(inner, (), field) if not self.recurses(inner) else wire.Recursion((), _name(inner))
+        if not isinstance(item, wire.Recursion) and recurses(item):
             raise SchemaError((words.nested_recursion(field.span, field.name),))
         if array.fixed is not None:
-            repeat = Repeat(path, Count(None, value=array.fixed), item)
-            return Seq((Align(leading(item)), repeat)) if array.fixed and leading(item) > 1 else repeat
-        return self.counted(Repeat(path, self.count(array.maximum), item, align=leading(item)))
+            repeat = wire.Repeat(path, wire.Count(None, value=array.fixed), item)
+            return wire.Seq((wire.Align(leading(item)), repeat)) if array.fixed and leading(item) > 1 else repeat
+        return self.counted(wire.Repeat(path, self.count(array.maximum), item, align=leading(item)))
 
     def recurses(self, type_: Type) -> bool:
         return isinstance(type_, Ref) and type_.name in self.recursive

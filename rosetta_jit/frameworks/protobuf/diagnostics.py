@@ -261,17 +261,6 @@ def alias(span: Span | None, number: int, first: Name) -> Diagnostic:
     )
 
 
-def idle_alias_option(name: Name) -> Diagnostic:
-    """`allow_alias` where nothing is an alias."""
-    return problem("enum", f"`allow_alias` has no effect in `{name.text}`", name.span, "has no aliases", "Remove the option.")
-
-
-def same_stripped_name(name: Name, first: Name) -> Diagnostic:
-    """Two values that differ in the enum's prefix or in case alone."""
-    message = f"`{name.text}` and `{first.text}` are one name where the enum's own and case are left out"
-    return problem("enum", message, name.span, "languages that leave them out cannot tell them apart")
-
-
 def empty_extend(span: Span) -> Diagnostic:
     """An extend block without fields."""
     return problem("extend", "an extend block has no fields", span, "needs one at least")

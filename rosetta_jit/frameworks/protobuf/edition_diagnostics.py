@@ -22,50 +22,6 @@ def unknown_edition(span: Span, value: str) -> Diagnostic:
     return _error("edition", f"the edition {value[:40]!r} is not known", span, "unknown", 'Use "2023" or "2024".')
 
 
-def late_import(span: Span | None) -> Diagnostic:
-    """An import behind one for options."""
-    return _error("import", "imports for options alone come last", span, "behind `import option`")
-
-
-def weak_import(span: Span) -> Diagnostic:
-    """`import weak` in edition 2024."""
-    return _error(
-        "import", "there are no weak imports since edition 2024", span, "gone", "Use `import option` where options alone need it."
-    )
-
-
-def option_import(span: Span) -> Diagnostic:
-    """`import option` before edition 2024."""
-    return _error("import", "imports for options alone need edition 2024", span, "too early")
-
-
-def early_visibility(span: Span) -> Diagnostic:
-    """`export` or `local` before edition 2024."""
-    return _error("visibility", "visibility needs edition 2024", span, "too early")
-
-
-def misplaced_visibility(span: Span, word: str) -> Diagnostic:
-    """`export` or `local` before something else than a message or an enum."""
-    return _error(
-        "visibility", f"`{word}` stands before `message` and `enum` alone", span, "not here", f"A type of that name is `.{word}`."
-    )
-
-
-def local_name(name: Name, full: str, file: str) -> Diagnostic:
-    """A message or an enum that is local to another file."""
-    return _error("visibility", f"`{full}` is local to `{file}`", name.span, "not visible", "Write `export` before its declaration.")
-
-
-def reserved_string(name: Name) -> Diagnostic:
-    """A reserved name in quotes in an edition."""
-    return _error("reserved", "in editions reserved names have no quotes", name.span, "a string", "Write it without quotes.")
-
-
-def reserved_identifier(name: Name) -> Diagnostic:
-    """A reserved name without quotes in proto2 or proto3."""
-    return _error("reserved", "before editions reserved names have quotes", name.span, "no string", f'Write `"{name.text[:60]}"`.')
-
-
 def label_in_edition(span: Span | None, label: str) -> Diagnostic:
     """`optional` or `required` in an edition."""
     help_ = "Leave it out: fields are optional unless they choose another presence."
@@ -102,11 +58,6 @@ def unknown_feature(span: Span | None, name: str) -> Diagnostic:
     return _error("feature", f"there is no feature `{name[:100]}`", span, "unknown")
 
 
-def early_feature(span: Span | None, name: str, since: str) -> Diagnostic:
-    """A feature that the edition does not have yet."""
-    return _error("feature", f"`{name}` needs edition {since}", span, "too early")
-
-
 def feature_elsewhere(span: Span | None, name: str, targets: Sequence[str]) -> Diagnostic:
     """A feature that is chosen for something that does not have it."""
     places = ", ".join(target.removesuffix("Options").lower() for target in targets)
@@ -121,8 +72,3 @@ def idle_feature(span: Span | None, name: str, word: str, field: str, reason: st
 def required_by_default(span: Span | None) -> Diagnostic:
     """A file all of whose fields would be required."""
     return _error("feature", "fields are not required by default", span, "for a whole file", "Choose LEGACY_REQUIRED for single fields.")
-
-
-def replaced_option(span: Span | None, name: str, since: str, feature: str) -> Diagnostic:
-    """An option that gave way to a feature."""
-    return _error("option", f"there is no option `{name}` since edition {since}", span, "gone", f"Use `{feature}`.")

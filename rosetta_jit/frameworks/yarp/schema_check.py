@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.limits import MAX_NESTING, MAX_TERMS
-from rosetta_jit.model.expr import Binary, Call, Choice, Given, Held, Item, Len, List, Literal, Member, Name, Nearest, Path, Unary
+from rosetta_jit.model.expr import Binary, Call, Choice, Coerced, Given, Item, Len, List, Literal, Member, Name, Nearest, Path, Unary
 from rosetta_jit.model.limits import MAX_SLOTS
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
@@ -216,7 +216,7 @@ def _parts(expr: Expr | None) -> Iterator[Expr]:
             yield expr
             for part in (*(part for case in cases for part in case), otherwise):
                 yield from _parts(part)
-        case List() | Item() | Given() | Held() | Nearest():
+        case List() | Item() | Given() | Coerced() | Nearest():
             raise AssertionError(expr)
         case _:
             assert_never(expr)

@@ -12,36 +12,8 @@ from typing import TYPE_CHECKING, assert_never
 import numpy as np
 
 from rosetta_jit.generate.c.words import C_TYPES
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.arithmetic import FLOATS, SIGNED, to_bytes
-from rosetta_jit.kernel.ir import (
-    WIDTH,
-    Address,
-    Binary,
-    Bits,
-    Capacity,
-    Compare,
-    Const,
-    Convert,
-    Digits,
-    Expr,
-    Fits,
-    Get,
-    HostValue,
-    IsText,
-    Known,
-    Load,
-    Local,
-    Lookup,
-    Nearest,
-    Place,
-    Register,
-    Scalar,
-    Scale,
-    Select,
-    Unary,
-    Used,
-    Wire,
-)
 from rosetta_jit.kernel.terms import END, type_of
 
 if TYPE_CHECKING:
@@ -55,60 +27,60 @@ OF_FLOATS = {"abs": "fabs", "sqrt": "sqrt", "floor": "floor", "ceil": "ceil", "t
 FMOD = {"rem": "fmod"}
 
 
-def expression(scope: Scope, expr: Expr) -> str:
+def expression(scope: Scope, expr: ir.Expr) -> str:
     """The text of an expression; one with an operator stands in parentheses."""
     match expr:
-        case Const(type_, value):
+        case ir.Const(type_, value):
             return constant(scope, type_, value)
-        case Local(_, name):
+        case ir.Local(_, name):
             return scope.takes("end") if name == END.name else scope.locals.identifier(name)
-        case Load(type_, at, order):
+        case ir.Load(type_, at, order):
             return _loaded(scope, type_, expression(scope, at), order)
-        case Get(type_, place):
+        case ir.Get(type_, place):
             return read(scope, type_, place)
-        case Used() | Capacity() | HostValue() | Register():
+        case ir.Used() | ir.Capacity() | ir.HostValue() | ir.Register():
             return _about_the_holder(scope, expr)
-        case Unary(function, operand):
+        case ir.Unary(function, operand):
             return _unary(scope, function, type_of(operand), _wide(scope, operand))
-        case Binary(op, left, right):
+        case ir.Binary(op, left, right):
             return _binary(scope, op, left, right)
-        case Compare(op, left, right):
+        case ir.Compare(op, left, right):
             return f"({' '.join(_operands(scope, left, COMPARISONS[op], right))})"
-        case Fits(op, left, right):
+        case ir.Fits(op, left, right):
             return f"{scope.calls(f'fits_{op}')}({expression(scope, left)}, {expression(scope, right)})"
-        case Convert(type_, operand):
+        case ir.Convert(type_, operand):
             return _convert(scope, type_, operand)
-        case Bits(type_, operand):
+        case ir.Bits(type_, operand):
             return _bits(scope, type_, operand)
-        case Select(condition, then, otherwise):
+        case ir.Select(condition, then, otherwise):
             chosen = f"({expression(scope, condition)} ? {expression(scope, then)} : {expression(scope, otherwise)})"
-            return f"({C_TYPES[type_of(then)]}){chosen}" if WIDTH[type_of(then)] < 4 else chosen
-        case IsText(address, size):
+            return f"({C_TYPES[type_of(then)]}){chosen}" if ir.WIDTH[type_of(then)] < 4 else chosen
+        case ir.IsText(address, size):
             memory, start = location(scope, address)
             return f"{scope.calls('is_text')}({memory}, {start}, {expression(scope, size)})"
-        case Nearest() | Digits() | Scale():
+        case ir.Nearest() | ir.Digits() | ir.Scale():
             return _decimal(scope, expr)
-        case Lookup(type_, values, index):
+        case ir.Lookup(type_, values, index):
             return f"{scope.table(type_, values)}[{bare(expression(scope, index))}]"
         case _:
             assert_never(expr)
 
 
-def _about_the_holder(scope: Scope, expr: Known) -> str:
+def _about_the_holder(scope: Scope, expr: ir.Known) -> str:
     match expr:
-        case Used(lane):
+        case ir.Used(lane):
             return scope.used(lane)
-        case Capacity(lane):
+        case ir.Capacity(lane):
             return scope.capacity(lane)
-        case HostValue(what):
+        case ir.HostValue(what):
             return f"{scope.takes('holder')}->{what}"
-        case Register(number):
+        case ir.Register(number):
             return scope.register(number)
         case _:
             assert_never(expr)
 
 
-def constant(scope: Scope, type_: Scalar, value: float, *, wide: bool = False) -> str:
+def constant(scope: Scope, type_: ir.Scalar, value: float, *, wide: bool = False) -> str:
     """A literal; ``wide`` where C would take it for an int and nothing around it says otherwise."""
     if type_ == "bool":
         return "true" if value else "false"
@@ -125,11 +97,11 @@ def constant(scope: Scope, type_: Scalar, value: float, *, wide: bool = False) -
     return f"{number}{suffix}" if number >= 0 else f"({number})"
 
 
-def _float(scope: Scope, type_: Scalar, value: float) -> str:
+def _float(scope: Scope, type_: ir.Scalar, value: float) -> str:
     with np.errstate(over="ignore"):
         number = np.float32(value) if type_ == "f32" else np.float64(value)
     if not math.isfinite(number):
-        width = 8 * WIDTH[type_]
+        width = 8 * ir.WIDTH[type_]
         bits = int.from_bytes(to_bytes(type_, number), "little")
         return f"{scope.calls(f'float{width}_of')}(UINT{width}_C(0x{bits:x}))"
     text = str(number)
@@ -138,25 +110,25 @@ def _float(scope: Scope, type_: Scalar, value: float) -> str:
     return f"({text})" if text.startswith("-") else text
 
 
-def _is_wide(expr: Expr) -> bool:
+def _is_wide(expr: ir.Expr) -> bool:
     """Whether C takes what is printed for more than an int."""
     match expr:
-        case Const(type_, value):
+        case ir.Const(type_, value):
             return type_ in ("i64", "u64") and not -(2**31) < value < 2**31
-        case Binary(op, left, right):
+        case ir.Binary(op, left, right):
             return _is_wide(left) or (op != "shr" and _is_wide(right))
-        case Select(_, then, otherwise):
+        case ir.Select(_, then, otherwise):
             return _is_wide(then) or _is_wide(otherwise)
         case _:
             return True
 
 
-def _operands(scope: Scope, left: Expr, operator: str, right: Expr) -> tuple[str, str, str]:
+def _operands(scope: Scope, left: ir.Expr, operator: str, right: ir.Expr) -> tuple[str, str, str]:
     """Both sides of an operator, of which one has the type of both."""
     return expression(scope, left) if _is_wide(right) else _wide(scope, left), operator, expression(scope, right)
 
 
-def _binary(scope: Scope, op: str, left: Expr, right: Expr) -> str:
+def _binary(scope: Scope, op: str, left: ir.Expr, right: ir.Expr) -> str:
     type_ = type_of(left)
     if type_ == "bool" and op in LOGICAL:
         return f"({expression(scope, left)} {LOGICAL[op]} {expression(scope, right)})"
@@ -170,29 +142,29 @@ def _binary(scope: Scope, op: str, left: Expr, right: Expr) -> str:
     return _narrowed(type_, f"({' '.join(_operands(scope, left, OPERATORS[op], right))})")
 
 
-def _wide(scope: Scope, expr: Expr) -> str:
+def _wide(scope: Scope, expr: ir.Expr) -> str:
     """An expression that C takes for what it is."""
-    if isinstance(expr, Const):
+    if isinstance(expr, ir.Const):
         return constant(scope, expr.type, expr.value, wide=True)
     text = expression(scope, expr)
     return text if _is_wide(expr) or type_of(expr) not in ("i64", "u64") else f"({C_TYPES[type_of(expr)]}){text}"
 
 
-def _shifted(op: str, type_: Scalar, left: str, right: str) -> str:
+def _shifted(op: str, type_: ir.Scalar, left: str, right: str) -> str:
     """High bits that leave are those of an unsigned number: of a signed one C does not say what becomes of it."""
     if op == "shr":
         return _narrowed(type_, f"({left} >> {right})")
-    unsigned = "uint64_t" if WIDTH[type_] == 8 else "uint32_t"
+    unsigned = "uint64_t" if ir.WIDTH[type_] == 8 else "uint32_t"
     shifted = f"(({unsigned}){left} << {right})"
     return shifted if C_TYPES[type_] == unsigned else f"({C_TYPES[type_]}){shifted}"
 
 
-def _narrowed(type_: Scalar, text: str) -> str:
+def _narrowed(type_: ir.Scalar, text: str) -> str:
     """C computes what is narrower than an int as an int."""
-    return f"({C_TYPES[type_]}){text}" if WIDTH[type_] < 4 and type_ != "bool" else text
+    return f"({C_TYPES[type_]}){text}" if ir.WIDTH[type_] < 4 and type_ != "bool" else text
 
 
-def _unary(scope: Scope, function: str, type_: Scalar, value: str) -> str:
+def _unary(scope: Scope, function: str, type_: ir.Scalar, value: str) -> str:
     match function:
         case "not" if type_ == "bool":
             return f"(!{value})"
@@ -209,7 +181,7 @@ def _unary(scope: Scope, function: str, type_: Scalar, value: str) -> str:
             return f"{OF_FLOATS.get(function, function)}{'f' if type_ == 'f32' else ''}({value})"
 
 
-def _convert(scope: Scope, target: Scalar, operand: Expr) -> str:
+def _convert(scope: Scope, target: ir.Scalar, operand: ir.Expr) -> str:
     source, value = type_of(operand), expression(scope, operand)
     if target == source:
         return value
@@ -220,11 +192,11 @@ def _convert(scope: Scope, target: Scalar, operand: Expr) -> str:
     return f"({C_TYPES[target]}){value}"
 
 
-def _bits(scope: Scope, target: Scalar, operand: Expr) -> str:
+def _bits(scope: Scope, target: ir.Scalar, operand: ir.Expr) -> str:
     source, value = type_of(operand), expression(scope, operand)
     if source == target:
         return value
-    width = 8 * WIDTH[source]
+    width = 8 * ir.WIDTH[source]
     if source in FLOATS:
         value = f"{scope.calls(f'bits_of_f{width}')}({value})"
         return value if target == f"u{width}" else f"({C_TYPES[target]}){value}"
@@ -233,46 +205,46 @@ def _bits(scope: Scope, target: Scalar, operand: Expr) -> str:
     return f"({C_TYPES[target]}){value}"
 
 
-def _decimal(scope: Scope, expr: Nearest | Digits | Scale) -> str:
+def _decimal(scope: Scope, expr: ir.Nearest | ir.Digits | ir.Scale) -> str:
     scope.calls("decimals")
     match expr:
-        case Nearest(address, size, exponent):
+        case ir.Nearest(address, size, exponent):
             memory, start = location(scope, address)
             return f"nearest({memory}, {start}, {expression(scope, size)}, {expression(scope, exponent)})"
-        case Digits(value, None):
+        case ir.Digits(value, None):
             return f"shortest_digits({expression(scope, value)}, {_is_single(value)})"
-        case Digits(value, places):
+        case ir.Digits(value, places):
             return f"fixed_digits({expression(scope, value)}, {places})"
-        case Scale(value):
+        case ir.Scale(value):
             return f"shortest_scale({expression(scope, value)}, {_is_single(value)})"
         case _:
             assert_never(expr)
 
 
-def _is_single(value: Expr) -> str:
+def _is_single(value: ir.Expr) -> str:
     return "true" if type_of(value) == "f32" else "false"
 
 
 # --- memory ------------------------------------------------------------------------------------------------------------
 
 
-def _loaded(scope: Scope, type_: Scalar, at: str, order: str) -> str:
+def _loaded(scope: Scope, type_: ir.Scalar, at: str, order: str) -> str:
     return f"{scope.calls(f'load_{type_}{_suffix(type_, order)}')}({scope.takes('bytes')}, {at})"
 
 
-def _suffix(type_: Scalar, order: str) -> str:
+def _suffix(type_: ir.Scalar, order: str) -> str:
     """The byte order in the name of a function; single bytes have none."""
-    return "" if WIDTH[type_] == 1 else "_le" if order == "<" else "_be"
+    return "" if ir.WIDTH[type_] == 1 else "_le" if order == "<" else "_be"
 
 
-def store(scope: Scope, at: Expr, value: Expr, order: str) -> str:
+def store(scope: Scope, at: ir.Expr, value: ir.Expr, order: str) -> str:
     """A statement that writes a scalar to the message."""
     type_ = type_of(value)
     name = scope.calls(f"store_{type_}{_suffix(type_, order)}")
     return f"{name}({scope.takes('bytes')}, {expression(scope, at)}, {expression(scope, value)});"
 
 
-def read(scope: Scope, type_: Scalar, place: Place) -> str:
+def read(scope: Scope, type_: ir.Scalar, place: ir.Place) -> str:
     """A field of a row: by its name, or where the schema has no such field by its bytes."""
     named = _field(scope, place, type_)
     if named is not None:
@@ -280,7 +252,7 @@ def read(scope: Scope, type_: Scalar, place: Place) -> str:
     return f"{scope.calls(f'get_{type_}')}({', '.join(location(scope, place))})"
 
 
-def written(scope: Scope, place: Place, value: Expr) -> str:
+def written(scope: Scope, place: ir.Place, value: ir.Expr) -> str:
     """A statement that sets a field of a row."""
     type_, text = type_of(value), expression(scope, value)
     named = _field(scope, place, type_)
@@ -291,17 +263,17 @@ def written(scope: Scope, place: Place, value: Expr) -> str:
     return f"{named} = {bare(text)};"
 
 
-def _field(scope: Scope, place: Place, type_: Scalar) -> str | None:
+def _field(scope: Scope, place: ir.Place, type_: ir.Scalar) -> str | None:
     scope.rows(place.lane)
     return scope.lanes.field(place.lane, bare(expression(scope, place.row)), place.offset, type_)
 
 
-def location(scope: Scope, address: Address) -> tuple[str, str]:
+def location(scope: Scope, address: ir.Address) -> tuple[str, str]:
     """Memory, and the number of a byte in there."""
     match address:
-        case Wire(at):
+        case ir.Wire(at):
             return scope.takes("bytes"), bare(expression(scope, at))
-        case Place(lane, row, offset):
+        case ir.Place(lane, row, offset):
             stride = scope.lanes.stride(lane)
             start = _scaled(scope, row, stride)
             if offset:
@@ -313,8 +285,8 @@ def location(scope: Scope, address: Address) -> tuple[str, str]:
             assert_never(address)
 
 
-def _scaled(scope: Scope, row: Expr, stride: int) -> str:
-    if isinstance(row, Const):
+def _scaled(scope: Scope, row: ir.Expr, stride: int) -> str:
+    if isinstance(row, ir.Const):
         return str(int(row.value) * stride)
     text = expression(scope, row)
     return bare(text) if stride == 1 else f"{text} * {stride}"

@@ -15,24 +15,7 @@ from rosetta_jit.generate.c.functions import Attempt, Printed
 from rosetta_jit.generate.c.language import as_c
 from rosetta_jit.generate.c.state import MEMBERS
 from rosetta_jit.generate.unit import kind_of
-from rosetta_jit.kernel.state import (
-    ADDRESS,
-    CAPACITY,
-    ERROR_INDICES,
-    ERROR_OFFSET,
-    GROW_LANE,
-    GROW_ROWS,
-    HIDDEN,
-    HIDDEN_COUNT,
-    INDEX_WORDS,
-    LANE_WORDS,
-    NOW,
-    NUMBER,
-    REGISTERS,
-    USED,
-    lane_word,
-    state_words,
-)
+from rosetta_jit.kernel import state
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
@@ -86,15 +69,15 @@ def print_call(kernel: Kernel, lanes: Lanes, role: Role) -> Printed:
     }
     writer.line(f"static int64_t {role}_message({', '.join(declared[each] for each in parameters)})")
     with writer.indented("{"):
-        writer.line(f"int64_t state[{state_words(kernel.lanes)}] = {{0}};")
-        writer.line(f"int64_t hidden[{LANE_WORDS * max(1, len(hidden) - 1)}] = {{0}};")
+        writer.line(f"int64_t state[{state.state_words(kernel.lanes)}] = {{0}};")
+        writer.line(f"int64_t hidden[{state.LANE_WORDS * max(1, len(hidden) - 1)}] = {{0}};")
         _give_lanes(writer, kernel, lanes, decodes=decodes)
         if kernel.registers:
-            _pointer(writer, f"state[{REGISTERS}]", "registers", f"holder->state->{MEMBERS[kind_of(role)]}", "int64_t")
+            _pointer(writer, f"state[{state.REGISTERS}]", "registers", f"holder->state->{MEMBERS[kind_of(role)]}", "int64_t")
         writer.line(f"const int64_t result = {name}({'NULL, 0, INT64_C(1) << 60' if role == 'size' else 'bytes, 0, end'}, state, 0);")
         _tell_failure(writer, kernel, lanes)
         for lane in own if decodes else ():
-            writer.line(f"holder->{lanes.rows(lane)}.used = state[{lane_word(lane, USED)}];")
+            writer.line(f"holder->{lanes.rows(lane)}.used = state[{state.lane_word(lane, state.USED)}];")
         writer.line("return result;")
     writer.line("}")
     attempt = Attempt(f"{role}_message", parameters)
@@ -104,24 +87,32 @@ def print_call(kernel: Kernel, lanes: Lanes, role: Role) -> Printed:
 
 def _give_lanes(writer: Writer, kernel: Kernel, lanes: Lanes, *, decodes: bool) -> None:
     """The words of the holder's lanes, of the scratch lane behind them, and of those that the holder does not have."""
-    _pointer(writer, f"state[{lane_word(0, ADDRESS)}]", "rows_0", "&holder->message")
-    writer.line(f"state[{lane_word(0, CAPACITY)}] = 1;")
-    writer.line(f"state[{lane_word(0, USED)}] = 1;")
+    _pointer(writer, f"state[{state.lane_word(0, state.ADDRESS)}]", "rows_0", "&holder->message")
+    writer.line(f"state[{state.lane_word(0, state.CAPACITY)}] = 1;")
+    writer.line(f"state[{state.lane_word(0, state.USED)}] = 1;")
     for lane in range(1, lanes.own):
         member = f"holder->{lanes.rows(lane)}"
-        _pointer(writer, f"state[{lane_word(lane, ADDRESS)}]", f"rows_{lane}", f"{member}.rows")
-        writer.line(f"state[{lane_word(lane, CAPACITY)}] = {member}.capacity;")
+        _pointer(writer, f"state[{state.lane_word(lane, state.ADDRESS)}]", f"rows_{lane}", f"{member}.rows")
+        writer.line(f"state[{state.lane_word(lane, state.CAPACITY)}] = {member}.capacity;")
         if not decodes:
-            writer.line(f"state[{lane_word(lane, USED)}] = {member}.used;")
+            writer.line(f"state[{state.lane_word(lane, state.USED)}] = {member}.used;")
     for number in range(len(lanes.all) - lanes.own):
-        first = f"state[{lane_word(lanes.own, ADDRESS)}]" if number == 0 else f"hidden[{LANE_WORDS * (number - 1) + ADDRESS}]"
-        room = f"state[{lane_word(lanes.own, CAPACITY)}]" if number == 0 else f"hidden[{LANE_WORDS * (number - 1) + CAPACITY}]"
+        first = (
+            f"state[{state.lane_word(lanes.own, state.ADDRESS)}]"
+            if number == 0
+            else f"hidden[{state.LANE_WORDS * (number - 1) + state.ADDRESS}]"
+        )
+        room = (
+            f"state[{state.lane_word(lanes.own, state.CAPACITY)}]"
+            if number == 0
+            else f"hidden[{state.LANE_WORDS * (number - 1) + state.CAPACITY}]"
+        )
         _pointer(writer, first, f"scratch_{number}", f"holder->scratch[{number}].bytes")
         writer.line(f"{room} = holder->scratch[{number}].size{f' / {lanes.stride(lanes.own)}' if number == 0 else ''};")
-    _pointer(writer, f"state[{HIDDEN}]", "hidden_words", "hidden", "int64_t")
-    writer.line(f"state[{HIDDEN_COUNT}] = {kernel.hidden};")
-    writer.line(f"state[{NOW}] = holder->now;")
-    writer.line(f"state[{NUMBER}] = holder->number;")
+    _pointer(writer, f"state[{state.HIDDEN}]", "hidden_words", "hidden", "int64_t")
+    writer.line(f"state[{state.HIDDEN_COUNT}] = {kernel.hidden};")
+    writer.line(f"state[{state.NOW}] = holder->now;")
+    writer.line(f"state[{state.NUMBER}] = holder->number;")
 
 
 def _pointer(writer: Writer, word: str, name: str, value: str, type_: str = "void") -> None:
@@ -133,12 +124,12 @@ def _pointer(writer: Writer, word: str, name: str, value: str, type_: str = "voi
 def _tell_failure(writer: Writer, kernel: Kernel, lanes: Lanes) -> None:
     with writer.indented("if (result < 0) {"):
         writer.line("failure->site = -1 - result;")
-        writer.line(f"failure->offset = state[{ERROR_OFFSET}];")
-        writer.line(f"memcpy(failure->indices, &state[{ERROR_INDICES}], {INDEX_WORDS} * sizeof state[0]);")
+        writer.line(f"failure->offset = state[{state.ERROR_OFFSET}];")
+        writer.line(f"memcpy(failure->indices, &state[{state.ERROR_INDICES}], {state.INDEX_WORDS} * sizeof state[0]);")
     writer.line("}")
     with writer.indented("if (result == -1) {"):
-        writer.line(f"failure->offset = state[{GROW_LANE}];")
-        writer.line(f"failure->indices[0] = state[{GROW_ROWS}];")
+        writer.line(f"failure->offset = state[{state.GROW_LANE}];")
+        writer.line(f"failure->indices[0] = state[{state.GROW_ROWS}];")
         if len(lanes.all) > lanes.own:
             with writer.indented(f"if (failure->offset == {lanes.own}) {{"):
                 writer.line(f"failure->indices[0] = bytes_of(failure->indices[0], {kernel.strides[lanes.own]});")

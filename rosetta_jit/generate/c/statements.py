@@ -15,35 +15,7 @@ from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.origins import origin_of
-from rosetta_jit.kernel.ir import (
-    Address,
-    Advance,
-    Assign,
-    Block,
-    Call,
-    Const,
-    Copy,
-    Expect,
-    Expr,
-    Failure,
-    Fill,
-    For,
-    HostCall,
-    If,
-    Let,
-    Local,
-    Place,
-    Require,
-    Reserve,
-    Return,
-    SetField,
-    Stmt,
-    Store,
-    Switch,
-    Unary,
-    Var,
-    While,
-)
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.rewrite import ends, locals_in, with_blocks
 from rosetta_jit.kernel.shape import expressions_of, statements
@@ -57,7 +29,6 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.c.scope import Scope
     from rosetta_jit.generate.origins import Origin
     from rosetta_jit.generate.unit import Role
-    from rosetta_jit.kernel.ir import Effect, Site
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +50,7 @@ class Function:
     """
 
     scope: Scope
-    sites: Sequence[Site]
+    sites: Sequence[ir.Site]
     routines: Mapping[str, Callable]
     read: frozenset[str] = frozenset()
     finish: tuple[str, ...] = ()
@@ -104,13 +75,13 @@ class Function:
         self.line("}")
 
 
-def read_names(block: Block, results: Iterable[str] = ()) -> frozenset[str]:
+def read_names(block: ir.Block, results: Iterable[str] = ()) -> frozenset[str]:
     """The locals whose values anything needs that a block does, or its ``results``: not those that only others need which nothing does."""
     pending, values = list(results), dict[str, set[str]]()
     for stmt, _ in statements(block):
-        exprs = (stmt.condition,) if isinstance(stmt, While) else expressions_of(stmt)
+        exprs = (stmt.condition,) if isinstance(stmt, ir.While) else expressions_of(stmt)
         found = {name for expr in exprs for name in locals_in(expr)}
-        if isinstance(stmt, Let | Var | Assign):
+        if isinstance(stmt, ir.Let | ir.Var | ir.Assign):
             values.setdefault(stmt.name, set()).update(found)
         else:
             pending += found
@@ -123,22 +94,22 @@ def read_names(block: Block, results: Iterable[str] = ()) -> frozenset[str]:
     return frozenset(read)
 
 
-def leaves(block: Block) -> bool:
+def leaves(block: ir.Block) -> bool:
     """Whether a compiler sees that nothing goes on behind a block."""
     match block[-1] if block else None:
-        case Expect(Const(_, False), _):
+        case ir.Expect(ir.Const(_, False), _):
             return True
-        case If(_, then, otherwise):
+        case ir.If(_, then, otherwise):
             return leaves(then) and leaves(otherwise)
-        case Switch(_, cases, default):
+        case ir.Switch(_, cases, default):
             return leaves(default) and all(leaves(inner) for _, inner in cases)
         case _:
             return ends(block)
 
 
-def reached(block: Block) -> Block:
+def reached(block: ir.Block) -> ir.Block:
     """A block without the statements that are never reached: compilers look at them, too."""
-    found: list[Stmt] = []
+    found: list[ir.Stmt] = []
     for stmt in block:
         found.append(with_blocks(stmt, reached))
         if leaves((stmt,)):
@@ -146,97 +117,97 @@ def reached(block: Block) -> Block:
     return tuple(found)
 
 
-def print_block(function: Function, block: Block) -> None:
+def print_block(function: Function, block: ir.Block) -> None:
     """The statements of a block."""
     for stmt in block:
         _statement(function, stmt)
 
 
-def _statement(function: Function, stmt: Stmt) -> None:
+def _statement(function: Function, stmt: ir.Stmt) -> None:
     scope = function.scope
     match stmt:
-        case Require(at, size, failure):
+        case ir.Require(at, size, failure):
             _fail_if(function, _lacks(scope, at, size), failure)
-        case Expect(condition, failure):
+        case ir.Expect(condition, failure):
             if condition == FALSE:
                 _fail(function, failure)
             else:
-                _fail_if(function, expression(scope, folded(Unary("not", condition))), failure)
-        case Let() | Var() | Assign():
+                _fail_if(function, expression(scope, folded(ir.Unary("not", condition))), failure)
+        case ir.Let() | ir.Var() | ir.Assign():
             _bind(function, stmt)
-        case Store() | SetField() | Copy() | Fill():
+        case ir.Store() | ir.SetField() | ir.Copy() | ir.Fill():
             function.line(f"{_effect(scope, stmt)}{_origin(function, stmt)}")
-        case Reserve() | Advance():
+        case ir.Reserve() | ir.Advance():
             _rows(function, stmt)
-        case Return(position, registers):
+        case ir.Return(position, registers):
             for line in function.finish:
                 function.line(line)
             for number, value in registers:
                 scope.takes("holder")
                 function.line(f"{register_word(function.role, number)} = {bare(expression(scope, value))};")
             function.line(f"return {bare(expression(scope, position))};")
-        case For() | While() | If() | Switch():
+        case ir.For() | ir.While() | ir.If() | ir.Switch():
             _nested(function, stmt)
-        case Call():
+        case ir.Call():
             _call(function, stmt)
-        case HostCall():
+        case ir.HostCall():
             _host_call(function, stmt)
         case _:
             assert_never(stmt)
 
 
-def _bind(function: Function, stmt: Let | Var | Assign) -> None:
+def _bind(function: Function, stmt: ir.Let | ir.Var | ir.Assign) -> None:
     """A local, if anything reads it."""
     if stmt.name not in function.read:
         return
     name, value = function.scope.locals.identifier(stmt.name), bare(expression(function.scope, stmt.value))
-    declared = "" if isinstance(stmt, Assign) else f"{C_TYPES[type_of(stmt.value)]} "
-    function.line(f"{'const ' if isinstance(stmt, Let) else ''}{declared}{name} = {value};{_origin(function, stmt)}")
+    declared = "" if isinstance(stmt, ir.Assign) else f"{C_TYPES[type_of(stmt.value)]} "
+    function.line(f"{'const ' if isinstance(stmt, ir.Let) else ''}{declared}{name} = {value};{_origin(function, stmt)}")
 
 
-def _origin(function: Function, stmt: Stmt) -> str:
+def _origin(function: Function, stmt: ir.Stmt) -> str:
     """The line of the mapping that a statement comes from, as a comment behind it."""
     line = origin_of(stmt, function.origins) if function.origins else None
     return "" if line is None else f" {comment(line)}"
 
 
-def _effect(scope: Scope, stmt: Effect) -> str:
+def _effect(scope: Scope, stmt: ir.Effect) -> str:
     match stmt:
-        case Store(at, value, order):
+        case ir.Store(at, value, order):
             return store(scope, at, value, order)
-        case SetField(place, value):
+        case ir.SetField(place, value):
             return written(scope, place, value)
-        case Copy(target, source, size):
+        case ir.Copy(target, source, size):
             copied = (*location(scope, target), *location(scope, source), bare(expression(scope, size)))
             return f"{scope.calls('copy_bytes')}({', '.join(copied)});"
-        case Fill(target, size, byte):
+        case ir.Fill(target, size, byte):
             return _fill(scope, target, size, byte)
         case _:
             assert_never(stmt)
 
 
-def _lacks(scope: Scope, at: Expr, size: Expr) -> str:
+def _lacks(scope: Scope, at: ir.Expr, size: ir.Expr) -> str:
     """Whether some of ``size`` bytes from ``at`` are missing."""
     match at, size:
-        case Const(_, start), Const(_, length) if start >= 0 and length >= 0:
+        case ir.Const(_, start), ir.Const(_, length) if start >= 0 and length >= 0:
             return f"({expression(scope, END)} < {expression(scope, add(at, size))})"
         case _:
             given = [bare(expression(scope, each)) for each in (at, size, END)]
             return f"{scope.calls('lacks')}({', '.join(given)})"
 
 
-def _fail_if(function: Function, condition: str, failure: Failure) -> None:
+def _fail_if(function: Function, condition: str, failure: ir.Failure) -> None:
     with function.block(f"if ({bare(condition)})"):
         _fail(function, failure)
 
 
-def _fail(function: Function, failure: Failure) -> None:
+def _fail(function: Function, failure: ir.Failure) -> None:
     _failed(
         function, str(function.site(failure.site)), expression(function.scope, failure.at), failure.indices, function.sites[failure.site]
     )
 
 
-def _failed(function: Function, site: str, at: str, indices: tuple[Expr, ...], about: Site | None) -> None:
+def _failed(function: Function, site: str, at: str, indices: tuple[ir.Expr, ...], about: ir.Site | None) -> None:
     """Leave the function. A routine leaves the indices to who calls it."""
     function.scope.takes("failure")
     for number, each in enumerate(indices if not function.is_routine else ()):
@@ -246,26 +217,26 @@ def _failed(function: Function, site: str, at: str, indices: tuple[Expr, ...], a
     function.line(f"return {function.scope.calls(name)}(failure, {site}, {bare(at)});{said}")
 
 
-def described(site: Site) -> str:
+def described(site: ir.Site) -> str:
     """What a site says, for a comment."""
     path = f" {site.path}" if site.path else ""
     line = f" ({site.line})" if site.line else ""
     return f"{site.kind}{path}: {site.detail}{line}"
 
 
-def _fill(scope: Scope, target: Address, size: Expr, byte: int) -> str:
+def _fill(scope: Scope, target: ir.Address, size: ir.Expr, byte: int) -> str:
     memory, start = location(scope, target)
-    if isinstance(target, Place) and isinstance(size, Const) and start == "0" and size.value > 0:
+    if isinstance(target, ir.Place) and isinstance(size, ir.Const) and start == "0" and size.value > 0:
         return f"memset({memory}, {byte}, {int(size.value)});"
     if scope.lanes.dialect == "c++":
         return f"rosetta_jit::detail::fill_few({memory}, {start}, {bare(expression(scope, size))}, {byte});"
     return f"{scope.calls('fill_bytes')}({memory}, {start}, {bare(expression(scope, size))}, {byte});"
 
 
-def _rows(function: Function, stmt: Reserve | Advance) -> None:
+def _rows(function: Function, stmt: ir.Reserve | ir.Advance) -> None:
     scope, lanes, count = function.scope, function.scope.lanes, bare(expression(function.scope, stmt.count))
     used = scope.used(stmt.lane)
-    if isinstance(stmt, Advance):
+    if isinstance(stmt, ir.Advance):
         function.line(f"{used} += {count};")
         return
     scope.takes("failure")
@@ -290,33 +261,33 @@ def moved(lanes: Lanes, lane: int) -> str:
     return f"{lanes.rows(lane)} = {lanes.member(lane)};"
 
 
-def _nested(function: Function, stmt: For | While | If | Switch) -> None:
+def _nested(function: Function, stmt: ir.For | ir.While | ir.If | ir.Switch) -> None:
     scope = function.scope
     match stmt:
-        case For(variable, count, body):
+        case ir.For(variable, count, body):
             name, bound = scope.locals.identifier(variable), bare(expression(scope, count))
-            if not isinstance(count, Const | Local):
+            if not isinstance(count, ir.Const | ir.Local):
                 function.line(f"const int64_t {(before := scope.locals.identifier(f'{variable} count'))} = {bound};")
                 bound = before
             with function.block(f"for (int64_t {name} = 0; {name} < {bound}; {name}++)"):
                 print_block(function, body)
-        case While(condition, body):
+        case ir.While(condition, body):
             with function.block(f"while ({bare(expression(scope, condition))})"):
                 print_block(function, body)
-        case If(condition, then, otherwise):
+        case ir.If(condition, then, otherwise):
             _if(function, condition, then, otherwise)
-        case Switch(value, cases, default):
+        case ir.Switch(value, cases, default):
             with function.block(f"switch ({bare(expression(scope, value))})"):
                 for number, body in cases:
-                    _case(function, f"case {expression(scope, Const(type_of(value), number))}:", body)
+                    _case(function, f"case {expression(scope, ir.Const(type_of(value), number))}:", body)
                 _case(function, "default:", default)
         case _:
             assert_never(stmt)
 
 
-def _if(function: Function, condition: Expr, then: Block, otherwise: Block) -> None:
+def _if(function: Function, condition: ir.Expr, then: ir.Block, otherwise: ir.Block) -> None:
     if not then:
-        condition, then, otherwise = folded(Unary("not", condition)), otherwise, ()
+        condition, then, otherwise = folded(ir.Unary("not", condition)), otherwise, ()
     with function.block(f"if ({bare(expression(function.scope, condition))})"):
         print_block(function, then)
     if otherwise:
@@ -327,7 +298,7 @@ def _if(function: Function, condition: Expr, then: Block, otherwise: Block) -> N
         function.line("}")
 
 
-def _case(function: Function, label: str, body: Block) -> None:
+def _case(function: Function, label: str, body: ir.Block) -> None:
     function.writer.depth -= 1
     with function.block(label):
         print_block(function, body)
@@ -336,7 +307,7 @@ def _case(function: Function, label: str, body: Block) -> None:
     function.writer.depth += 1
 
 
-def _call(function: Function, call: Call) -> None:
+def _call(function: Function, call: ir.Call) -> None:
     """Results come through pointers; what the function returns is the number of its own site that failed, or 0."""
     scope, routine = function.scope, function.routines[call.routine]
     for result in call.results:
@@ -363,7 +334,7 @@ def _site(problem: str, sites: tuple[int, ...]) -> str:
     return text
 
 
-def _host_call(function: Function, call: HostCall) -> None:
+def _host_call(function: Function, call: ir.HostCall) -> None:
     """A function that the program has which this becomes part of."""
     scope = function.scope
     result = scope.locals.identifier(call.result.name)

@@ -16,30 +16,7 @@ from typing import TYPE_CHECKING, cast
 from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.groups import turned
-from rosetta_jit.kernel.ir import (
-    WIDTH,
-    Advance,
-    Binary,
-    Compare,
-    Const,
-    Copy,
-    Expect,
-    Fill,
-    For,
-    Get,
-    HostCall,
-    If,
-    IsText,
-    Let,
-    Load,
-    Local,
-    Nearest,
-    Place,
-    Reserve,
-    SetField,
-    Used,
-    Wire,
-)
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.shape import expressions_of, extents_of, statements, subexpressions
 from rosetta_jit.kernel.terms import add, index, mul
@@ -49,7 +26,6 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
-    from rosetta_jit.kernel.ir import Block, Expr, Kernel, Scalar, Stmt
     from rosetta_jit.model.layout import Layout, Slot
 
 FEW = 16
@@ -68,76 +44,76 @@ class Direct:
     whole: set[int] = field(default_factory=set[int])
     appended: set[int] = field(default_factory=set[int])
     loops: dict[str, int] = field(default_factory=dict[str, int])
-    elements: dict[int, list[Place]] = field(default_factory=dict[int, "list[Place]"])
-    texts: dict[tuple[int, int], tuple[Expr, Expr]] = field(default_factory=dict[tuple[int, int], "tuple[Expr, Expr]"])
+    elements: dict[int, list[ir.Place]] = field(default_factory=dict[int, "list[ir.Place]"])
+    texts: dict[tuple[int, int], tuple[ir.Expr, ir.Expr]] = field(default_factory=dict[tuple[int, int], "tuple[ir.Expr, ir.Expr]"])
 
-    def text_at(self, at: Expr, size: Expr) -> tuple[int, int] | None:
+    def text_at(self, at: ir.Expr, size: ir.Expr) -> tuple[int, int] | None:
         """The span of the text that is checked there."""
         return next((span for span, place in self.texts.items() if place == (at, size)), None)
 
 
-def direct(block: Block, kernel: Kernel, layout: Layout, arrays: Collection[int], *, few: int = FEW) -> tuple[Block, Direct]:
+def direct(block: ir.Block, kernel: ir.Kernel, layout: Layout, arrays: Collection[int], *, few: int = FEW) -> tuple[ir.Block, Direct]:
     """A body of a decoder whose message's row is locals, without the statements that lanes of ``arrays`` needed; and what is direct.
 
     Arrays of a fixed length, up to ``few`` elements, are read together with the numbers around them.
     """
     found = _Search(counted(block), kernel, layout, arrays, few)
-    found.arrays(found.block, Place(0, index(0)))
+    found.arrays(found.block, ir.Place(0, index(0)))
     return found.rewritten(found.block), found.direct
 
 
 class _Search:
     """Looks for arrays and texts in the block that fills a row, and in the loops that fill rows there."""
 
-    def __init__(self, block: Block, kernel: Kernel, layout: Layout, arrays: Collection[int], few: int) -> None:
+    def __init__(self, block: ir.Block, kernel: ir.Kernel, layout: Layout, arrays: Collection[int], few: int) -> None:
         self.block, self.layout, self.lists, self.few, self.direct = block, layout, arrays, few, Direct()
-        self.instead: dict[int, Block] = {}
-        self.mentions: dict[int, list[Stmt]] = {}
-        self.fields: dict[tuple[int, int], list[Stmt]] = {}
-        self.readers: dict[str, list[Stmt]] = {}
-        self.checks: dict[tuple[Expr, Expr], int] = {}
+        self.instead: dict[int, ir.Block] = {}
+        self.mentions: dict[int, list[ir.Stmt]] = {}
+        self.fields: dict[tuple[int, int], list[ir.Stmt]] = {}
+        self.readers: dict[str, list[ir.Stmt]] = {}
+        self.checks: dict[tuple[ir.Expr, ir.Expr], int] = {}
         for part in (block, *(routine.body for routine in kernel.routines)):
             for stmt, _ in statements(part):
                 self._note(stmt)
 
-    def _note(self, stmt: Stmt) -> None:
+    def _note(self, stmt: ir.Stmt) -> None:
         places = list(_places(stmt))
         for lane in {each.lane for each in places} | _asked(stmt):
             self.mentions.setdefault(lane, []).append(stmt)
-        for place in () if isinstance(stmt, Fill) and stmt.target == Place(0, index(0)) else places:
+        for place in () if isinstance(stmt, ir.Fill) and stmt.target == ir.Place(0, index(0)) else places:
             self.fields.setdefault((place.lane, place.offset), []).append(stmt)
         for name in {name for expr in expressions_of(stmt) for name in locals_in(expr)}:
             self.readers.setdefault(name, []).append(stmt)
         match stmt:
-            case Expect(IsText(Wire(at), size), _):
+            case ir.Expect(ir.IsText(ir.Wire(at), size), _):
                 self.checks[at, size] = self.checks.get((at, size), 0) + 1
             case _:
                 pass
 
-    def rewritten(self, block: Block) -> Block:
-        kept: list[Stmt] = []
+    def rewritten(self, block: ir.Block) -> ir.Block:
+        kept: list[ir.Stmt] = []
         for stmt in block:
             kept += self.instead.get(id(stmt), (stmt,))
         return tuple(with_blocks(stmt, self.rewritten) for stmt in kept)
 
     # --- a row -----------------------------------------------------------------------------------------------------------------------
 
-    def arrays(self, block: Block, row: Place) -> None:
+    def arrays(self, block: ir.Block, row: ir.Place) -> None:
         """What is direct of a row that a block fills."""
         for stmt in block:
             match stmt:
-                case Reserve(lane, count) if lane in self.lists:
+                case ir.Reserve(lane, count) if lane in self.lists:
                     self._array(block, row, stmt, count)
-                case Expect(IsText(Wire(at), size), _) if self.checks[at, size] == 1:
+                case ir.Expect(ir.IsText(ir.Wire(at), size), _) if self.checks[at, size] == 1:
                     self._text(block, row, at, size)
                 case _:
                     pass
 
-    def _text(self, block: Block, row: Place, at: Expr, size: Expr) -> None:
+    def _text(self, block: ir.Block, row: ir.Place, at: ir.Expr, size: ir.Expr) -> None:
         spans = [
             (begin, end)
             for begin in self._sets(block, row, at)
-            for end in self._sets(block, row, Binary("sub", index(-1), size))
+            for end in self._sets(block, row, ir.Binary("sub", index(-1), size))
             if end.place.offset == begin.place.offset + 8
         ]
         slots = _spans(self.layout, row.lane)
@@ -148,24 +124,24 @@ class _Search:
             self.direct.texts[row.lane, begin.place.offset] = at, size
             self.instead[id(begin)] = self.instead[id(end)] = ()
 
-    def _sets(self, block: Block, row: Place, value: Expr) -> list[SetField]:
+    def _sets(self, block: ir.Block, row: ir.Place, value: ir.Expr) -> list[ir.SetField]:
         """The one statement, if it is one, that sets a field of the row to a value, and that has to do with the field."""
         found = [
             each
             for each in block
-            if isinstance(each, SetField) and each.value == value and each.place.lane == row.lane and each.place.row == row.row
+            if isinstance(each, ir.SetField) and each.value == value and each.place.lane == row.lane and each.place.row == row.row
         ]
         return [each for each in found if len(self.fields[each.place.lane, each.place.offset]) == 1]
 
-    def _array(self, block: Block, row: Place, reserve: Reserve, count: Expr) -> None:
+    def _array(self, block: ir.Block, row: ir.Place, reserve: ir.Reserve, count: ir.Expr) -> None:
         lane, found = reserve.lane, self.mentions[reserve.lane]
-        lets = [each for each in found if isinstance(each, Let) and each.value == Used(lane)]
-        advances = [each for each in found if each == Advance(lane, count)]
+        lets = [each for each in found if isinstance(each, ir.Let) and each.value == ir.Used(lane)]
+        advances = [each for each in found if each == ir.Advance(lane, count)]
         own = {id(each) for each in (reserve, *lets, *advances)}
         here = {id(each) for each in block}
-        if len(lets) != 1 or len(advances) != 1 or not own <= here or sum(isinstance(each, Reserve) for each in found) > 1:
+        if len(lets) != 1 or len(advances) != 1 or not own <= here or sum(isinstance(each, ir.Reserve) for each in found) > 1:
             return
-        start = Local("i64", lets[0].name)
+        start = ir.Local("i64", lets[0].name)
         spans = [
             (begin, end)
             for begin in self._sets(block, row, start)
@@ -186,97 +162,97 @@ class _Search:
 
     # --- its arrays ------------------------------------------------------------------------------------------------------------------
 
-    def _at_once(self, block: Block, lane: int, start: Local, count: Expr, fills: list[Stmt]) -> bool:
+    def _at_once(self, block: ir.Block, lane: int, start: ir.Local, count: ir.Expr, fills: list[ir.Stmt]) -> bool:
         if len(fills) != 1:
             return False
         stride, element = self.layout.lanes[lane].stride, self.layout.lanes[lane].element
         code = numbers_of(element, stride)
         match fills[0]:
-            case Copy(Place(_, row, 0), Wire(at), size) as copy if code and row == start and size == mul(count, stride):
+            case ir.Copy(ir.Place(_, row, 0), ir.Wire(at), size) as copy if code and row == start and size == mul(count, stride):
                 outer = next((each for each in block if each is copy or _if_any(each, count, copy)), None)
                 if outer is None:
                     return False
-                if isinstance(count, Const) and isinstance(element, Number) and 0 < count.value <= self.few and element.scalar != "bool":
-                    places = [Place(lane, add(start, number)) for number in range(int(count.value))]
+                if isinstance(count, ir.Const) and isinstance(element, Number) and 0 < count.value <= self.few and element.scalar != "bool":
+                    places = [ir.Place(lane, add(start, number)) for number in range(int(count.value))]
                     self.direct.elements[lane] = places
                     self.instead[id(outer)] = tuple(
-                        SetField(place, Load(code[0], add(at, number * stride))) for number, place in enumerate(places)
+                        ir.SetField(place, ir.Load(code[0], add(at, number * stride))) for number, place in enumerate(places)
                     )
                     return True
                 self.instead[id(outer)] = (copy,)
-            case SetField() as last if isinstance(element, Number):
-                loop = next((each for each in block if isinstance(each, For) and each.body and each.body[-1] is last), None)
+            case ir.SetField() as last if isinstance(element, Number):
+                loop = next((each for each in block if isinstance(each, ir.For) and each.body and each.body[-1] is last), None)
                 found = None if loop is None else turned(loop)
-                if loop is None or found is None or loop.count != count or found[0] != Place(lane, start):
+                if loop is None or found is None or loop.count != count or found[0] != ir.Place(lane, start):
                     return False
             case _:
                 return False
         self.direct.whole.add(lane)
         return True
 
-    def _by_name(self, block: Block, lane: int, start: Local, count: Expr, fills: list[Stmt]) -> bool:
-        if not isinstance(count, Const) or not 0 < count.value <= FEW or len(fills) != count.value:
+    def _by_name(self, block: ir.Block, lane: int, start: ir.Local, count: ir.Expr, fills: list[ir.Stmt]) -> bool:
+        if not isinstance(count, ir.Const) or not 0 < count.value <= FEW or len(fills) != count.value:
             return False
-        places = [Place(lane, add(start, number)) for number in range(int(count.value))]
+        places = [ir.Place(lane, add(start, number)) for number in range(int(count.value))]
         here = {id(each) for each in block}
-        if not all(isinstance(each, SetField) and id(each) in here for each in fills):
+        if not all(isinstance(each, ir.SetField) and id(each) in here for each in fills):
             return False
-        if {each.place for each in fills if isinstance(each, SetField)} != set(places):
+        if {each.place for each in fills if isinstance(each, ir.SetField)} != set(places):
             return False
         if not isinstance(self.layout.lanes[lane].element, Number):
             return False
         self.direct.elements[lane] = places
         return True
 
-    def _one_by_one(self, block: Block, lane: int, start: Local, count: Expr, fills: list[Stmt]) -> bool:
-        loops = [each for each in block if isinstance(each, For) and each.count == count and any(fill in each.body for fill in fills)]
+    def _one_by_one(self, block: ir.Block, lane: int, start: ir.Local, count: ir.Expr, fills: list[ir.Stmt]) -> bool:
+        loops = [each for each in block if isinstance(each, ir.For) and each.count == count and any(fill in each.body for fill in fills)]
         element = self.layout.lanes[lane].element
         needed = offsets_of(element)
         if len(loops) != 1 or needed is None:
             return False
         loop = loops[0]
-        row = Binary("add", start, Local("i64", loop.variable))
+        row = ir.Binary("add", start, ir.Local("i64", loop.variable))
         here = {id(each) for each in loop.body}
-        sets = [each for each in fills if isinstance(each, SetField) and id(each) in here and each.place.row == row]
+        sets = [each for each in fills if isinstance(each, ir.SetField) and id(each) in here and each.place.row == row]
         if len(sets) != len(fills) or sorted(each.place.offset for each in sets) != sorted(needed):
             return False
         self.direct.appended.add(lane)
         self.direct.loops[loop.variable] = lane
-        self.arrays(loop.body, Place(lane, row))
+        self.arrays(loop.body, ir.Place(lane, row))
         return True
 
 
-def _places(stmt: Stmt) -> Iterator[Place]:
+def _places(stmt: ir.Stmt) -> Iterator[ir.Place]:
     """Places of lanes that a statement has to do with."""
     match stmt:
-        case SetField(place):
+        case ir.SetField(place):
             yield place
-        case Copy(target, source, _):
-            yield from (each for each in (target, source) if isinstance(each, Place))
-        case Fill(Place() as target, _, _):
+        case ir.Copy(target, source, _):
+            yield from (each for each in (target, source) if isinstance(each, ir.Place))
+        case ir.Fill(ir.Place() as target, _, _):
             yield target
-        case HostCall():
-            yield from (each.address for each in extents_of(stmt) if isinstance(each.address, Place))
+        case ir.HostCall():
+            yield from (each.address for each in extents_of(stmt) if isinstance(each.address, ir.Place))
         case _:
             pass
     for expr in expressions_of(stmt):
         for part in subexpressions(expr):
             match part:
-                case Get(_, place) | IsText(Place() as place, _) | Nearest(Place() as place, _, _):
+                case ir.Get(_, place) | ir.IsText(ir.Place() as place, _) | ir.Nearest(ir.Place() as place, _, _):
                     yield place
                 case _:
                     pass
 
 
-def _asked(stmt: Stmt) -> set[int]:
+def _asked(stmt: ir.Stmt) -> set[int]:
     """Lanes whose counts a statement changes or asks for."""
-    found = {stmt.lane} if isinstance(stmt, Reserve | Advance) else set[int]()
+    found = {stmt.lane} if isinstance(stmt, ir.Reserve | ir.Advance) else set[int]()
     parts = (part for expr in expressions_of(stmt) for part in subexpressions(expr))
-    return found | {part.lane for part in parts if isinstance(part, Used)}
+    return found | {part.lane for part in parts if isinstance(part, ir.Used)}
 
 
-def _if_any(stmt: Stmt, count: Expr, copy: Copy) -> bool:
-    return isinstance(stmt, If) and stmt.condition == Compare("gt", count, index(0)) and stmt.then == (copy,) and not stmt.otherwise
+def _if_any(stmt: ir.Stmt, count: ir.Expr, copy: ir.Copy) -> bool:
+    return isinstance(stmt, ir.If) and stmt.condition == ir.Compare("gt", count, index(0)) and stmt.then == (copy,) and not stmt.otherwise
 
 
 def _spans(layout: Layout, lane: int) -> dict[int, int]:
@@ -284,12 +260,12 @@ def _spans(layout: Layout, lane: int) -> dict[int, int]:
     return {each.offset: each.lane for each in slots_of(layout.lanes[lane].element if lane else layout.root) if isinstance(each, Span)}
 
 
-def numbers_of(slot: Slot, stride: int) -> tuple[Scalar, ...]:
+def numbers_of(slot: Slot, stride: int) -> tuple[ir.Scalar, ...]:
     """The types of the numbers that a row is, one behind the other."""
     slots = [each for each in slots_of(slot) if not isinstance(each, Row)]
     numbers = sorted((each for each in slots if isinstance(each, Number)), key=lambda each: each.offset)
     at = 0
     for each in numbers:
-        at = at + WIDTH[each.scalar] if each.offset == at else -1
-    scalars: list[Scalar] = [cast("Scalar", each.scalar) for each in numbers]
+        at = at + ir.WIDTH[each.scalar] if each.offset == at else -1
+    scalars: list[ir.Scalar] = [cast("ir.Scalar", each.scalar) for each in numbers]
     return tuple(scalars) if len(numbers) == len(slots) and at == stride else ()

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer
 from rosetta_jit.generate.c.statements import reached, read_names
-from rosetta_jit.generate.python.asked import without_lengths
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.functions import words_of
-from rosetta_jit.generate.python.given import Given
+from rosetta_jit.generate.python.object_rows import ObjectScope
 from rosetta_jit.generate.python.parts import Parts
 from rosetta_jit.generate.python.positions import NotInParts, Sum, without_places, without_positions
+from rosetta_jit.generate.python.presence import without_lengths
 from rosetta_jit.generate.python.statements import Function, Objects
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.kernel.ir import Expect
@@ -75,11 +75,11 @@ def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str,
     return InParts(routines, tuple(lines), frozenset(loads), frozenset(scope.told))
 
 
-def _scope(kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], loads: set[str]) -> Given:
-    return Given(Namespace(words_of(lanes)), lanes, flat=True, loads=loads, name=kernel.name, paths=paths)
+def _scope(kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], loads: set[str]) -> ObjectScope:
+    return ObjectScope(Namespace(words_of(lanes)), lanes, flat=True, loads=loads, name=kernel.name, paths=paths)
 
 
-def _parts(unit: Unit, kernel: Kernel, scope: Given, block: Block, written: dict[str, str], depth: int) -> Parts:
+def _parts(unit: Unit, kernel: Kernel, scope: ObjectScope, block: Block, written: dict[str, str], depth: int) -> Parts:
     body = without_positions(counted(without_lengths(block, kernel.sites, scope.lanes.own)))
     objects = Objects(lambda _, __: "message")
     function = Function(scope, kernel, kernel.sites, {}, unit.origins.get("encode", ()), objects, writer=Writer(depth=depth))
@@ -87,7 +87,7 @@ def _parts(unit: Unit, kernel: Kernel, scope: Given, block: Block, written: dict
     return Parts(unit, function, scope, body, written)
 
 
-def _routine(unit: Unit, kernel: Kernel, routine: Routine, scope: Given, written: dict[str, str]) -> list[str]:
+def _routine(unit: Unit, kernel: Kernel, routine: Routine, scope: ObjectScope, written: dict[str, str]) -> list[str]:
     """A routine that writes from its first parameter on, and gives the position behind: a function of the others that gives the bytes."""
     parts = _parts(unit, kernel, scope, routine.body, written, depth=1)
     if not routine.parameters or len(routine.results) != 1 or any(isinstance(stmt, Expect) for stmt, _ in statements(parts.body)):

@@ -16,19 +16,7 @@ from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.statements import Attempt, Function, print_block
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import kind_of
-from rosetta_jit.kernel.ir import (
-    Capacity,
-    Const,
-    Copy,
-    Fill,
-    Get,
-    IsText,
-    Kernel,
-    Place,
-    Reserve,
-    SetField,
-    Stmt,
-)
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import type_of
 
@@ -39,7 +27,6 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.origins import Origin
     from rosetta_jit.generate.python.statements import Objects
     from rosetta_jit.generate.unit import Role
-    from rosetta_jit.kernel.ir import Routine, Scalar
 
 WORDS = frozenset(
     (
@@ -63,7 +50,7 @@ WORDS = frozenset(
 ) | {f"told_{what}" for what in ("now", "number", "registers", "end", "copy", "into")}
 
 
-def is_flat(kernel: Kernel, lanes: Lanes) -> bool:
+def is_flat(kernel: ir.Kernel, lanes: Lanes) -> bool:
     """Whether all that is done to the message's row is to set and to read its fields."""
     fields = (each for body in kernel.bodies for stmt, _ in statements(body) for each in _fields(stmt) if each[0].lane == 0)
     if any(lanes.field(0, "0", place.offset, scalar) is None for place, scalar in fields):
@@ -71,9 +58,9 @@ def is_flat(kernel: Kernel, lanes: Lanes) -> bool:
     for body in kernel.bodies:
         for stmt, _ in statements(body):
             whole = (
-                isinstance(stmt, Fill)
-                and stmt == Fill(stmt.target, Const("i64", kernel.strides[0]))
-                and stmt.target == Place(0, Const("i64", 0))
+                isinstance(stmt, ir.Fill)
+                and stmt == ir.Fill(stmt.target, ir.Const("i64", kernel.strides[0]))
+                and stmt.target == ir.Place(0, ir.Const("i64", 0))
             )
             if not whole and any(place.lane == 0 for place in _memory(stmt)):
                 return False
@@ -81,22 +68,22 @@ def is_flat(kernel: Kernel, lanes: Lanes) -> bool:
     return all(place.lane for place in places)
 
 
-def _memory(stmt: Stmt) -> list[Place]:
+def _memory(stmt: ir.Stmt) -> list[ir.Place]:
     """Places whose bytes a statement takes for what they are."""
-    found = (stmt.target, stmt.source) if isinstance(stmt, Copy) else (stmt.target,) if isinstance(stmt, Fill) else ()
-    texts = [part.address for expr in expressions_of(stmt) for part in subexpressions(expr) if isinstance(part, IsText)]
-    return [each for each in (*found, *texts) if isinstance(each, Place)]
+    found = (stmt.target, stmt.source) if isinstance(stmt, ir.Copy) else (stmt.target,) if isinstance(stmt, ir.Fill) else ()
+    texts = [part.address for expr in expressions_of(stmt) for part in subexpressions(expr) if isinstance(part, ir.IsText)]
+    return [each for each in (*found, *texts) if isinstance(each, ir.Place)]
 
 
-def _fields(stmt: Stmt) -> list[tuple[Place, Scalar]]:
+def _fields(stmt: ir.Stmt) -> list[tuple[ir.Place, ir.Scalar]]:
     """The scalars of rows that a statement sets or reads."""
-    found: list[tuple[Place, Scalar]] = [(stmt.place, type_of(stmt.value))] if isinstance(stmt, SetField) else []
-    gets = (part for expr in expressions_of(stmt) for part in subexpressions(expr) if isinstance(part, Get))
+    found: list[tuple[ir.Place, ir.Scalar]] = [(stmt.place, type_of(stmt.value))] if isinstance(stmt, ir.SetField) else []
+    gets = (part for expr in expressions_of(stmt) for part in subexpressions(expr) if isinstance(part, ir.Get))
     return [*found, *((each.place, each.type) for each in gets)]
 
 
-def _set(stmt: Stmt) -> list[Place]:
-    return [stmt.place] if isinstance(stmt, SetField) else []
+def _set(stmt: ir.Stmt) -> list[ir.Place]:
+    return [stmt.place] if isinstance(stmt, ir.SetField) else []
 
 
 def words_of(lanes: Lanes) -> frozenset[str]:
@@ -107,7 +94,7 @@ def words_of(lanes: Lanes) -> frozenset[str]:
 
 
 def print_kernel(
-    kernel: Kernel,
+    kernel: ir.Kernel,
     lanes: Lanes,
     role: Role,
     loads: set[str],
@@ -143,11 +130,11 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Att
         body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, few=0 if scope.numpy else FEW)
     function.settled = settled(body)
     function.read, function.positive = read_names(body), not_negative(body)
-    function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, Reserve))
+    function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, ir.Reserve))
     blocks = (body, *(routine.body for routine in kernel.routines))
     exprs = (expr for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt))
-    asked = {part.lane for expr in exprs for part in subexpressions(expr) if isinstance(part, Capacity)}
-    function.outside = {stmt.lane for stmt in body if isinstance(stmt, Reserve)} - asked - {*kernel.kept}
+    asked = {part.lane for expr in exprs for part in subexpressions(expr) if isinstance(part, ir.Capacity)}
+    function.outside = {stmt.lane for stmt in body if isinstance(stmt, ir.Reserve)} - asked - {*kernel.kept}
     print_block(function, body)
     made = objects.inner(scope)
     name = f"_{role}_{number + 1}"
@@ -235,7 +222,7 @@ def _blank(writer: Writer) -> None:
     writer.lines += ["", ""] if writer.lines else []
 
 
-def _routine(writer: Writer, role: Role, routine: Routine, function: Function) -> Attempt:
+def _routine(writer: Writer, role: Role, routine: ir.Routine, function: Function) -> Attempt:
     scope = function.scope
     own = [scope.locals.identifier(each.name) for each in routine.parameters]
     function.read = read_names(routine.body, (each.name for each in routine.results))

@@ -5,26 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import (
-    WIDTH,
-    Assign,
-    Binary,
-    Call,
-    Compare,
-    Const,
-    Convert,
-    Expect,
-    For,
-    Get,
-    HostCall,
-    Let,
-    Load,
-    Local,
-    Place,
-    SetField,
-    Store,
-    Var,
-)
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.shape import bound_names, statements
 from rosetta_jit.kernel.terms import END, index, type_of
@@ -32,12 +13,10 @@ from rosetta_jit.kernel.terms import END, index, type_of
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.kernel.ir import Block, Expr, Stmt
 
-
-def grouped(block: Block) -> Iterator[list[Stmt]]:
+def grouped(block: ir.Block) -> Iterator[list[ir.Stmt]]:
     """The statements of a block: those that read, or write, scalars one behind the other in the message together."""
-    group: list[Stmt] = []
+    group: list[ir.Stmt] = []
     for stmt in block:
         if group and not _continues(group, stmt):
             yield group
@@ -47,69 +26,71 @@ def grouped(block: Block) -> Iterator[list[Stmt]]:
         yield group
 
 
-def scalar_of(stmt: Stmt) -> tuple[str, Expr, str] | None:
+def scalar_of(stmt: ir.Stmt) -> tuple[str, ir.Expr, str] | None:
     """Type, place and byte order of the one scalar that a statement takes from the message, or puts there."""
     match stmt:
-        case Let(_, value) | SetField(_, value):
+        case ir.Let(_, value) | ir.SetField(_, value):
             load = _as_loaded(value)
             return (load.type, load.at, load.order) if load is not None and load.type != "bool" else None
-        case Store(at, value, order):
+        case ir.Store(at, value, order):
             return (type_of(value), at, order) if type_of(value) != "bool" else None
         case _:
             return None
 
 
-def _as_loaded(value: Expr) -> Load | None:
+def _as_loaded(value: ir.Expr) -> ir.Load | None:
     """The scalar of the message that a value is; an integer of more bits is the same one."""
     match value:
-        case Load():
+        case ir.Load():
             return value
-        case Convert(type_, Load(inner) as load) if inner[0] in "iu" and type_[0] in ("i", inner[0]) and WIDTH[type_] > WIDTH[inner]:
+        case ir.Convert(type_, ir.Load(inner) as load) if (
+            inner[0] in "iu" and type_[0] in ("i", inner[0]) and ir.WIDTH[type_] > ir.WIDTH[inner]
+        ):
             return load
         case _:
             return None
 
 
-def _continues(group: list[Stmt], stmt: Stmt) -> bool:
+def _continues(group: list[ir.Stmt], stmt: ir.Stmt) -> bool:
     before = group[-1]
     one, other = scalar_of(before), scalar_of(stmt)
-    if one is None or other is None or isinstance(before, Store) != isinstance(stmt, Store):
+    if one is None or other is None or isinstance(before, ir.Store) != isinstance(stmt, ir.Store):
         return False
-    orders = {order for type_, _, order in (*filter(None, map(scalar_of, group)), other) if WIDTH[type_] > 1}
+    orders = {order for type_, _, order in (*filter(None, map(scalar_of, group)), other) if ir.WIDTH[type_] > 1}
     (base, offset), (base_2, offset_2) = _based(one[1]), _based(other[1])
-    follows = base == base_2 and offset_2 == offset + WIDTH[one[0]]
-    return len(orders) < 2 and follows and not any(isinstance(each, Let) and _reads(stmt, each.name) for each in group)
+    follows = base == base_2 and offset_2 == offset + ir.WIDTH[one[0]]
+    return len(orders) < 2 and follows and not any(isinstance(each, ir.Let) and _reads(stmt, each.name) for each in group)
 
 
-def _based(at: Expr) -> tuple[Expr | None, int]:
+def _based(at: ir.Expr) -> tuple[ir.Expr | None, int]:
     """A place as something and a constant."""
     match at:
-        case Const(_, value):
+        case ir.Const(_, value):
             return None, int(value)
-        case Binary("add", left, Const(_, value)):
+        case ir.Binary("add", left, ir.Const(_, value)):
             base, offset = _based(left)
             return base, offset + int(value)
         case _:
             return at, 0
 
 
-def _reads(stmt: Stmt, name: str) -> bool:
+def _reads(stmt: ir.Stmt, name: str) -> bool:
     found = scalar_of(stmt)
     base = _based(found[1])[0] if found is not None else None
-    return isinstance(base, Local) and base.name == name
+    return isinstance(base, ir.Local) and base.name == name
 
 
-def not_negative(block: Block) -> frozenset[str]:
+def not_negative(block: ir.Block) -> frozenset[str]:
     """The integers of a body that are never negative, whatever the message: Python's have no end."""
-    values: dict[str, list[Expr]] = {}
+    values: dict[str, list[ir.Expr]] = {}
     unknown: set[str] = set()
     for stmt, _ in statements(block):
         match stmt:
-            case Let(name, value) | Var(name, value) | Assign(name, value):
+            case ir.Let(name, value) | ir.Var(name, value) | ir.Assign(name, value):
                 values.setdefault(name, []).append(value)
-            case For(variable, _, _):
+            case ir.For(variable, _, _):
                 values.setdefault(variable, [])
-            case Call() | HostCall():
+            case ir.Call() | ir.HostCall():
                 unknown.update(bound_names(stmt))
             case _:
                 pass
@@ -123,67 +104,69 @@ def not_negative(block: Block) -> frozenset[str]:
         known = kept
 
 
-def _checked(block: Block) -> Iterator[str]:
+def _checked(block: ir.Block) -> Iterator[str]:
     """Names of constants of which the next statement says that they are 0 or more."""
     for (stmt, _), (after, _) in pairwise(statements(block)):
         match stmt, after:
-            case Let(name, _), Expect(Compare("ge" | "gt", Local(_, same), Const(_, least)), _) if name == same and least >= 0:
+            case ir.Let(name, _), ir.Expect(ir.Compare("ge" | "gt", ir.Local(_, same), ir.Const(_, least)), _) if (
+                name == same and least >= 0
+            ):
                 yield name
             case _:
                 pass
 
 
-def is_not_negative(expr: Expr, known: frozenset[str] | set[str]) -> bool:
+def is_not_negative(expr: ir.Expr, known: frozenset[str] | set[str]) -> bool:
     """Whether an integer is 0 or more, if those of the names are."""
     match expr:
-        case Const(_, value):
+        case ir.Const(_, value):
             return value >= 0
-        case Local(_, name):
+        case ir.Local(_, name):
             return name in known
-        case Load(type_, _, _):
+        case ir.Load(type_, _, _):
             return type_[0] == "u"
-        case Binary("add" | "mul", left, right):
+        case ir.Binary("add" | "mul", left, right):
             return is_not_negative(left, known) and is_not_negative(right, known)
-        case Convert(type_, operand):
+        case ir.Convert(type_, operand):
             inner = type_of(operand)
-            return type_[0] in "iu" and inner[0] in "iu" and WIDTH[type_] >= WIDTH[inner] and is_not_negative(operand, known)
+            return type_[0] in "iu" and inner[0] in "iu" and ir.WIDTH[type_] >= ir.WIDTH[inner] and is_not_negative(operand, known)
         case _:
             return False
 
 
-def turned(loop: For) -> tuple[Place, Expr, str] | None:
+def turned(loop: ir.For) -> tuple[ir.Place, ir.Expr, str] | None:
     """The array that a loop copies between a lane and the message, byte by byte turned around: its first row, its place, its type."""
-    names = {each.name: each.value for each in loop.body if isinstance(each, Let)}
+    names = {each.name: each.value for each in loop.body if isinstance(each, ir.Let)}
     *lets, last = loop.body or (None,)
-    if not all(isinstance(each, Let) for each in lets):
+    if not all(isinstance(each, ir.Let) for each in lets):
         return None
     match last:
-        case SetField(place, Load(type_, at, ">")) | Store(at, Get(type_, place), ">") if WIDTH[type_] > 1:
-            row, base = _without(place.row, loop.variable, 1), _without(_resolved(at, names), loop.variable, WIDTH[type_])
+        case ir.SetField(place, ir.Load(type_, at, ">")) | ir.Store(at, ir.Get(type_, place), ">") if ir.WIDTH[type_] > 1:
+            row, base = _without(place.row, loop.variable, 1), _without(_resolved(at, names), loop.variable, ir.WIDTH[type_])
             used = set(names) & (locals_in(row) | locals_in(base)) if row is not None and base is not None else {""}
             if row is None or base is None or used or place.offset or len(names) > 1:
                 return None
-            return Place(place.lane, row), base, type_
+            return ir.Place(place.lane, row), base, type_
         case _:
             return None
 
 
-def _resolved(expr: Expr, names: dict[str, Expr]) -> Expr:
-    return names.get(expr.name, expr) if isinstance(expr, Local) else expr
+def _resolved(expr: ir.Expr, names: dict[str, ir.Expr]) -> ir.Expr:
+    return names.get(expr.name, expr) if isinstance(expr, ir.Local) else expr
 
 
-def _without(expr: Expr, variable: str, times: int) -> Expr | None:
+def _without(expr: ir.Expr, variable: str, times: int) -> ir.Expr | None:
     """An expression that is ``variable * times`` more than another: that other one."""
     match expr:
-        case Local(_, name) if name == variable and times == 1:
+        case ir.Local(_, name) if name == variable and times == 1:
             return index(0)
-        case Binary("mul", Local(_, name), Const(_, factor)) if name == variable and factor == times:
+        case ir.Binary("mul", ir.Local(_, name), ir.Const(_, factor)) if name == variable and factor == times:
             return index(0)
-        case Binary("add", left, right):
+        case ir.Binary("add", left, right):
             for one, other in ((left, right), (right, left)):
                 found = _without(one, variable, times)
                 if found is not None and variable not in locals_in(other):
-                    return other if found == index(0) else Binary("add", other, found)
+                    return other if found == index(0) else ir.Binary("add", other, found)
             return None
         case _:
             return None

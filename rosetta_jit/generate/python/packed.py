@@ -10,7 +10,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rosetta_jit.generate.python.given import Given
+    from rosetta_jit.generate.python.object_rows import ObjectScope
 
 ANY = "?"
 """The order of numbers that have a byte each."""
@@ -33,7 +33,7 @@ def with_numbers(parts: Sequence[Part], order: str, codes: str, texts: tuple[str
     return [*parts[:-1], Part(order or last.order, last.codes + codes, (*last.texts, *texts))]
 
 
-def part_text(part: Part, scope: Given, exact: Mapping[int, int]) -> str:
+def part_text(part: Part, scope: ObjectScope, exact: Mapping[int, int]) -> str:
     """The bytes of a part; ``exact`` says how many elements arrays have, by lane, where that was checked."""
     order = "<" if part.order == ANY else part.order
     if not part.codes:
@@ -43,7 +43,7 @@ def part_text(part: Part, scope: Given, exact: Mapping[int, int]) -> str:
     return f"{scope.struct(order, part.codes, 'whole')}({', '.join(_starred(part, scope, exact))})"
 
 
-def _starred(part: Part, scope: Given, exact: Mapping[int, int]) -> list[str]:
+def _starred(part: Part, scope: ObjectScope, exact: Mapping[int, int]) -> list[str]:
     """What is packed: all elements of an array, which follow each other, as it is."""
     texts = list(part.texts)
     for lane, count in exact.items():

@@ -11,36 +11,7 @@ from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.generate.python.expressions import CODES, Scope, bare, expression, location, view_name
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
 from rosetta_jit.generate.python.reading import numbers_read, takes_text
-from rosetta_jit.kernel.ir import (
-    WIDTH,
-    Advance,
-    Assign,
-    Block,
-    Call,
-    Const,
-    Copy,
-    Expect,
-    Expr,
-    Failure,
-    Fill,
-    For,
-    HostCall,
-    If,
-    Kernel,
-    Let,
-    Place,
-    Require,
-    Reserve,
-    Return,
-    SetField,
-    Stmt,
-    Store,
-    Switch,
-    Unary,
-    Var,
-    While,
-    Wire,
-)
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import mul, type_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -49,7 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from rosetta_jit.generate.origins import Origin
-    from rosetta_jit.kernel.ir import Effect, Site
     from rosetta_jit.model.layout import Layout
 
 
@@ -89,8 +59,8 @@ class Function:
     """
 
     scope: Scope
-    kernel: Kernel
-    sites: Sequence[Site]
+    kernel: ir.Kernel
+    sites: Sequence[ir.Site]
     routines: Mapping[str, Attempt]
     origins: Sequence[Origin]
     objects: Objects
@@ -106,11 +76,11 @@ class Function:
     def line(self, text: str) -> None:
         self.writer.line(text)
 
-    def text(self, expr: Expr) -> str:
+    def text(self, expr: ir.Expr) -> str:
         return bare(expression(self.scope, expr))
 
 
-def print_block(function: Function, block: Block) -> None:
+def print_block(function: Function, block: ir.Block) -> None:
     """The statements of a block."""
     before = len(function.writer.lines)
     for group in grouped(block):
@@ -122,95 +92,95 @@ def print_block(function: Function, block: Block) -> None:
         function.line("pass")
 
 
-def _together(function: Function, group: list[Stmt]) -> None:
+def _together(function: Function, group: list[ir.Stmt]) -> None:
     """Scalars that lie one behind the other, by one call."""
     scope, found = function.scope, [each for stmt in group if (each := scalar_of(stmt)) is not None]
-    order = next((order for type_, _, order in found if WIDTH[type_] > 1), "<")
+    order = next((order for type_, _, order in found if ir.WIDTH[type_] > 1), "<")
     codes, at = "".join(CODES[type_] for type_, _, _ in found), function.text(found[0][1])
     targets: list[str] = []
     for stmt in group:
         match stmt:
-            case Let(name, _):
+            case ir.Let(name, _):
                 targets.append(scope.locals.identifier(name) if name in function.read else "_")
-            case SetField(place, value):
+            case ir.SetField(place, value):
                 targets.append(_target(function, place, value))
-            case Store(_, value, _):
+            case ir.Store(_, value, _):
                 targets.append(function.text(value))
             case _:
                 raise AssertionError(stmt)
-    if isinstance(group[0], Store):
+    if isinstance(group[0], ir.Store):
         function.line(f"{scope.struct(order, codes, 'store')}(data, {at}, {', '.join(targets)})")
     else:
         function.line(f"{', '.join(targets)} = {scope.struct(order, codes, 'load')}(data, {at})")
 
 
-def print_statement(function: Function, stmt: Stmt) -> None:
+def print_statement(function: Function, stmt: ir.Stmt) -> None:
     """One statement."""
     match stmt:
-        case Require(at, size, failure):
+        case ir.Require(at, size, failure):
             _fail_if(function, _lacks(function, at, size), failure)
-        case Expect(condition, failure):
+        case ir.Expect(condition, failure):
             if condition == FALSE:
                 fail(function, failure)
             elif (taken := takes_text(function.scope, condition)) is not None:
                 _taken(function, taken, failure)
             else:
-                _fail_if(function, function.text(folded(Unary("not", condition))), failure)
-        case Let(name, value) | Var(name, value) | Assign(name, value):
+                _fail_if(function, function.text(folded(ir.Unary("not", condition))), failure)
+        case ir.Let(name, value) | ir.Var(name, value) | ir.Assign(name, value):
             if name in function.read:
                 text = function.text(value)
                 function.line(f"{function.scope.locals.identifier(name)} = {text}{_origin(function, stmt)}")
-        case Store() | SetField() | Copy() | Fill():
+        case ir.Store() | ir.SetField() | ir.Copy() | ir.Fill():
             _effect(function, stmt)
-        case Reserve(lane, count):
+        case ir.Reserve(lane, count):
             _reserve(function, lane, function.text(count))
-        case Advance(lane, count):
+        case ir.Advance(lane, count):
             function.line(f"{function.scope.used(lane)} += {function.text(count)}")
-        case Return(position, ()):
+        case ir.Return(position, ()):
             function.line(f"return {function.objects.result(function.scope, function.text(position))}")
-        case Return(position, registers):
+        case ir.Return(position, registers):
             function.scope.told.add("registers")
             words = "".join(f"told_registers[{number}], " for number, _ in registers)
             values = "".join(f"{function.text(value)}, " for _, value in registers)
             function.line(f"{words}told_end = {values}{function.text(position)}")
             function.line(f"return {function.objects.result(function.scope, 'told_end')}")
-        case For() | While() | If() | Switch():
+        case ir.For() | ir.While() | ir.If() | ir.Switch():
             _nested(function, stmt)
-        case Call():
+        case ir.Call():
             _call(function, stmt)
-        case HostCall():
+        case ir.HostCall():
             _host_call(function, stmt)
         case _:
             assert_never(stmt)
 
 
-def _origin(function: Function, stmt: Stmt) -> str:
+def _origin(function: Function, stmt: ir.Stmt) -> str:
     line = origin_of(stmt, function.origins) if function.origins else None
     return "" if line is None else f"  # {ascii(line)[1:-1]}"
 
 
-def _lacks(function: Function, at: Expr, size: Expr) -> str:
+def _lacks(function: Function, at: ir.Expr, size: ir.Expr) -> str:
     """Whether bytes are missing."""
     where, length = function.text(at), expression(function.scope, size)
     if is_not_negative(at, function.positive) and is_not_negative(size, function.positive):
-        if isinstance(size, Const):
-            return f"end < {where} + {length}" if not isinstance(at, Const) else f"end < {int(at.value) + int(size.value)}"
+        if isinstance(size, ir.Const):
+            return f"end < {where} + {length}" if not isinstance(at, ir.Const) else f"end < {int(at.value) + int(size.value)}"
         return f"{bare(length)} > end - {expression(function.scope, at)}"
-    if isinstance(size, Const):
-        if isinstance(at, Const):
+    if isinstance(size, ir.Const):
+        if isinstance(at, ir.Const):
             return f"end < {int(at.value) + int(size.value)}"
         return f"not 0 <= {where} <= end - {length}"
-    if not isinstance(at, Const):
+    if not isinstance(at, ir.Const):
         return f"{where} < 0 or not 0 <= {bare(length)} <= end - {expression(function.scope, at)}"
     return f"not 0 <= {bare(length)} <= end - {where}"
 
 
-def _fail_if(function: Function, condition: str, failure: Failure) -> None:
+def _fail_if(function: Function, condition: str, failure: ir.Failure) -> None:
     with function.writer.indented(f"if {condition}:"):
         fail(function, failure)
 
 
-def fail(function: Function, failure: Failure) -> None:
+def fail(function: Function, failure: ir.Failure) -> None:
     """The line that ends an attempt."""
     site = function.sites[failure.site]
     at = function.text(failure.at)
@@ -227,28 +197,30 @@ def fail(function: Function, failure: Failure) -> None:
     function.line(f"raise _Failed({failure.site}, {at}{given}{detail}){said}")
 
 
-def _effect(function: Function, stmt: Effect) -> None:
+def _effect(function: Function, stmt: ir.Effect) -> None:
     scope, origin = function.scope, _origin(function, stmt)
     match stmt:
-        case Store(at, value, order):
+        case ir.Store(at, value, order):
             type_, where, text = type_of(value), function.text(at), function.text(value)
             if type_ in ("u8", "bool"):
                 function.line(f"data[{where}] = {text}{origin}")
             else:
-                function.line(f"{scope.struct('<' if WIDTH[type_] == 1 else order, CODES[type_], 'store')}(data, {where}, {text}){origin}")
-        case SetField(place, value):
+                function.line(
+                    f"{scope.struct('<' if ir.WIDTH[type_] == 1 else order, CODES[type_], 'store')}(data, {where}, {text}){origin}"
+                )
+        case ir.SetField(place, value):
             target = _target(function, place, value)
             text = function.text(value)
             if type_of(value) == "f32" and text.startswith("_single(") and target.endswith("]"):
                 text = bare(text.removeprefix("_single"))  # a view rounds by itself
             function.line(f"{target} = {text}{origin}")
-        case Copy(Place(lane), Wire(at), size) if lane in scope.direct.whole:
+        case ir.Copy(ir.Place(lane), ir.Wire(at), size) if lane in scope.direct.whole:
             function.line(f"{scope.lanes.rows(lane)} = {_list(function, lane, at, size, '<')}{origin}")
-        case Copy(target, source, size):
+        case ir.Copy(target, source, size):
             (to, first), (of, begin), length = location(scope, target), location(scope, source), expression(scope, size)
             function.line(f"{to}[{first} : {first} + {length}] = {of}[{begin} : {begin} + {length}]{origin}")
-        case Fill(target, size, byte):
-            if isinstance(target, Place) and target.lane == 0 and scope.flat:
+        case ir.Fill(target, size, byte):
+            if isinstance(target, ir.Place) and target.lane == 0 and scope.flat:
                 function.line("<row>")
                 return
             (to, first), length = location(scope, target), expression(scope, size)
@@ -258,12 +230,12 @@ def _effect(function: Function, stmt: Effect) -> None:
             assert_never(stmt)
 
 
-def _target(function: Function, place: Place, value: Expr) -> str:
+def _target(function: Function, place: ir.Place, value: ir.Expr) -> str:
     """What a field is assigned to."""
     return function.scope.place(place, type_of(value))
 
 
-def _taken(function: Function, taken: str, failure: Failure) -> None:
+def _taken(function: Function, taken: str, failure: ir.Failure) -> None:
     """A text, which is not valid where it cannot be decoded."""
     with function.writer.indented("try:"):
         function.line(taken)
@@ -271,7 +243,7 @@ def _taken(function: Function, taken: str, failure: Failure) -> None:
         fail(function, failure)
 
 
-def _list(function: Function, lane: int, at: Expr, size: Expr, order: str) -> str:
+def _list(function: Function, lane: int, at: ir.Expr, size: ir.Expr, order: str) -> str:
     """An array that lies in the message."""
     scope, objects = function.scope, function.objects
     assert objects.layout is not None
@@ -314,29 +286,29 @@ def _path(scope: Scope, lane: int) -> str:
     return ascii(scope.paths[lane]) if lane < len(scope.paths) else "''"
 
 
-def _nested(function: Function, stmt: For | While | If | Switch) -> None:
+def _nested(function: Function, stmt: ir.For | ir.While | ir.If | ir.Switch) -> None:
     scope = function.scope
     match stmt:
-        case For(_, count, _) if (found := turned(stmt)) is not None:
-            _turn(function, count, found, decodes=isinstance(stmt.body[-1], SetField))
-        case For(variable, count, body):
+        case ir.For(_, count, _) if (found := turned(stmt)) is not None:
+            _turn(function, count, found, decodes=isinstance(stmt.body[-1], ir.SetField))
+        case ir.For(variable, count, body):
             with function.writer.indented(f"for {scope.locals.identifier(variable)} in range({function.text(count)}):"):
                 print_block(function, body)
                 if variable in scope.direct.loops:
                     lane = scope.direct.loops[variable]
                     function.line(f"{scope.lanes.rows(lane)}.append({function.objects.row(scope, lane)})")
-        case While(condition, body):
+        case ir.While(condition, body):
             with function.writer.indented(f"while {function.text(condition)}:"):
                 print_block(function, body)
-        case If(condition, then, otherwise):
+        case ir.If(condition, then, otherwise):
             if not then:
-                condition, then, otherwise = folded(Unary("not", condition)), otherwise, ()
+                condition, then, otherwise = folded(ir.Unary("not", condition)), otherwise, ()
             with function.writer.indented(f"if {function.text(condition)}:"):
                 print_block(function, then)
             if otherwise:
                 with function.writer.indented("else:"):
                     print_block(function, otherwise)
-        case Switch(value, cases, default):
+        case ir.Switch(value, cases, default):
             with function.writer.indented(f"match {function.text(value)}:"):
                 for number, body in cases:
                     with function.writer.indented(f"case {number}:"):
@@ -347,12 +319,12 @@ def _nested(function: Function, stmt: For | While | If | Switch) -> None:
             assert_never(stmt)
 
 
-def _turn(function: Function, count: Expr, found: tuple[Place, Expr, str], *, decodes: bool) -> None:
+def _turn(function: Function, count: ir.Expr, found: tuple[ir.Place, ir.Expr, str], *, decodes: bool) -> None:
     """An array whose numbers have their high byte first, as a whole."""
     place, base, type_ = found
-    scope, size = function.scope, f"{expression(function.scope, count)} * {WIDTH[type_]}"
+    scope, size = function.scope, f"{expression(function.scope, count)} * {ir.WIDTH[type_]}"
     if place.lane in scope.direct.whole:
-        function.line(f"{scope.lanes.rows(place.lane)} = {_list(function, place.lane, base, mul(count, WIDTH[type_]), '>')}")
+        function.line(f"{scope.lanes.rows(place.lane)} = {_list(function, place.lane, base, mul(count, ir.WIDTH[type_]), '>')}")
         return
     (lane, first), begin = location(scope, place), expression(scope, base)
     rows, part = f"{lane}[{first} : {first} + {size}]", f"data[{bare(begin)} : {begin} + {size}]"
@@ -361,7 +333,7 @@ def _turn(function: Function, count: Expr, found: tuple[Place, Expr, str], *, de
         function.line(f'{target} = _turned({source}, "{CODES[type_]}")')
 
 
-def _call(function: Function, call: Call) -> None:
+def _call(function: Function, call: ir.Call) -> None:
     """A routine gets the numbers of the sites at which the caller fails where it does, and the indices there."""
     scope, routine = function.scope, function.routines[call.routine]
     _pass_on(function, routine)
@@ -389,7 +361,7 @@ def _tuple(texts: list[str]) -> str:
     return f"({', '.join(texts)}{',' if len(texts) == 1 else ''})"
 
 
-def _host_call(function: Function, call: HostCall) -> None:
+def _host_call(function: Function, call: ir.HostCall) -> None:
     result = function.scope.locals.identifier(call.result.name)
     given = ", ".join(function.text(each) for each in call.arguments)
     with function.writer.indented("try:"):

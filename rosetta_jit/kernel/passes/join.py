@@ -8,24 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import (
-    WIDTH,
-    Const,
-    Copy,
-    Expect,
-    Fill,
-    For,
-    Get,
-    IsText,
-    Let,
-    Load,
-    Nearest,
-    Place,
-    Require,
-    SetField,
-    Store,
-    Wire,
-)
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.limits import MAX_PIECE, MAX_PIECES
 from rosetta_jit.kernel.rewrite import reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.shape import expressions_of, subexpressions
@@ -35,8 +18,6 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.kernel.ir import Block, Expr, Kernel, Stmt
-
 
 @dataclass(frozen=True, slots=True)
 class _Move:
@@ -44,8 +25,8 @@ class _Move:
 
     is_decoding: bool
     lane: int
-    row: Expr
-    base: Expr
+    row: ir.Expr
+    base: ir.Expr
     offset: int
     at: int
     size: int
@@ -56,17 +37,17 @@ class _Move:
         return ours == (other.is_decoding, other.lane, other.row, other.base, other.offset, other.at)
 
 
-def join(kernel: Kernel) -> Kernel:
+def join(kernel: ir.Kernel) -> ir.Kernel:
     """The kernel with one move where fields lie side by side."""
 
-    def block(body: Block) -> Block:
-        return _uncovered(tuple(_joined([stmt if isinstance(stmt, For) else with_blocks(stmt, block) for stmt in body])))
+    def block(body: ir.Block) -> ir.Block:
+        return _uncovered(tuple(_joined([stmt if isinstance(stmt, ir.For) else with_blocks(stmt, block) for stmt in body])))
 
     return with_bodies(kernel, tuple(map(block, kernel.bodies)))
 
 
-def _joined(block: list[Stmt]) -> Iterator[Stmt]:
-    run: list[tuple[_Move, Stmt]] = []
+def _joined(block: list[ir.Stmt]) -> Iterator[ir.Stmt]:
+    run: list[tuple[_Move, ir.Stmt]] = []
     for stmt in block:
         move = _move(stmt)
         if run and (move is None or not run[-1][0].is_followed_by(move)):
@@ -79,29 +60,29 @@ def _joined(block: list[Stmt]) -> Iterator[Stmt]:
     yield from _together(run)
 
 
-def _move(stmt: Stmt) -> _Move | None:
+def _move(stmt: ir.Stmt) -> _Move | None:
     """A statement as a move, if it is one of so many bytes."""
     match stmt:
-        case SetField(place, Load(type_, at, order)) if type_ != "bool" and (order == "<" or WIDTH[type_] == 1):
-            return _between(place, at, WIDTH[type_], is_decoding=True)
-        case Store(at, Get(type_, place), order) if type_ != "bool" and (order == "<" or WIDTH[type_] == 1):
-            return _between(place, at, WIDTH[type_], is_decoding=False)
-        case Copy(Place() as place, Wire(at), Const(_, size)):
+        case ir.SetField(place, ir.Load(type_, at, order)) if type_ != "bool" and (order == "<" or ir.WIDTH[type_] == 1):
+            return _between(place, at, ir.WIDTH[type_], is_decoding=True)
+        case ir.Store(at, ir.Get(type_, place), order) if type_ != "bool" and (order == "<" or ir.WIDTH[type_] == 1):
+            return _between(place, at, ir.WIDTH[type_], is_decoding=False)
+        case ir.Copy(ir.Place() as place, ir.Wire(at), ir.Const(_, size)):
             return _between(place, at, int(size), is_decoding=True)
-        case Copy(Wire(at), Place() as place, Const(_, size)):
+        case ir.Copy(ir.Wire(at), ir.Place() as place, ir.Const(_, size)):
             return _between(place, at, int(size), is_decoding=False)
         case _:
             return None
 
 
-def _between(place: Place, at: Expr, size: int, *, is_decoding: bool) -> _Move | None:
+def _between(place: ir.Place, at: ir.Expr, size: int, *, is_decoding: bool) -> _Move | None:
     if reads_memory(at) or reads_memory(place.row):
         return None
     base, begin = split(at)
     return _Move(is_decoding, place.lane, place.row, base, place.offset, begin, size)
 
 
-def _together(run: list[tuple[_Move, Stmt]]) -> Iterator[Stmt]:
+def _together(run: list[tuple[_Move, ir.Stmt]]) -> Iterator[ir.Stmt]:
     """The moves of a run as few: one, or some of a size that a processor moves without a loop."""
     if len(run) < 2:
         yield from (stmt for _, stmt in run)
@@ -112,21 +93,21 @@ def _together(run: list[tuple[_Move, Stmt]]) -> Iterator[Stmt]:
         yield _copy(first, begin, min(piece, size - begin))
 
 
-def _copy(first: _Move, begin: int, size: int) -> Copy:
+def _copy(first: _Move, begin: int, size: int) -> ir.Copy:
     """The move of some bytes of a run, from so many bytes behind its first."""
-    place, wire = Place(first.lane, first.row, first.offset + begin), Wire(add(first.base, first.at + begin))
-    return Copy(place, wire, index(size)) if first.is_decoding else Copy(wire, place, index(size))
+    place, wire = ir.Place(first.lane, first.row, first.offset + begin), ir.Wire(add(first.base, first.at + begin))
+    return ir.Copy(place, wire, index(size)) if first.is_decoding else ir.Copy(wire, place, index(size))
 
 
-def _uncovered(block: Block) -> Block:
+def _uncovered(block: ir.Block) -> ir.Block:
     """A block without what empties bytes of a row that are then all set, by statements that only check, name values, or set fields."""
     return tuple(stmt for number, stmt in enumerate(block) if not _is_covered(block, number))
 
 
-def _is_covered(block: Block, number: int) -> bool:
+def _is_covered(block: ir.Block, number: int) -> bool:
     """Whether a statement is one that empties bytes, all of which are set behind it."""
     match block[number]:
-        case Fill(Place() as place, Const(_, size)) if not reads_memory(place.row):
+        case ir.Fill(ir.Place() as place, ir.Const(_, size)) if not reads_memory(place.row):
             free = [(place.offset, place.offset + int(size))]
         case _:
             return False
@@ -135,26 +116,26 @@ def _is_covered(block: Block, number: int) -> bool:
         covered = _span(stmt, place)
         if covered is not None:
             free = [each for span in free for each in _without(span, covered)]
-        elif not isinstance(stmt, Require | Expect | Let) or any(map(reads_memory, expressions_of(stmt))):
+        elif not isinstance(stmt, ir.Require | ir.Expect | ir.Let) or any(map(reads_memory, expressions_of(stmt))):
             return False
         if not free:
             return True
     return False
 
 
-def _span(stmt: Stmt, place: Place) -> tuple[int, int] | None:
+def _span(stmt: ir.Stmt, place: ir.Place) -> tuple[int, int] | None:
     """The bytes of a row that a statement sets, from where to where; None if it may do anything else with lanes."""
     match stmt:
-        case SetField(Place(place.lane, place.row, offset), value) if not _reads_lanes(value):
-            return offset, offset + WIDTH[type_of(value)]
-        case Copy(Place(place.lane, place.row, offset), Wire(_), Const(_, size)):
+        case ir.SetField(ir.Place(place.lane, place.row, offset), value) if not _reads_lanes(value):
+            return offset, offset + ir.WIDTH[type_of(value)]
+        case ir.Copy(ir.Place(place.lane, place.row, offset), ir.Wire(_), ir.Const(_, size)):
             return offset, offset + int(size)
         case _:
             return None
 
 
-def _reads_lanes(value: Expr) -> bool:
-    return any(isinstance(part, Get | IsText | Nearest) for part in subexpressions(value))
+def _reads_lanes(value: ir.Expr) -> bool:
+    return any(isinstance(part, ir.Get | ir.IsText | ir.Nearest) for part in subexpressions(value))
 
 
 def _without(span: tuple[int, int], covered: tuple[int, int]) -> Iterator[tuple[int, int]]:

@@ -5,38 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import field
 from itertools import repeat
-from typing import TYPE_CHECKING
 
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.arithmetic import FLOATS
-from rosetta_jit.kernel.ir import (
-    Assign,
-    Block,
-    Call,
-    Compare,
-    Const,
-    Expect,
-    For,
-    Get,
-    HostCall,
-    If,
-    IsText,
-    Let,
-    Load,
-    Local,
-    Nearest,
-    Switch,
-    Used,
-    Var,
-    While,
-)
 from rosetta_jit.kernel.passes.fold import FALSE, TRUE, folded
 from rosetta_jit.kernel.rewrite import ends, names_in, names_read, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.shape import statements, subexpressions
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, index, split, type_of
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr, Kernel, Stmt
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,18 +26,18 @@ class _Names:
 
     assigned: Counter[str]
     fixed: set[str]
-    values: dict[str, Expr]
-    computed: dict[Expr, Expr]
-    news: list[Expr] = field(default_factory=list["Expr"])
+    values: dict[str, ir.Expr]
+    computed: dict[ir.Expr, ir.Expr]
+    news: list[ir.Expr] = field(default_factory=list["ir.Expr"])
 
 
-def simplify(kernel: Kernel) -> Kernel:
+def simplify(kernel: ir.Kernel) -> ir.Kernel:
     """The kernel with less in it."""
     return with_bodies(kernel, tuple(map(_body, kernel.bodies)))
 
 
-def _body(body: Block) -> Block:
-    assigned = Counter(stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign))
+def _body(body: ir.Block) -> ir.Block:
+    assigned = Counter(stmt.name for stmt, _ in statements(body) if isinstance(stmt, ir.Assign))
     names = _Names(assigned, {BEGIN.name, END.name, ROW.name}, {}, {})
     simple = _block(body, names)
     return _used(simple, names_read(simple), set())
@@ -70,8 +46,8 @@ def _body(body: Block) -> Block:
 # --- forward: values ---------------------------------------------------------------------------------------------------
 
 
-def _block(block: Block, names: _Names) -> Block:
-    result: list[Stmt] = []
+def _block(block: ir.Block, names: _Names) -> ir.Block:
+    result: list[ir.Stmt] = []
     for stmt in block:
         result.extend(_statement(with_expressions(stmt, lambda expr: _expression(expr, names)), names))
         if ends(tuple(result[-1:])):
@@ -79,55 +55,57 @@ def _block(block: Block, names: _Names) -> Block:
     return tuple(result)
 
 
-def _expression(expr: Expr, names: _Names) -> Expr:
-    if isinstance(expr, Local):
+def _expression(expr: ir.Expr, names: _Names) -> ir.Expr:
+    if isinstance(expr, ir.Local):
         value = names.values.get(expr.name, expr)
         return names.computed.get(value, value)
-    if isinstance(expr, Const):
+    if isinstance(expr, ir.Const):
         return expr
     simple = folded(with_operands(expr, lambda operand: _expression(operand, names)))
     return names.computed.get(simple, simple)
 
 
-def _statement(stmt: Stmt, names: _Names) -> Block:
+def _statement(stmt: ir.Stmt, names: _Names) -> ir.Block:
     match stmt:
-        case Let(name, value):
+        case ir.Let(name, value):
             return _let(name, value, names)
-        case Var(name, value) if not names.assigned[name]:
+        case ir.Var(name, value) if not names.assigned[name]:
             return _let(name, value, names)
-        case Assign(name, _):
+        case ir.Assign(name, _):
             names.assigned[name] -= 1
             if not names.assigned[name]:
                 names.fixed.add(name)
             return (stmt,)
-        case Expect(condition, _) if condition == TRUE:
+        case ir.Expect(condition, _) if condition == TRUE:
             return ()
-        case Expect(Compare("eq", Local(type_, name) as local, Const() as value), _) if type_ not in FLOATS and name in names.fixed:
+        case ir.Expect(ir.Compare("eq", ir.Local(type_, name) as local, ir.Const() as value), _) if (
+            type_ not in FLOATS and name in names.fixed
+        ):
             names.computed[local] = value
             names.news.append(local)
             return (stmt,)
-        case If(Const(_, value), then, otherwise):
+        case ir.If(ir.Const(_, value), then, otherwise):
             return _block(then if value else otherwise, names)
-        case Switch(Const(_, value), cases, default):
+        case ir.Switch(ir.Const(_, value), cases, default):
             return _block(dict(cases).get(int(value), default), names)
-        case For(variable, Const(_, count), body) if count <= 1:
+        case ir.For(variable, ir.Const(_, count), body) if count <= 1:
             names.values[variable] = index(0)
             return _block(body, names) if count == 1 else ()
-        case While(Const(_, False), _, _, _):
+        case ir.While(ir.Const(_, False), _, _, _):
             return ()
-        case Call():
+        case ir.Call():
             names.fixed.update(result.name for result in stmt.results)
             return (stmt,)
-        case HostCall():
+        case ir.HostCall():
             names.fixed.add(stmt.result.name)
             return (stmt,)
         case _:
             return _nested(stmt, names)
 
 
-def _let(name: str, value: Expr, names: _Names) -> Block:
+def _let(name: str, value: ir.Expr, names: _Names) -> ir.Block:
     base, _ = split(value)
-    if isinstance(value, Const) or (isinstance(base, Local) and base.name in names.fixed):
+    if isinstance(value, ir.Const) or (isinstance(base, ir.Local) and base.name in names.fixed):
         names.values[name] = value
         return ()
     names.fixed.add(name)
@@ -135,24 +113,24 @@ def _let(name: str, value: Expr, names: _Names) -> Block:
         if value in names.computed:
             names.values[name] = names.computed[value]
             return ()
-        names.computed[value] = Local(type_of(value), name)
+        names.computed[value] = ir.Local(type_of(value), name)
         names.news.append(value)
-    return (Let(name, value),)
+    return (ir.Let(name, value),)
 
 
-def _nested(stmt: Stmt, names: _Names) -> Block:
-    if isinstance(stmt, For):
+def _nested(stmt: ir.Stmt, names: _Names) -> ir.Block:
+    if isinstance(stmt, ir.For):
         names.fixed.add(stmt.variable)
-    known = iter([(stmt.condition, TRUE), (stmt.condition, FALSE)]) if isinstance(stmt, If) else repeat(None)
+    known = iter([(stmt.condition, TRUE), (stmt.condition, FALSE)]) if isinstance(stmt, ir.If) else repeat(None)
     simple = with_blocks(stmt, lambda block: _branch(block, names, next(known)))
     match simple:
-        case If(_, (), ()) | For(_, _, ()):
+        case ir.If(_, (), ()) | ir.For(_, _, ()):
             return ()
         case _:
             return (simple,)
 
 
-def _branch(block: Block, names: _Names, known: tuple[Expr, Expr] | None) -> Block:
+def _branch(block: ir.Block, names: _Names, known: tuple[ir.Expr, ir.Expr] | None) -> ir.Block:
     """A block that may run or not, where an expression has a known value: what is computed in it is forgotten behind it."""
     mark = len(names.news)
     if known is not None and known[0] not in names.computed and _is_settled(known[0], names):
@@ -164,15 +142,15 @@ def _branch(block: Block, names: _Names, known: tuple[Expr, Expr] | None) -> Blo
     return result
 
 
-def _is_settled(expr: Expr, names: _Names) -> bool:
+def _is_settled(expr: ir.Expr, names: _Names) -> bool:
     """Whether an expression keeps its value, and another that is equal as text has the same: 0.0 and -0.0 are equal, not the same."""
     for part in subexpressions(expr):
         match part:
-            case Load() | Get() | Used() | IsText() | Nearest():
+            case ir.Load() | ir.Get() | ir.Used() | ir.IsText() | ir.Nearest():
                 return False
-            case Local(_, name) if name not in names.fixed:
+            case ir.Local(_, name) if name not in names.fixed:
                 return False
-            case Const("f32" | "f64", 0):
+            case ir.Const("f32" | "f64", 0):
                 return False
             case _:
                 pass
@@ -182,14 +160,14 @@ def _is_settled(expr: Expr, names: _Names) -> bool:
 # --- backward: uses ----------------------------------------------------------------------------------------------------
 
 
-def _used(block: Block, read: set[str], live: set[str]) -> Block:
+def _used(block: ir.Block, read: set[str], live: set[str]) -> ir.Block:
     """The block without values that nothing reads. ``live`` gathers what is read behind; a variable is kept if it is read anywhere."""
-    result: list[Stmt] = []
+    result: list[ir.Stmt] = []
     for stmt in reversed(block):
         match stmt:
-            case Let(name, _) if name not in live:
+            case ir.Let(name, _) if name not in live:
                 continue
-            case Var(name, _) | Assign(name, _) if name not in read:
+            case ir.Var(name, _) | ir.Assign(name, _) if name not in read:
                 continue
             case _:
                 kept = with_blocks(stmt, lambda inner: _used(inner, read, live))

@@ -8,33 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.arithmetic import FLOATS, limits
 from rosetta_jit.kernel.decimals import LARGEST_SCALE, MOST_DIGITS
-from rosetta_jit.kernel.ir import (
-    WIDTH,
-    Binary,
-    Bits,
-    Capacity,
-    Compare,
-    Const,
-    Convert,
-    Digits,
-    Fits,
-    Get,
-    HostValue,
-    IsText,
-    Load,
-    Local,
-    Lookup,
-    Nearest,
-    Place,
-    Register,
-    Scale,
-    Select,
-    Unary,
-    Used,
-    Wire,
-)
 from rosetta_jit.kernel.limits import MAX_PLACES
 from rosetta_jit.kernel.proof import claims, integers
 from rosetta_jit.kernel.proof.formula import All, Any, bounded, equal, negated
@@ -42,7 +18,6 @@ from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
 from rosetta_jit.kernel.proof.obligations import UnprovenError, certify, demand, oblige
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Address, Arithmetic, Comparison, Expr, Scalar
     from rosetta_jit.kernel.proof.formula import Formula
     from rosetta_jit.kernel.proof.prove import Facts
     from rosetta_jit.kernel.proof.scope import Scope, Typed, Value
@@ -53,7 +28,7 @@ ROUNDING = frozenset(("sqrt", "floor", "ceil", "trunc", "rint"))
 # --- what is evaluated must be -----------------------------------------------------------------------------------------
 
 
-def integer(scope: Scope, expr: Expr, type_: Scalar = "i64") -> Linear:
+def integer(scope: Scope, expr: ir.Expr, type_: ir.Scalar = "i64") -> Linear:
     """Value of an expression that must be an integer of a type."""
     found, value = evaluate(scope, expr)
     if found != type_:
@@ -68,22 +43,22 @@ def linear(value: Value) -> Linear:
     return value
 
 
-def condition(scope: Scope, expr: Expr) -> Formula:
+def condition(scope: Scope, expr: ir.Expr) -> Formula:
     """Value of an expression that must be a bool."""
     found, value = evaluate(scope, expr)
     demand(found == "bool", f"{found} where bool belongs")
     return value
 
 
-def check_extent(scope: Scope, address: Address, size: Linear) -> Linear:
+def check_extent(scope: Scope, address: ir.Address, size: Linear) -> Linear:
     """``size >= 0`` bytes from an address lie in the message, or in a lane; returns the first byte's offset there."""
     oblige(scope, size, claims.SIZE)
     match address:
-        case Wire(at):
+        case ir.Wire(at):
             start = integer(scope, at)
             check_wire(scope, start, size)
             return start
-        case Place():
+        case ir.Place():
             row = _row(scope, address)
             stride = scope.strides[address.lane]
             start = shifted(times(row, stride), address.offset)
@@ -100,16 +75,16 @@ def check_wire(scope: Scope, start: Linear, size: Linear) -> None:
     oblige(scope, minus(start, begin), claims.AFTER_BEGIN)
 
 
-def check_field(scope: Scope, place: Place, type_: Scalar) -> None:
+def check_field(scope: Scope, place: ir.Place, type_: ir.Scalar) -> None:
     """A scalar lies in a row of a lane, aligned."""
     row = _row(scope, place)
-    width, stride = WIDTH[type_], scope.strides[place.lane]
+    width, stride = ir.WIDTH[type_], scope.strides[place.lane]
     certify(scope, place.offset + width <= stride, claims.WITHIN_ROW)
     certify(scope, place.offset % width == 0 and stride % width == 0, claims.ALIGNED)
     oblige(scope, shifted(minus(scope.capacity[place.lane], row), -1), claims.BELOW_CAPACITY)
 
 
-def _row(scope: Scope, place: Place) -> Linear:
+def _row(scope: Scope, place: ir.Place) -> Linear:
     check_lane(scope, place.lane)
     certify(scope, place.offset >= 0, claims.OFFSET)
     row = integer(scope, place.row)
@@ -122,7 +97,7 @@ def check_lane(scope: Scope, lane: int) -> None:
     certify(scope, 0 <= lane < len(scope.strides), claims.LANE)
 
 
-def in_range(scope: Scope, value: Linear, type_: Scalar) -> Linear:
+def in_range(scope: Scope, value: Linear, type_: ir.Scalar) -> Linear:
     """``value``, proven to be in its type's range: the operation that made it did not wrap."""
     (low, high), wraps = limits(type_), claims.NO_WRAP[type_]
     oblige(scope, shifted(times(value, -1), high), wraps)
@@ -130,7 +105,7 @@ def in_range(scope: Scope, value: Linear, type_: Scalar) -> Linear:
     return value
 
 
-def unknown(scope: Scope, type_: Scalar) -> Value:
+def unknown(scope: Scope, type_: ir.Scalar) -> Value:
     """Any value of a type."""
     return None if type_ == "bool" or type_ in FLOATS else scope.facts.fresh(*limits(type_))
 
@@ -138,7 +113,7 @@ def unknown(scope: Scope, type_: Scalar) -> Value:
 # --- expressions -------------------------------------------------------------------------------------------------------
 
 
-def evaluate(scope: Scope, expr: Expr) -> Typed:
+def evaluate(scope: Scope, expr: ir.Expr) -> Typed:
     """Type and value of an expression.
 
     Raises
@@ -147,53 +122,53 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
         An obligation in it cannot be shown.
     """
     match expr:
-        case Local(type_, name):
+        case ir.Local(type_, name):
             found = scope.locals.get(name)
             if found is None or found[0] != type_:
                 raise UnprovenError(f"{name} is not visible here" if found is None else f"{name} is no {type_}")
             return found
-        case Const(type_, value):
+        case ir.Const(type_, value):
             return type_, _constant(type_, value)
-        case Binary(op, left, right):
+        case ir.Binary(op, left, right):
             return _binary(scope, op, evaluate(scope, left), evaluate(scope, right))
-        case Load(type_, at, _):
-            check_wire(scope, integer(scope, at), Linear(WIDTH[type_]))
+        case ir.Load(type_, at, _):
+            check_wire(scope, integer(scope, at), Linear(ir.WIDTH[type_]))
             return type_, unknown(scope, type_)
-        case Get(type_, place):
+        case ir.Get(type_, place):
             check_field(scope, place, type_)
             return type_, unknown(scope, type_)
-        case Convert() | Bits():
+        case ir.Convert() | ir.Bits():
             return _converted(scope, expr)
-        case Compare(op, left, right):
+        case ir.Compare(op, left, right):
             return "bool", _compare(op, evaluate(scope, left), evaluate(scope, right))
-        case Used(lane) | Capacity(lane):
+        case ir.Used(lane) | ir.Capacity(lane):
             check_lane(scope, lane)
-            return "i64", (scope.used if isinstance(expr, Used) else scope.capacity)[lane]
-        case HostValue(what) | Register(what):
-            kind = "told" if isinstance(expr, HostValue) else "register"
+            return "i64", (scope.used if isinstance(expr, ir.Used) else scope.capacity)[lane]
+        case ir.HostValue(what) | ir.Register(what):
+            kind = "told" if isinstance(expr, ir.HostValue) else "register"
             return "i64", scope.facts.named((kind, what), *limits("i64"))
-        case Unary():
+        case ir.Unary():
             return _unary(scope, expr)
-        case Fits():
+        case ir.Fits():
             return "bool", _fits(scope, expr)
-        case Select():
+        case ir.Select():
             return _select(scope, expr)
-        case IsText(address, size):
+        case ir.IsText(address, size):
             check_extent(scope, address, integer(scope, size))
             return "bool", None
-        case Nearest() | Digits() | Scale() | Lookup():
-            return _looked_up(scope, expr) if isinstance(expr, Lookup) else _decimal(scope, expr)
+        case ir.Nearest() | ir.Digits() | ir.Scale() | ir.Lookup():
+            return _looked_up(scope, expr) if isinstance(expr, ir.Lookup) else _decimal(scope, expr)
         case _:
             assert_never(expr)
 
 
-def _fits(scope: Scope, expr: Fits) -> Formula:
+def _fits(scope: Scope, expr: ir.Fits) -> Formula:
     low, high = limits("i64")
     result = _integer_binary(scope, expr.op, "i64", integer(scope, expr.left), integer(scope, expr.right))
     return All((shifted(result, -low), shifted(times(result, -1), high)))
 
 
-def _looked_up(scope: Scope, expr: Lookup) -> Typed:
+def _looked_up(scope: Scope, expr: ir.Lookup) -> Typed:
     demand(bool(expr.values), "a value among none")
     low, high = limits(expr.type)
     demand(expr.type != "bool" and all(low <= value <= high for value in expr.values), f"a value that is no {expr.type}")
@@ -203,24 +178,24 @@ def _looked_up(scope: Scope, expr: Lookup) -> Typed:
     return expr.type, scope.facts.fresh(min(expr.values), max(expr.values))
 
 
-def _decimal(scope: Scope, expr: Nearest | Digits | Scale) -> Typed:
+def _decimal(scope: Scope, expr: ir.Nearest | ir.Digits | ir.Scale) -> Typed:
     match expr:
-        case Nearest(address, size, exponent):
+        case ir.Nearest(address, size, exponent):
             check_extent(scope, address, integer(scope, size))
             integer(scope, exponent)
             return "f64", None
-        case Digits(value, places):
+        case ir.Digits(value, places):
             demand(evaluate(scope, value)[0] in FLOATS, "digits of an integer")
             demand(places is None or 0 <= places <= MAX_PLACES, "too many decimals")
             return "u64", scope.facts.fresh(0, MOST_DIGITS if places is None else limits("u64")[1])
-        case Scale(value):
+        case ir.Scale(value):
             demand(evaluate(scope, value)[0] in FLOATS, "the scale of an integer")
             return "i64", scope.facts.fresh(-LARGEST_SCALE, LARGEST_SCALE)
         case _:
             assert_never(expr)
 
 
-def _constant(type_: Scalar, value: float) -> Value:
+def _constant(type_: ir.Scalar, value: float) -> Value:
     if type_ in FLOATS:
         return None
     if type_ == "bool":
@@ -231,7 +206,7 @@ def _constant(type_: Scalar, value: float) -> Value:
     return Linear(int(value))
 
 
-def _binary(scope: Scope, op: Arithmetic, left: Typed, right: Typed) -> Typed:
+def _binary(scope: Scope, op: ir.Arithmetic, left: Typed, right: Typed) -> Typed:
     type_ = left[0]
     demand(type_ == right[0], f"{op} of {type_} and {right[0]}")
     if type_ in FLOATS:
@@ -243,7 +218,7 @@ def _binary(scope: Scope, op: Arithmetic, left: Typed, right: Typed) -> Typed:
     return type_, _checked_binary(scope, op, type_, linear(left[1]), linear(right[1]))
 
 
-def _logical(op: Arithmetic, left: Formula, right: Formula) -> Formula:
+def _logical(op: ir.Arithmetic, left: Formula, right: Formula) -> Formula:
     match op:
         case "and":
             return bounded(All((left, right)))
@@ -255,7 +230,7 @@ def _logical(op: Arithmetic, left: Formula, right: Formula) -> Formula:
             raise UnprovenError(f"{op} of bools")
 
 
-def _checked_binary(scope: Scope, op: Arithmetic, type_: Scalar, left: Linear, right: Linear) -> Linear:
+def _checked_binary(scope: Scope, op: ir.Arithmetic, type_: ir.Scalar, left: Linear, right: Linear) -> Linear:
     """``left op right``, with its obligations."""
     match op:
         case "add" | "sub" | "mul":
@@ -266,13 +241,13 @@ def _checked_binary(scope: Scope, op: Arithmetic, type_: Scalar, left: Linear, r
             overflows = All((equal(left, Linear(low)), equal(right, Linear(-1))))
             oblige(scope, low == 0 or negated(overflows), claims.QUOTIENT)
         case "shl" | "shr":
-            oblige(scope, All((right, shifted(times(right, -1), 8 * WIDTH[type_] - 1))), claims.SHIFT)
+            oblige(scope, All((right, shifted(times(right, -1), 8 * ir.WIDTH[type_] - 1))), claims.SHIFT)
         case _:
             pass
     return _integer_binary(scope, op, type_, left, right)
 
 
-def _integer_binary(scope: Scope, op: Arithmetic, type_: Scalar, left: Linear, right: Linear) -> Linear:
+def _integer_binary(scope: Scope, op: ir.Arithmetic, type_: ir.Scalar, left: Linear, right: Linear) -> Linear:
     """The mathematical result of ``left op right``."""
     facts = scope.facts
     match op:
@@ -310,7 +285,7 @@ def _extreme(facts: Facts, left: Linear, right: Linear, sign: int) -> Linear:
     return result
 
 
-def _unary(scope: Scope, expr: Unary) -> Typed:
+def _unary(scope: Scope, expr: ir.Unary) -> Typed:
     type_, value = evaluate(scope, expr.operand)
     match expr.function:
         case "not" if type_ == "bool":
@@ -331,7 +306,7 @@ def _unary(scope: Scope, expr: Unary) -> Typed:
             return type_, None
 
 
-def _compare(op: Comparison, left: Typed, right: Typed) -> Formula:
+def _compare(op: ir.Comparison, left: Typed, right: Typed) -> Formula:
     demand(left[0] == right[0], f"{op} of {left[0]} and {right[0]}")
     if left[0] == "bool" or left[0] in FLOATS:
         return None
@@ -353,7 +328,7 @@ def _compare(op: Comparison, left: Typed, right: Typed) -> Formula:
             assert_never(op)
 
 
-def _convert(scope: Scope, target: Scalar, source: Scalar, value: Value) -> Value:
+def _convert(scope: Scope, target: ir.Scalar, source: ir.Scalar, value: Value) -> Value:
     if target in FLOATS:
         return None
     if source == "bool":
@@ -369,16 +344,16 @@ def _convert(scope: Scope, target: Scalar, source: Scalar, value: Value) -> Valu
     return value if scope.facts.proves(same) else scope.facts.named(("low bits", target, value), low, high)
 
 
-def _converted(scope: Scope, expr: Convert | Bits) -> Typed:
+def _converted(scope: Scope, expr: ir.Convert | ir.Bits) -> Typed:
     source, value = evaluate(scope, expr.operand)
-    if isinstance(expr, Convert):
+    if isinstance(expr, ir.Convert):
         return expr.type, _convert(scope, expr.type, source, value)
-    same = WIDTH[source] == WIDTH[expr.type] and "bool" not in {source, expr.type}
+    same = ir.WIDTH[source] == ir.WIDTH[expr.type] and "bool" not in {source, expr.type}
     demand(same, f"a {source} has not the bits of a {expr.type}")
     return expr.type, unknown(scope, expr.type)
 
 
-def _select(scope: Scope, expr: Select) -> Typed:
+def _select(scope: Scope, expr: ir.Select) -> Typed:
     chosen = condition(scope, expr.condition)
     type_, then = evaluate(scope, expr.then)
     other_type, otherwise = evaluate(scope, expr.otherwise)

@@ -10,27 +10,8 @@ from dataclasses import field
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.arithmetic import limits
-from rosetta_jit.kernel.ir import (
-    Advance,
-    Assign,
-    Call,
-    Copy,
-    Expect,
-    Fill,
-    For,
-    HostCall,
-    If,
-    Let,
-    Require,
-    Reserve,
-    Return,
-    SetField,
-    Store,
-    Switch,
-    Var,
-    While,
-)
 from rosetta_jit.kernel.limits import MAX_PROOFS, MAX_TERMS
 from rosetta_jit.kernel.printer import statement_text
 from rosetta_jit.kernel.proof import claims, contracts, effects, paths
@@ -46,7 +27,6 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from rosetta_jit.kernel.ir import Block, Expr, Kernel, Routine, Stmt
     from rosetta_jit.kernel.proof.formula import Formula
     from rosetta_jit.kernel.proof.loops import Guess
     from rosetta_jit.kernel.proof.record import Record
@@ -62,18 +42,18 @@ class _Walk:
     """One body's walk: where it is, and what it has found out about loops and checks, by the ids of their statements."""
 
     scope: Scope
-    routines: Mapping[str, Routine]
+    routines: Mapping[str, ir.Routine]
     notes: bool = False
     tries_all: bool = False
     loops: int = 0
     variables: set[str] = field(default_factory=set[str])
     dropped: dict[int, set[Guess]] = field(default_factory=dict[int, "set[Guess]"])
-    seen: dict[int, Stmt] = field(default_factory=dict[int, "Stmt"])
+    seen: dict[int, ir.Stmt] = field(default_factory=dict[int, "ir.Stmt"])
     needed: set[int] = field(default_factory=set[int])
     reads: dict[int, set[str]] = field(default_factory=dict[int, "set[str]"])
 
 
-def verify(kernel: Kernel, record: Record | None = None) -> None:
+def verify(kernel: ir.Kernel, record: Record | None = None) -> None:
     """Prove a kernel, and write down what it owes in a record, if there is one.
 
     Raises
@@ -89,7 +69,7 @@ def verify(kernel: Kernel, record: Record | None = None) -> None:
         _body(kernel, body, routines, record)
 
 
-def settled(kernel: Kernel) -> frozenset[int]:
+def settled(kernel: ir.Kernel) -> frozenset[int]:
     """The ids of Require and Expect statements that cannot fail wherever they stand, and of Ifs that always choose their first block.
 
     In rare bodies nobody looks for them. The kernel's shape is sound.
@@ -109,14 +89,14 @@ def settled(kernel: Kernel) -> frozenset[int]:
     return frozenset(found - needed)
 
 
-def check_shape(kernel: Kernel) -> None:
+def check_shape(kernel: ir.Kernel) -> None:
     """Refuse a kernel whose text is not sound: VerificationError."""
     problem = shape_error(kernel)
     if problem is not None:
         raise VerificationError(f"kernel {kernel.name}: {problem}")
 
 
-def _proven_routines(kernel: Kernel, record: Record | None = None) -> Mapping[str, Routine]:
+def _proven_routines(kernel: ir.Kernel, record: Record | None = None) -> Mapping[str, ir.Routine]:
     """The routines of a kernel of sound shape, proven."""
     for number, routine in enumerate(kernel.routines):
         try:
@@ -131,18 +111,20 @@ def _proven_routines(kernel: Kernel, record: Record | None = None) -> Mapping[st
 
 
 @lru_cache(maxsize=MAX_PROOFS)
-def _prove_routine(strides: tuple[int, ...], routine: Routine, before: tuple[Routine, ...]) -> None:
+def _prove_routine(strides: tuple[int, ...], routine: ir.Routine, before: tuple[ir.Routine, ...]) -> None:
     """Prove a routine, which calls those before it. No pass changes one, so that a proof holds for all rounds of all passes."""
     _routine(strides, routine, before, None)
 
 
-def _routine(strides: tuple[int, ...], routine: Routine, before: tuple[Routine, ...], record: Record | None) -> None:
+def _routine(strides: tuple[int, ...], routine: ir.Routine, before: tuple[ir.Routine, ...], record: Record | None) -> None:
     walk = _Walk(contracts.inside(strides, routine, record), {each.name: each for each in before})
     _block(walk, routine.body)
     contracts.keep(walk.scope, routine)
 
 
-def _body(kernel: Kernel, body: Block, routines: Mapping[str, Routine], record: Record | None = None, *, notes: bool = False) -> _Walk:
+def _body(
+    kernel: ir.Kernel, body: ir.Block, routines: Mapping[str, ir.Routine], record: Record | None = None, *, notes: bool = False
+) -> _Walk:
     """The walk of a body: with the guesses about its loops that are mostly enough or, where it is not proven with them, with all."""
     written = 0 if record is None else record.mark()
     walk = _Walk(entry(kernel.strides, record), routines, notes)
@@ -159,12 +141,12 @@ def _body(kernel: Kernel, body: Block, routines: Mapping[str, Routine], record: 
     return walk
 
 
-def _whole(walk: _Walk, body: Block) -> None:
+def _whole(walk: _Walk, body: ir.Block) -> None:
     if not _block(walk, body):
         oblige(walk.scope, formula=False, claim=claims.RETURNS)
 
 
-def _block(walk: _Walk, block: Block) -> bool:
+def _block(walk: _Walk, block: ir.Block) -> bool:
     """Walk a block; True when every path through it has returned."""
     record = walk.scope.record
     outer = None if record is None else record.stmt
@@ -183,7 +165,7 @@ def _block(walk: _Walk, block: Block) -> bool:
     return ended
 
 
-def _named(error: UnprovenError, stmt: Stmt) -> UnprovenError:
+def _named(error: UnprovenError, stmt: ir.Stmt) -> UnprovenError:
     """The error with the innermost statement's text."""
     return error if "\n" in str(error) else UnprovenError(f"{error}\n  in: {statement_text(stmt)}")
 
@@ -191,54 +173,54 @@ def _named(error: UnprovenError, stmt: Stmt) -> UnprovenError:
 # --- statements --------------------------------------------------------------------------------------------------------
 
 
-def _statement(walk: _Walk, stmt: Stmt) -> bool:
+def _statement(walk: _Walk, stmt: ir.Stmt) -> bool:
     scope = walk.scope
     match stmt:
-        case Require(at, size, failure):
+        case ir.Require(at, size, failure):
             start, length = integer(scope, at), integer(scope, size)
             effects.failure(scope, failure)
             _check(walk, stmt, All((start, length, minus(minus(linear(scope.locals["end"][1]), start), length))))
-        case Expect(expr, failure):
+        case ir.Expect(expr, failure):
             effects.failure(scope, failure)
             _check(walk, stmt, condition(scope, expr))
-        case Let(name, value) | Var(name, value):
+        case ir.Let(name, value) | ir.Var(name, value):
             scope.bind(name, _value(scope, value))
-            if isinstance(stmt, Var):
+            if isinstance(stmt, ir.Var):
                 walk.variables.add(name)
-        case Assign(name, value):
+        case ir.Assign(name, value):
             demand(name in walk.variables and name in scope.locals, f"{name} is no variable")
             new = _value(scope, value)
             demand(new[0] == scope.locals[name][0], f"{name} is no {new[0]}")
             scope.bind(name, new)
-        case Return(position, registers):
+        case ir.Return(position, registers):
             for _, value in registers:
                 integer(scope, value)
             oblige(scope, integer(scope, position), claims.POSITION)
             return True
-        case Store() | SetField() | Copy() | Fill():
+        case ir.Store() | ir.SetField() | ir.Copy() | ir.Fill():
             effects.move(scope, stmt)
-        case Reserve() | Advance():
+        case ir.Reserve() | ir.Advance():
             effects.rows(scope, stmt)
-        case For() | While() | If() | Switch():
+        case ir.For() | ir.While() | ir.If() | ir.Switch():
             return _nested(walk, stmt)
-        case Call(routine, _, _, _, indices):
+        case ir.Call(routine, _, _, _, indices):
             for position in indices:
                 integer(scope, position)
             contracts.bind(scope, walk.routines[routine], stmt)
-        case HostCall():
+        case ir.HostCall():
             effects.host_call(scope, stmt)
         case _:
             assert_never(stmt)
     return False
 
 
-def _check(walk: _Walk, stmt: Require | Expect, formula: Formula) -> None:
+def _check(walk: _Walk, stmt: ir.Require | ir.Expect, formula: Formula) -> None:
     """A check holds from here on."""
     _note(walk, stmt, formula)
     walk.scope.facts.assume(formula)
 
 
-def _note(walk: _Walk, stmt: Require | Expect | If, formula: Formula) -> None:
+def _note(walk: _Walk, stmt: ir.Require | ir.Expect | ir.If, formula: Formula) -> None:
     """Note whether a condition is known before it is asked.
 
     Only in a loop is that worth a proof. Elsewhere a check costs little, and what it says saves proofs of what follows from it.
@@ -251,7 +233,7 @@ def _note(walk: _Walk, stmt: Require | Expect | If, formula: Formula) -> None:
         walk.needed.add(key)
 
 
-def _value(scope: Scope, expr: Expr) -> Typed:
+def _value(scope: Scope, expr: ir.Expr) -> Typed:
     type_, value = evaluate(scope, expr)
     if isinstance(value, Linear) and len(value.terms) > MAX_TERMS:
         return type_, _shortened(scope, value)
@@ -275,18 +257,18 @@ def _shortened(scope: Scope, value: Linear) -> Linear:
 # --- branches and loops ------------------------------------------------------------------------------------------------
 
 
-def _nested(walk: _Walk, stmt: For | While | If | Switch) -> bool:
+def _nested(walk: _Walk, stmt: ir.For | ir.While | ir.If | ir.Switch) -> bool:
     match stmt:
-        case If(expr, then, otherwise):
+        case ir.If(expr, then, otherwise):
             chosen = condition(walk.scope, expr)
             _note(walk, stmt, chosen)
-            ways: list[tuple[Formula, Block]] = [(chosen, then), (negated(chosen), otherwise)]
-        case Switch():
+            ways: list[tuple[Formula, ir.Block]] = [(chosen, then), (negated(chosen), otherwise)]
+        case ir.Switch():
             ways = _cases(walk.scope, stmt)
-        case For():
+        case ir.For():
             _for(walk, stmt)
             return False
-        case While():
+        case ir.While():
             _while(walk, stmt)
             return False
         case _:
@@ -294,7 +276,7 @@ def _nested(walk: _Walk, stmt: For | While | If | Switch) -> bool:
     return paths.branch(walk.scope, [(formula, partial(_block, walk, block)) for formula, block in ways])
 
 
-def _cases(scope: Scope, stmt: Switch) -> list[tuple[Formula, Block]]:
+def _cases(scope: Scope, stmt: ir.Switch) -> list[tuple[Formula, ir.Block]]:
     numbers = [number for number, _ in stmt.cases]
     demand(len(set(numbers)) == len(numbers), "a case that stands twice")
     type_, value = evaluate(scope, stmt.value)
@@ -306,7 +288,7 @@ def _cases(scope: Scope, stmt: Switch) -> list[tuple[Formula, Block]]:
     return [*((equal(subject, Linear(number)), block) for number, block in stmt.cases), (others, stmt.default)]
 
 
-def _for(walk: _Walk, loop: For) -> None:
+def _for(walk: _Walk, loop: ir.For) -> None:
     scope = walk.scope
     count = integer(scope, loop.count)
 
@@ -320,7 +302,7 @@ def _for(walk: _Walk, loop: For) -> None:
     walk.loops -= 1
 
 
-def _while(walk: _Walk, loop: While) -> None:
+def _while(walk: _Walk, loop: ir.While) -> None:
     scope = walk.scope
     at_start: list[Linear] = []
 
@@ -343,15 +325,15 @@ def _while(walk: _Walk, loop: While) -> None:
     scope.facts.assume(negated(condition(scope, loop.condition)))
 
 
-def _assume_invariant(scope: Scope, loop: While) -> None:
+def _assume_invariant(scope: Scope, loop: ir.While) -> None:
     for expr in loop.invariant:
         scope.facts.assume(condition(scope, expr))
 
 
-def _rounds(walk: _Walk, loop: For | While, enter: Callable[[int], None], leave: Callable[[], None], count: Linear = ZERO) -> None:
+def _rounds(walk: _Walk, loop: ir.For | ir.While, enter: Callable[[int], None], leave: Callable[[], None], count: Linear = ZERO) -> None:
     dropped = walk.dropped.get(id(loop))
     if dropped is None:
-        said, measure = (loop.invariant, loop.measure) if isinstance(loop, While) else ((), None)
+        said, measure = (loop.invariant, loop.measure) if isinstance(loop, ir.While) else ((), None)
         dropped = walk.dropped[id(loop)] = set() if walk.tries_all else needless(loop.body, said, measure, walk.scope.locals, walk.reads)
-    variable = loop.variable if isinstance(loop, For) else ""
+    variable = loop.variable if isinstance(loop, ir.For) else ""
     walk_rounds(walk.scope, Loop(loop.body, enter, partial(_block, walk, loop.body), leave, variable, count), dropped)

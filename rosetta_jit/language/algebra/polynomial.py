@@ -12,39 +12,17 @@ from collections import Counter
 from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.counters import counter_of
 from rosetta_jit.language.limits import MAX_ATOM_DEPTH, MAX_ATOMS
 from rosetta_jit.language.places import shown_shape
-from rosetta_jit.language.typed import (
-    Access,
-    Binary,
-    Call,
-    Choice,
-    Const,
-    Convert,
-    FieldStep,
-    Given,
-    Has,
-    HostCall,
-    IsText,
-    LenOf,
-    Listed,
-    Local,
-    Nearest,
-    Reduce,
-    Search,
-    StateVariable,
-    Unary,
-)
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Int
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from rosetta_jit.language.typed import Expr, Place, Step
 
 
 class TooComplexError(Exception):
@@ -158,69 +136,69 @@ def coefficient_of(polynomial: Polynomial, name: str) -> tuple[Polynomial, Polyn
     return None if any(contains(part, name) for part in parts) else parts
 
 
-def polynomial_of(expr: Expr) -> Polynomial:
+def polynomial_of(expr: typed.Expr) -> Polynomial:
     """The normal form of an integer expression."""
     match expr:
-        case Const(value=int(value)):
+        case typed.Const(value=int(value)):
             return number(value)
-        case Local(name):
+        case typed.Local(name):
             return atom(name)
-        case Access(place):
+        case typed.Access(place):
             return _field_value(place)
-        case LenOf(place):
+        case typed.LenOf(place):
             return _length(place)
-        case Unary("not", operand):
+        case typed.Unary("not", operand):
             return atom("not", polynomial_of(operand))
-        case Unary(operand=operand):
+        case typed.Unary(operand=operand):
             return subtract(number(0), polynomial_of(operand))
-        case Binary(operator, left, right):
+        case typed.Binary(operator, left, right):
             return _arithmetic(operator, polynomial_of(left), polynomial_of(right))
-        case Convert() | Nearest():
+        case typed.Convert() | typed.Nearest():
             return _converted(expr)
-        case Call(function, arguments):
+        case typed.Call(function, arguments):
             return atom(function, *map(polynomial_of, arguments))
-        case HostCall(function, arguments):
+        case typed.HostCall(function, arguments):
             return atom(f"{function}()", *map(polynomial_of, arguments))
-        case IsText(place, text):
+        case typed.IsText(place, text):
             return atom(f"{shown_shape(place.steps)} == {text!r}", *_indices(place.steps))
-        case Has(place):
+        case typed.Has(place):
             return atom(f"has {shown_shape(place.steps)}", *_indices(place.steps))
-        case Search() | Reduce():
+        case typed.Search() | typed.Reduce():
             return _of_elements(expr)
-        case Choice() | Listed() | Given():
+        case typed.Choice() | typed.Listed() | typed.Given():
             return _chosen(expr)
-        case Const() | StateVariable():
-            return atom(f"state {expr.name} of {expr.target}" if isinstance(expr, StateVariable) else repr(expr.value))
+        case typed.Const() | typed.StateVariable():
+            return atom(f"state {expr.name} of {expr.target}" if isinstance(expr, typed.StateVariable) else repr(expr.value))
         case _:
             assert_never(expr)
 
 
-def _of_elements(expr: Search | Reduce) -> Polynomial:
+def _of_elements(expr: typed.Search | typed.Reduce) -> Polynomial:
     """What is found among elements, or made of them."""
     match expr:
-        case Search(place, _, condition):
+        case typed.Search(place, _, condition):
             return atom(f"in {shown_shape(place.steps)}", *_indices(place.steps), polynomial_of(condition))
-        case Reduce(function, _, count, value):
+        case typed.Reduce(function, _, count, value):
             return atom(f"{function} of each", polynomial_of(count), polynomial_of(value))
         case _:
             assert_never(expr)
 
 
-def _converted(value: Convert | Nearest) -> Polynomial:
-    rule = value.rule if isinstance(value, Convert) else "solved"
+def _converted(value: typed.Convert | typed.Nearest) -> Polynomial:
+    rule = value.rule if isinstance(value, typed.Convert) else "solved"
     keeps = isinstance(value.operand.type, Int) and rule in {"widen", "exact"}
     return polynomial_of(value.operand) if keeps else atom(f"{describe(value.type)} {rule}", polynomial_of(value.operand))
 
 
-def _chosen(expr: Choice | Listed | Given) -> Polynomial:
+def _chosen(expr: typed.Choice | typed.Listed | typed.Given) -> Polynomial:
     """One of several values; it is the same under the same conditions, and for the same number."""
     match expr:
-        case Choice(cases, otherwise):
+        case typed.Choice(cases, otherwise):
             parts = [part for case in cases for part in case] + ([] if otherwise is None else [otherwise])
             return atom("choice", *map(polynomial_of, parts))
-        case Listed(items, index):
+        case typed.Listed(items, index):
             return atom("item", *map(polynomial_of, (*items, index)))
-        case Given(name, arguments):
+        case typed.Given(name, arguments):
             return atom(name, *map(polynomial_of, arguments))
         case _:
             assert_never(expr)
@@ -238,17 +216,17 @@ def _arithmetic(operator: str, left: Polynomial, right: Polynomial) -> Polynomia
             return atom(operator, left, right)
 
 
-def _field_value(place: Place) -> Polynomial:
+def _field_value(place: typed.Place) -> Polynomial:
     """A field's value; the one that the schema fixes, where it does."""
     last = place.steps[-1]
     match last:
-        case FieldStep(field) if isinstance(field.constant, Literal) and type(field.constant.value) is int:
+        case typed.FieldStep(field) if isinstance(field.constant, Literal) and type(field.constant.value) is int:
             return number(field.constant.value)
         case _:
             return atom(shown_shape(place.steps), *_indices(place.steps))
 
 
-def _length(place: Place) -> Polynomial:
+def _length(place: typed.Place) -> Polynomial:
     """How many elements are at a place; where another field of a message tells that, it is what that field says."""
     counter = counter_of(place.steps)
     if place.side != "wire" or counter is None:
@@ -257,8 +235,8 @@ def _length(place: Place) -> Polynomial:
     return atom(f"{shown_shape(around)}.{name}", *_indices(around))
 
 
-def _indices(steps: Sequence[Step]) -> list[Polynomial]:
-    return [polynomial_of(step.index) for step in steps if not isinstance(step, FieldStep)]
+def _indices(steps: Sequence[typed.Step]) -> list[Polynomial]:
+    return [polynomial_of(step.index) for step in steps if not isinstance(step, typed.FieldStep)]
 
 
 def _of(terms: Counter[Monomial]) -> Polynomial:

@@ -24,7 +24,7 @@ from rosetta_jit.language.function import functions
 from rosetta_jit.language.limits import MAX_MADE
 from rosetta_jit.language.scope import element_type, members_of
 from rosetta_jit.language.typed import INT64, Const, FieldStep, IndexStep, Local, Place
-from rosetta_jit.language.units.places import unit_at
+from rosetta_jit.language.units.unit_at import unit_at
 from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Literal, Member, Name, Path
 from rosetta_jit.model.mapping import Arranged, Assign, For, Reject, SetLength, Via, When
 from rosetta_jit.model.printer import show_expr

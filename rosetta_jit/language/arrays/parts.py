@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS
 from rosetta_jit.language.function import written
-from rosetta_jit.model.expr import Call, Each, Held, Index, Len, Path, Pick, Slice
+from rosetta_jit.model.expr import Call, Coerced, Each, Index, Len, Path, Pick, Slice
 from rosetta_jit.model.walk import parts, rebuilt
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def substituted(expr: Expr, known: Mapping[Expr, Expr], number: Expr) -> Expr:
         return number
     if isinstance(expr, Len) and isinstance(element := known.get(expr.path), Path):
         return replace(expr, path=element)
-    if isinstance(expr, Held) and has_each(expr.place):
+    if isinstance(expr, Coerced) and has_each(expr.place):
         steps = tuple(Index(number, step.span) if isinstance(step, Each) else step for step in expr.place.steps)
         expr = replace(expr, place=replace(expr.place, steps=steps))
     return rebuilt(expr, lambda part: substituted(part, known, number))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, KEEP_LENGTH
 from rosetta_jit.language.both_ways.inverse import fields_in
-from rosetta_jit.model.expr import Call, Each, Held, Index, Len, List, Member, Path
+from rosetta_jit.model.expr import Call, Coerced, Each, Index, Len, List, Member, Path
 from rosetta_jit.model.walk import path_of, rebuilt
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def with_layouts(value: Expr, written: Mapping[Field, Expr]) -> Expr:
 
 def _with_written(expr: Expr, written: Mapping[Field, Expr]) -> Expr:
     if isinstance(expr, Path) and expr in written:
-        return Held(expr, written[expr], expr.span)
+        return Coerced(expr, written[expr], expr.span)
     return rebuilt(expr, lambda part: _with_written(part, written))
 
 

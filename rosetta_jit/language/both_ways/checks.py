@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.folding import FALSE, TRUE
-from rosetta_jit.model.expr import Binary, Held, Literal, Path, Unary
+from rosetta_jit.model.expr import Binary, Coerced, Literal, Path, Unary
 from rosetta_jit.model.mapping import Reject, When
 from rosetta_jit.model.printer import show_expr
 
@@ -34,9 +34,9 @@ def _within(digit: Digit, span: Span | None) -> Rule:
 
 def agreement(place: Field | List, wanted: Expr, rule: Relation) -> tuple[Rule, ...]:
     """That a holder has what unpacking is going to give, to the bit: -0 is not what 0 is unpacked to."""
-    held = Held(place, wanted, rule.span) if isinstance(place, Path) and not isinstance(wanted, Path) else wanted
+    coerced = Coerced(place, wanted, rule.span) if isinstance(place, Path) and not isinstance(wanted, Path) else wanted
     reason = words.disagrees(show_expr(place), show_expr(wanted))
-    return (When(Binary("differs", place, held, rule.span), (Reject(reason, rule.span),), (), rule.span),)
+    return (When(Binary("differs", place, coerced, rule.span), (Reject(reason, rule.span),), (), rule.span),)
 
 
 def guard(condition: Expr, rule: When[Rule, Expr], *, holds: bool) -> tuple[Rule, ...]:

@@ -11,7 +11,7 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.limits import MAX_PARTS
-from rosetta_jit.model.expr import Call, Each, Expr, Held, Index, Keyed, Len, Name, Path
+from rosetta_jit.model.expr import Call, Coerced, Each, Expr, Index, Keyed, Len, Name, Path
 from rosetta_jit.model.walk import Field, names_of, parts, path_of, rebuilt, renamed, with_indices
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -144,7 +144,7 @@ class Knowledge:
         if isinstance(expr, Path | Len) and path_of(expr).side == "wire":
             value = self.value(expr, loops)
             if value is not None:
-                return Held(self.placed(expr, loops), value, expr.span) if isinstance(expr, Path) else value
+                return Coerced(self.placed(expr, loops), value, expr.span) if isinstance(expr, Path) else value
         return rebuilt(expr, lambda part: self.replaced(part, loops))
 
     def placed(self, path: Path, loops: Loops) -> Path:

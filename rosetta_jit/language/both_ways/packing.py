@@ -26,7 +26,7 @@ from rosetta_jit.language.folding import folded
 from rosetta_jit.language.function import written
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_BLOCKS
-from rosetta_jit.model.expr import Binary, Call, Held, Len, List, Literal, Path
+from rosetta_jit.model.expr import Binary, Call, Coerced, Len, List, Literal, Path
 from rosetta_jit.model.mapping import (
     Arranged,
     Assign,
@@ -347,7 +347,7 @@ def _setting(place: Path, value: Expr, span: Span | None, *, length: bool, way: 
 def _is_tested(rule: Rule, test: Expr) -> bool:
     """Whether a check asks again what the `when` around it has asked."""
     match rule, test:
-        case When(Binary("differs", place, Held(value=wanted)), (Reject(),), ()), Binary("==", tested, constant):
+        case When(Binary("differs", place, Coerced(value=wanted)), (Reject(),), ()), Binary("==", tested, constant):
             return place == tested and folded(wanted) == constant and not _is_zero(constant)
         case _:
             return False

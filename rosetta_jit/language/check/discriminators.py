@@ -45,23 +45,29 @@ def discriminators_of(rules: tuple[Rule, ...], message: Message) -> dict[Names, 
     places = places_in(rules)
     named = {field_names(place) for place in places}
     found: dict[Names, Discriminator] = {}
+    unions: dict[int, tuple[Struct, list[Field]]] = {}  # by the identity of the struct: to look at each rule takes quadratic time
     for place in places:
         type_: Type = message.root
         names: Names = ()
         for step in place.steps:
             if isinstance(step, FieldStep):
                 if isinstance(type_, Struct):
-                    found |= {(*names, each): discriminator for each, discriminator in _unions(type_, step.field, message, names, named)}
+                    if id(type_) not in unions:
+                        unions[id(type_)] = type_, [each for each in type_.fields if isinstance(each.type, Union)]
+                    told = _told(*unions[id(type_)], step.field, message, names, named)
+                    found |= {(*names, each): discriminator for each, discriminator in told}
                 names, type_ = (*names, step.field.name), message.value_type(step.field.type)
             elif isinstance(type_, Array | Bytes | Map):
                 type_ = message.value_type(element_type(type_))
     return found
 
 
-def _unions(struct: Struct, touched: Field, message: Message, names: Names, named: set[Names]) -> list[tuple[str, Discriminator]]:
-    """The union with a discriminator in a struct, if it is ``touched`` or its discriminator is."""
+def _told(
+    struct: Struct, unions: list[Field], touched: Field, message: Message, names: Names, named: set[Names]
+) -> list[tuple[str, Discriminator]]:
+    """The discriminators of a struct's ``unions``, where the union is ``touched`` or its discriminator is."""
     found: list[tuple[str, Discriminator]] = []
-    for each in struct.fields:
+    for each in unions:
         if isinstance(each.type, Union) and touched.name in (each.name, each.type.discriminator or each.name):
             selector = next((field for field in struct.fields if field.name == each.type.discriminator), None)
             if selector is not None:

@@ -13,24 +13,7 @@ from typing import TYPE_CHECKING, cast
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.language.limits import MAX_DIGITS
 from rosetta_jit.language.parse.templates import pieces_of
-from rosetta_jit.model.expr import (
-    Binary,
-    Call,
-    Choice,
-    Each,
-    Index,
-    Item,
-    Keyed,
-    Len,
-    List,
-    Literal,
-    Member,
-    Name,
-    Path,
-    Pick,
-    Slice,
-    Unary,
-)
+from rosetta_jit.model import expr
 from rosetta_jit.model.mapping import (
     Arranged,
     Assign,
@@ -56,7 +39,6 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.expr import Expr, Operator, Side, Step
     from rosetta_jit.model.mapping import Rule
     from rosetta_jit.source import Source
 
@@ -70,8 +52,8 @@ class Context:
     """Which side the rules of a block write and which they read, and where their problems go."""
 
     source: Source
-    target: Side
-    origin: Side
+    target: expr.Side
+    origin: expr.Side
     problems: list[Diagnostic]
 
     def span(self, node: Tree | Token) -> Span:
@@ -92,7 +74,7 @@ def read_rule(tree: Tree, context: Context) -> Rule:
         case "length_relation":
             left, right = _trees(tree)
             place = _path(left, context.target, context)
-            return Relation(Len(place, place.span), read_expression(right, context), span)
+            return Relation(expr.Len(place, place.span), read_expression(right, context), span)
         case "arranged" | "arranged_both":
             return _arranged(tree, context, span)
         case "when" | "when_of_both":
@@ -177,7 +159,7 @@ def _via(trees: list[Tree], context: Context) -> Via | None:
     return Via(read_string(name, context.source, context.problems), deepest, context.span(trees[0]))
 
 
-def _when(condition: Expr, body: list[Tree], context: Context, span: Span) -> Rule:
+def _when(condition: expr.Expr, body: list[Tree], context: Context, span: Span) -> Rule:
     then = tuple(read_rule(rule, context) for rule in body if rule.data not in OTHERWISE)
     others = (rule for block in body if block.data in OTHERWISE for rule in _trees(block))
     return When(condition, then, tuple(read_rule(rule, context) for rule in others), span)
@@ -191,7 +173,7 @@ def _reject(tree: Tree, context: Context, span: Span) -> Rule:
     return rejection
 
 
-def _template(tree: Tree, context: Context) -> tuple[str, tuple[Expr, ...]]:
+def _template(tree: Tree, context: Context) -> tuple[str, tuple[expr.Expr, ...]]:
     """A text and, where it has values in braces, what it consists of."""
     text, place = _text(tree, context), context.span(_tokens(tree)[0])
     return text, pieces_of(text, place, context.problems, lambda value: read_expression(value, context))
@@ -213,114 +195,114 @@ def read_string(token: Token, source: Source, problems: list[Diagnostic]) -> str
     return re.sub(r"\\(.)", lambda escape: ESCAPES.get(escape[1], escape[1]), text)
 
 
-def read_expression(tree: Tree, context: Context) -> Expr:
+def read_expression(tree: Tree, context: Context) -> expr.Expr:
     """An expression, whose fields are on the origin's side."""
     span = context.span(tree)
     match str(tree.data):
         case "integer":
-            return Literal(_integer(_tokens(tree)[0], context), span)
+            return expr.Literal(_integer(_tokens(tree)[0], context), span)
         case "real":
-            return Literal(_real(_tokens(tree)[0], context), span)
+            return expr.Literal(_real(_tokens(tree)[0], context), span)
         case "string":
-            return Literal(_text(tree, context), span)
+            return expr.Literal(_text(tree, context), span)
         case "true" | "false":
-            return Literal(str(tree.data) == "true", span)
+            return expr.Literal(str(tree.data) == "true", span)
         case "name":
-            return Name(str(_tokens(tree)[0]), span)
+            return expr.Name(str(_tokens(tree)[0]), span)
         case "path":
             return _path(tree, context.origin, context)
         case "length":
             measured = read_expression(_trees(tree)[0], context)
-            return Len(measured, span) if isinstance(measured, Path) else Call("len", (measured,), span)
+            return expr.Len(measured, span) if isinstance(measured, expr.Path) else expr.Call("len", (measured,), span)
         case "list":
-            return List(tuple(read_expression(item, context) for item in _trees(tree)), span)
+            return expr.List(tuple(read_expression(item, context) for item in _trees(tree)), span)
         case "item":
             index = _trees(_trees(tree)[0])[0]
-            return Item(Name(str(_tokens(tree)[0]), span), read_expression(index, context), span)
+            return expr.Item(expr.Name(str(_tokens(tree)[0]), span), read_expression(index, context), span)
         case "negative" | "inversion":
-            return Unary("-" if tree.data == "negative" else "not", read_expression(_trees(tree)[0], context), span)
+            return expr.Unary("-" if tree.data == "negative" else "not", read_expression(_trees(tree)[0], context), span)
         case "conditional":
             then, condition, other = (read_expression(part, context) for part in _trees(tree))
-            return Choice(((condition, then),), other, span=span)
+            return expr.Choice(((condition, then),), other, span=span)
         case "table":
             return _table(tree, context, span)
         case "binary":
             left, right = (read_expression(operand, context) for operand in _trees(tree))
-            return Binary(cast("Operator", str(_tokens(tree)[0])), left, right, span)
+            return expr.Binary(cast("expr.Operator", str(_tokens(tree)[0])), left, right, span)
         case "group":
             return read_expression(_trees(tree)[0], context)
         case _:
             return _call(tree, context, span)
 
 
-def _call(tree: Tree, context: Context, span: Span) -> Expr:
+def _call(tree: Tree, context: Context, span: Span) -> expr.Expr:
     """A call, or one number of the group that it gives."""
     arguments = tuple(read_expression(argument, context) for argument in _trees(tree))
     function, *members = (token for token in _tokens(tree) if token.type in {"NAME", "MEMBER"})
-    call = Call(str(function), arguments, span)
-    return Item(call, Literal("".join(members)[1:].replace('"', ""), span), span) if members else call
+    call = expr.Call(str(function), arguments, span)
+    return expr.Item(call, expr.Literal("".join(members)[1:].replace('"', ""), span), span) if members else call
 
 
-def _table(tree: Tree, context: Context, span: Span) -> Choice:
+def _table(tree: Tree, context: Context, span: Span) -> expr.Choice:
     """A table, as a choice among comparisons of its subject."""
     subject, *entries = _trees(tree)
     compared = read_expression(subject, context)
-    cases: list[tuple[Expr, Expr]] = []
+    cases: list[tuple[expr.Expr, expr.Expr]] = []
     otherwise, reason, pieces = None, "the table has no entry for it", ()
     for entry in entries:
         values = [read_expression(part, context) for part in _trees(entry)]
         if entry.data == "entry":
-            cases.append((Binary("==", compared, values[0], context.span(entry)), values[1]))
+            cases.append((expr.Binary("==", compared, values[0], context.span(entry)), values[1]))
         elif values:
             otherwise = values[0]
         else:
             reason, pieces = _template(entry, context)
-    return Choice(tuple(cases), otherwise, reason, span, pieces)
+    return expr.Choice(tuple(cases), otherwise, reason, span, pieces)
 
 
-def _path(tree: Tree, side: Side, context: Context) -> Path:
-    return Path(side, tuple(_step(step, context) for step in tree.children), context.span(tree))
+def _path(tree: Tree, side: expr.Side, context: Context) -> expr.Path:
+    return expr.Path(side, tuple(_step(step, context) for step in tree.children), context.span(tree))
 
 
-def _step(step: Tree | Token, context: Context) -> Step:
+def _step(step: Tree | Token, context: Context) -> expr.Step:
     if isinstance(step, Token):
-        return Member(str(step)[1:].strip('"'), context.span(step))
+        return expr.Member(str(step)[1:].strip('"'), context.span(step))
     span, parts = context.span(step), [read_expression(part, context) for part in _trees(step)]
     match str(step.data), parts:
-        case "keyed", [Path(steps=steps, span=place), value]:
+        case "keyed", [expr.Path(steps=steps, span=place), value]:
             return _keyed(steps, place, value, context, span)
         case "each", _:
-            return Each(span)
+            return expr.Each(span)
         case "slice", [start, *bounds]:
             stop, by = (*bounds, None, None)[:2]
-            return Slice(start, stop, by or Literal(1), span)
-        case _, [List(items)]:
-            return Pick(_numbers(items, context), span)
+            return expr.Slice(start, stop, by or expr.Literal(1), span)
+        case _, [expr.List(items)]:
+            return expr.Pick(_numbers(items, context), span)
         case _, [index, *_]:
-            return Index(index, span)
+            return expr.Index(index, span)
         case _:
             raise AssertionError(step)
 
 
-def _keyed(steps: tuple[Step, ...], place: Span | None, value: Expr, context: Context, span: Span) -> Keyed:
+def _keyed(steps: tuple[expr.Step, ...], place: Span | None, value: expr.Expr, context: Context, span: Span) -> expr.Keyed:
     """An element by a field of it, or by the element of the same number of an array beside."""
-    number = next((number for number, step in enumerate(steps) if isinstance(step, Each)), None)
+    number = next((number for number, step in enumerate(steps) if isinstance(step, expr.Each)), None)
     if number is None:
-        return Keyed(_names(steps, place, context), value, span)
-    return Keyed(_names(steps[number + 1 :], place, context), value, span, _names(steps[:number], place, context))
+        return expr.Keyed(_names(steps, place, context), value, span)
+    return expr.Keyed(_names(steps[number + 1 :], place, context), value, span, _names(steps[:number], place, context))
 
 
-def _names(steps: tuple[Step, ...], span: Span | None, context: Context) -> tuple[str, ...]:
+def _names(steps: tuple[expr.Step, ...], span: Span | None, context: Context) -> tuple[str, ...]:
     """The field of an element by which it is known."""
-    if not all(isinstance(step, Member) for step in steps):
+    if not all(isinstance(step, expr.Member) for step in steps):
         context.problems.append(words.key_field(span))
-    return tuple(step.name for step in steps if isinstance(step, Member))
+    return tuple(step.name for step in steps if isinstance(step, expr.Member))
 
 
-def _numbers(items: tuple[Expr, ...], context: Context) -> tuple[int, ...]:
+def _numbers(items: tuple[expr.Expr, ...], context: Context) -> tuple[int, ...]:
     """The elements that a list names: numbers that stand in the text."""
-    numbers = [item.value for item in items if isinstance(item, Literal) and type(item.value) is int]
-    context.problems.extend(words.picked(item.span) for item in items if not (isinstance(item, Literal) and type(item.value) is int))
+    numbers = [item.value for item in items if isinstance(item, expr.Literal) and type(item.value) is int]
+    context.problems.extend(words.picked(item.span) for item in items if not (isinstance(item, expr.Literal) and type(item.value) is int))
     return tuple(numbers)
 
 

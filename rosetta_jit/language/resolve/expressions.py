@@ -22,8 +22,8 @@ from rosetta_jit.language.functions.texts import concatenation, is_textual
 from rosetta_jit.language.functions.user_functions import type_host_call
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.resolve.absent_texts import length_there, text_there
+from rosetta_jit.language.resolve.coerced_values import type_coerced, type_nearest
 from rosetta_jit.language.resolve.groups import type_component
-from rosetta_jit.language.resolve.held_values import type_held, type_nearest
 from rosetta_jit.language.resolve.key_search import is_found, type_search
 from rosetta_jit.language.resolve.list_items import compared_text, type_listed
 from rosetta_jit.language.resolve.reductions import type_reduction
@@ -79,8 +79,12 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return type_choice(expr, scope, type_expr)
         case model.List() | model.Item() | model.Given():
             return _listed(expr, scope)
-        case model.Held() | model.Nearest():
-            return type_held(expr, scope, type_expr, type_index) if isinstance(expr, model.Held) else type_nearest(expr, scope, type_expr)
+        case model.Coerced() | model.Nearest():
+            return (
+                type_coerced(expr, scope, type_expr, type_index)
+                if isinstance(expr, model.Coerced)
+                else type_nearest(expr, scope, type_expr)
+            )
         case _:
             assert_never(expr)
 

@@ -52,7 +52,7 @@ def type_component(item: model.Item, scope: Scope, type_expr: TypeExpr, type_ind
 def type_group(value: model.Expr, scope: Scope, type_expr: TypeExpr, type_index: TypeIndex) -> list[Expr] | None:
     """All numbers of a value that is a group; None where one has no type."""
     match value:
-        case model.Held(value=inner):
+        case model.Coerced(value=inner):
             return type_group(inner, scope, type_expr, type_index)
         case model.Call() if (function := function_of(value)) is not None:
             return _called(value, function, scope, type_expr, type_index)
@@ -117,7 +117,7 @@ def _typed(value: model.Expr, member: Member, scope: Scope, type_expr: TypeExpr)
 def components_of(value: model.Expr, group: Group, scope: Scope, type_index: TypeIndex) -> list[model.Expr] | None:
     """An expression for each number of a group that a value stands for; None where it stands for none, which is reported."""
     match value:
-        case model.Held(value=inner):
+        case model.Coerced(value=inner):
             return components_of(inner, group, scope, type_index)
         case model.Choice(cases, otherwise):
             return _chosen(value, cases, otherwise, group, scope, type_index)
@@ -236,7 +236,7 @@ def length_rules(rule: mapping.Assignment, type_: Type, group: Group, scope: Sco
 def _paths_in(value: model.Expr) -> list[tuple[model.Path, Group]]:
     """The places that stand for groups in a value, each with the group that it stands for."""
     match value:
-        case model.Held(value=inner):
+        case model.Coerced(value=inner):
             return _paths_in(inner)
         case model.Choice(cases, otherwise):
             return [each for chosen in (*(value for _, value in cases), otherwise) if chosen is not None for each in _paths_in(chosen)]
@@ -255,7 +255,7 @@ def _standing(argument: model.Expr, group: Group) -> list[tuple[model.Path, Grou
     match argument:
         case model.Path():
             return [(argument, group)]
-        case model.Held(value=inner):
+        case model.Coerced(value=inner):
             return _standing(inner, group)
         case model.List(items):
             return [each for item in items for each in _paths_in(item)]

@@ -10,27 +10,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import nested as words
+from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.limits import MAX_COPIED, MAX_USES, MAX_VIA_DEPTH
 from rosetta_jit.language.resolve.expressions import type_index
 from rosetta_jit.language.scope import Broken, Message, Scope, resolve_path
-from rosetta_jit.language.typed import (
-    BOOL,
-    INT64,
-    Binary,
-    Const,
-    Default,
-    For,
-    Has,
-    Ignore,
-    IndexStep,
-    LenOf,
-    Local,
-    Place,
-    Reject,
-    SetLength,
-    When,
-)
 from rosetta_jit.language.uses import EnoughError, Use
 from rosetta_jit.model.expr import Path
 from rosetta_jit.model.mapping import Via
@@ -39,16 +23,15 @@ from rosetta_jit.model.types import Array, Optional, Struct, same_name
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rosetta_jit.language.typed import Rule
     from rosetta_jit.model import mapping as model
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
-    RulesOf = Callable[[tuple[model.Rule, ...], Scope], tuple[Rule, ...]]
+    RulesOf = Callable[[tuple[model.Rule, ...], Scope], tuple[typed.Rule, ...]]
 
 
-def nest(rule: model.Assignment, scope: Scope, rules_of: RulesOf) -> tuple[Rule, ...] | None:
+def nest(rule: model.Assignment, scope: Scope, rules_of: RulesOf) -> tuple[typed.Rule, ...] | None:
     """The rules that an assignment of messages stands for; None if it is none that a mapping makes."""
     via = rule.by if isinstance(rule.by, Via) else None
     if via is None and not scope.others.by_type():
@@ -75,20 +58,20 @@ def nest(rule: model.Assignment, scope: Scope, rules_of: RulesOf) -> tuple[Rule,
     return _used(others.uses[-1], None if via is None else via.depth, scope, rules_of)
 
 
-def _ends(rule: model.Assignment, value: Path, scope: Scope) -> tuple[Place, Place] | None:
+def _ends(rule: model.Assignment, value: Path, scope: Scope) -> tuple[typed.Place, typed.Place] | None:
     """Both places; without `via`, what does not resolve is reported by whoever assigns it."""
     place, origin = resolve_path(rule.place, scope, type_index), resolve_path(value, scope, type_index)
     return None if isinstance(place, Broken) or isinstance(origin, Broken) else (place, origin)
 
 
-def _message(place: Place, scope: Scope) -> Struct | None:
+def _message(place: typed.Place, scope: Scope) -> Struct | None:
     """The message at a place, or that of each element."""
     type_ = place.type.element if isinstance(place.type, Array) else place.type
     found = _value_type(type_, place, scope)
     return found if isinstance(found, Struct) else None
 
 
-def _value_type(type_: Type, place: Place, scope: Scope) -> Type:
+def _value_type(type_: Type, place: typed.Place, scope: Scope) -> Type:
     return scope.messages[place.side].value_type(type_)
 
 
@@ -122,12 +105,12 @@ def _side(mapping: model.Mapping, target: Struct, source: Struct) -> Side | None
     return None
 
 
-def _left_out(place: Place, origin: Place, span: Span | None) -> tuple[Rule, ...]:
+def _left_out(place: typed.Place, origin: typed.Place, span: Span | None) -> tuple[typed.Rule, ...]:
     """Rules that say nothing of two places, so that nothing more is reported of them."""
-    return (Default(place, span), Ignore(origin, span))
+    return (typed.Default(place, span), typed.Ignore(origin, span))
 
 
-def _used(use: Use, most: int | None, scope: Scope, rules_of: RulesOf) -> tuple[Rule, ...]:
+def _used(use: Use, most: int | None, scope: Scope, rules_of: RulesOf) -> tuple[typed.Rule, ...]:
     """The rules of a mapping where it is used; ``most`` is how often it may be within itself, where that is said."""
     name, span, others = use.mapping.source.name, use.span, scope.others
     depth = others.using.count(name)
@@ -147,43 +130,45 @@ def _used(use: Use, most: int | None, scope: Scope, rules_of: RulesOf) -> tuple[
     return _left_out(use.place, use.origin, span)
 
 
-def _too_deep(most: int, place: Place, origin: Place, span: Span | None) -> tuple[Rule, ...]:
+def _too_deep(most: int, place: typed.Place, origin: typed.Place, span: Span | None) -> tuple[typed.Rule, ...]:
     """What is there beyond the depth is refused."""
     if isinstance(origin.type, Array):
-        there: Binary | Has = Binary("!=", LenOf(origin), Const(0, INT64), BOOL)
+        there: typed.Binary | typed.Has = typed.Binary("!=", typed.LenOf(origin), typed.Const(0, typed.INT64), typed.BOOL)
     else:
-        there = Has(origin)
-    return (When(there, (Reject(words.too_deep(most), span),), (), span), Default(place, span))
+        there = typed.Has(origin)
+    return (typed.When(there, (typed.Reject(words.too_deep(most), span),), (), span), typed.Default(place, span))
 
 
-def _at(use: Use, scope: Scope, rules_of: RulesOf) -> tuple[Rule, ...]:
+def _at(use: Use, scope: Scope, rules_of: RulesOf) -> tuple[typed.Rule, ...]:
     """The rules of a mapping for two messages, or for each of their elements."""
     place, origin, span = use.place, use.origin, use.span
     if not isinstance(place.type, Array) or not isinstance(origin.type, Array):
         rules = _inside(use.mapping, use.side, place, origin, scope, rules_of)
-        return (When(Has(origin), rules, (), span),) if _may_lack(place, scope) and _may_lack(origin, scope) else rules
-    number = Local(f"each{scope.suffix}")
+        return (typed.When(typed.Has(origin), rules, (), span),) if _may_lack(place, scope) and _may_lack(origin, scope) else rules
+    number = typed.Local(f"each{scope.suffix}")
     element, source = (_element(end, number, scope) for end in (place, origin))
     rules = _inside(use.mapping, use.side, element, source, scope, rules_of)
     fixed = place.type.fixed
-    length: Rule = SetLength(place, LenOf(origin) if fixed is None else Const(fixed, INT64), span)
-    return (length, For(number.name, Const(0, INT64), LenOf(origin), rules, span))
+    length: typed.Rule = typed.SetLength(place, typed.LenOf(origin) if fixed is None else typed.Const(fixed, typed.INT64), span)
+    return (length, typed.For(number.name, typed.Const(0, typed.INT64), typed.LenOf(origin), rules, span))
 
 
-def _element(place: Place, number: Local, scope: Scope) -> Place:
+def _element(place: typed.Place, number: typed.Local, scope: Scope) -> typed.Place:
     assert isinstance(place.type, Array)
-    return Place(place.side, (*place.steps, IndexStep(number)), _value_type(place.type.element, place, scope), place.span)
+    return typed.Place(place.side, (*place.steps, typed.IndexStep(number)), _value_type(place.type.element, place, scope), place.span)
 
 
-def _may_lack(place: Place, scope: Scope) -> bool:
+def _may_lack(place: typed.Place, scope: Scope) -> bool:
     """Whether a message can be absent."""
     last = place.steps[-1]
-    if isinstance(last, IndexStep) or last.field.required:
+    if isinstance(last, typed.IndexStep) or last.field.required:
         return False
     return isinstance(scope.messages[place.side].schema.resolve(last.field.type), Optional)
 
 
-def _inside(mapping: model.Mapping, side: Side, place: Place, origin: Place, scope: Scope, rules_of: RulesOf) -> tuple[Rule, ...]:
+def _inside(
+    mapping: model.Mapping, side: Side, place: typed.Place, origin: typed.Place, scope: Scope, rules_of: RulesOf
+) -> tuple[typed.Rule, ...]:
     """The rules of a mapping whose two messages lie at these places."""
     other: Side = "wire" if side == "holder" else "holder"
     schema = scope.messages[place.side].schema

@@ -14,6 +14,7 @@ from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.catalogue import rest as about_rest
 from rosetta_jit.catalogue import state as states
+from rosetta_jit.language import typed
 from rosetta_jit.language.arrays.elementwise import elementwise
 from rosetta_jit.language.conversions import FLOAT64, describe, is_single, same
 from rosetta_jit.language.functions.decisions import type_condition
@@ -21,11 +22,11 @@ from rosetta_jit.language.functions.texts import type_pieces
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_DEFAULTS, MAX_PROBLEMS
 from rosetta_jit.language.places import field_names, places_in
+from rosetta_jit.language.resolve.coerced_values import fitted
 from rosetta_jit.language.resolve.defaults import ManyDefaultsError, default_rules, has_array
 from rosetta_jit.language.resolve.expressions import type_expr, type_index, type_integer
 from rosetta_jit.language.resolve.fitting import fit
 from rosetta_jit.language.resolve.groups import length_rules, paths_of, type_group
-from rosetta_jit.language.resolve.held_values import fitted
 from rosetta_jit.language.resolve.keyed_rules import numbered
 from rosetta_jit.language.resolve.lengths_first import lengths_first
 from rosetta_jit.language.resolve.messages import checked_message, scope_between
@@ -34,25 +35,6 @@ from rosetta_jit.language.resolve.overriding import last_ones
 from rosetta_jit.language.resolve.rest import defaulted, elements_filled, ignored
 from rosetta_jit.language.resolve.same_names import OF_TYPES, rules_of, unlike
 from rosetta_jit.language.scope import Broken, Message, Scope, element_type, resolve_path
-from rosetta_jit.language.typed import (
-    INT64,
-    Assign,
-    Choice,
-    Const,
-    Convert,
-    Default,
-    FieldStep,
-    For,
-    Ignore,
-    IndexStep,
-    Local,
-    Place,
-    Reduce,
-    Reject,
-    SetLength,
-    SetState,
-    When,
-)
 from rosetta_jit.language.units.conversion import in_unit
 from rosetta_jit.language.units.wholes import change_within
 from rosetta_jit.language.uses import EnoughError
@@ -67,7 +49,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.groups import Group
-    from rosetta_jit.language.typed import Expr, Rule, StateVariable
     from rosetta_jit.language.uses import Signature, UsableMappings
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.types import Schema, Type
@@ -78,7 +59,7 @@ if TYPE_CHECKING:
 class TypedRules:
     """One direction: the rules that have types, and the fields that broken rules meant to set."""
 
-    rules: tuple[Rule, ...]
+    rules: tuple[typed.Rule, ...]
     broken: tuple[tuple[str, ...], ...]
 
 
@@ -96,7 +77,7 @@ class Resolved:
 
 
 def resolve(
-    mapping: model.Mapping, holder: Schema, wire: Schema, others: UsableMappings, state: Mapping[Side, Mapping[str, StateVariable]]
+    mapping: model.Mapping, holder: Schema, wire: Schema, others: UsableMappings, state: Mapping[Side, Mapping[str, typed.StateVariable]]
 ) -> Resolved | tuple[Diagnostic, ...]:
     """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message.
 
@@ -125,7 +106,7 @@ class _Block:
 
     broken: list[tuple[str, ...]] = field(default_factory=list[tuple[str, ...]])
 
-    def whole(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[Rule, ...]:
+    def whole(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[typed.Rule, ...]:
         """All rules of one mapping for a direction."""
         written = tuple(rule for rule in rules if not isinstance(rule, model.Rest))
         found = self.rules(elementwise(numbered(written, scope), scope, self.broken), scope)
@@ -135,23 +116,23 @@ class _Block:
             rests += [] if any(rest.word == "default" for rest in rests) else [model.Rest("default", rules[0].span, written=False)]
         return (*found, *(made for rest in rests for made in self.rest(rest, found, scope)))
 
-    def rest(self, rule: model.Rest, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:
+    def rest(self, rule: model.Rest, others: tuple[typed.Rule, ...], scope: Scope) -> list[typed.Rule]:
         """What the fields that no other rule reads, or sets, are said to be."""
         if rule.word == "ignore":
             return [*ignored(rule, others, scope)]
         return [made for each in defaulted(rule, others, self.broken, scope) for made in self.made(each, scope) if made is not None]
 
-    def rules(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[Rule, ...]:
+    def rules(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[typed.Rule, ...]:
         for rule, behind in pairwise(rules):
             if isinstance(rule, model.Reject):
                 scope.problems.append(words.rules_behind_reject(behind.span))
-        typed = [made for rule in rules for made in self.made(rule, scope)]
-        found = tuple(rule for rule in typed if rule is not None)
+        made = [each for rule in rules for each in self.made(rule, scope)]
+        found = tuple(rule for rule in made if rule is not None)
         same = [rule for rule in rules if isinstance(rule, model.SameNames)]
         scope.problems.extend(about_rest.repeated_same_names(rule.span) for rule in same[1:])
         return lengths_first(found if not same else (*found, *self.same_names(same[0], found, scope)))
 
-    def same_names(self, rule: model.SameNames, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:
+    def same_names(self, rule: model.SameNames, others: tuple[typed.Rule, ...], scope: Scope) -> list[typed.Rule]:
         """Rules for the fields of the message that no other rule sets, and that the other side has too."""
         origin, aim = (scope.messages[side].root for side in (scope.origin, scope.target))
         names = {field.name for field in origin.fields}
@@ -165,7 +146,7 @@ class _Block:
             scope.problems.append(about_rest.no_same_names(rule.span, aim.name, origin.name))
         return [each for made in rules_of(rule, wanted, scope) for each in self.same_name(made, rule, scope)]
 
-    def same_name(self, rule: model.Assignment, names: model.SameNames, scope: Scope) -> list[Rule]:
+    def same_name(self, rule: model.Assignment, names: model.SameNames, scope: Scope) -> list[typed.Rule]:
         """The rules for one field; what is wrong with them is said once, of the field."""
         problems: list[Diagnostic] = []
         tried = replace(scope, problems=problems)
@@ -178,7 +159,7 @@ class _Block:
         scope.problems.extend(problems)
         return [each for each in found if each is not None]
 
-    def made(self, rule: model.Rule, scope: Scope) -> list[Rule | None]:
+    def made(self, rule: model.Rule, scope: Scope) -> list[typed.Rule | None]:
         """The rules that one of the mapping stands for."""
         if isinstance(rule, model.Assign):
             nested = nest(rule, scope, self.whole)
@@ -189,7 +170,7 @@ class _Block:
         if isinstance(rule, model.For) and rule.kept is not None:
             return self.filtered(rule, rule.kept, scope)
         found = self.rule(rule, scope)
-        if not isinstance(found, Default):
+        if not isinstance(found, typed.Default):
             return [found]
         try:
             return [*default_rules(found.place, scope.messages[scope.target], found.span)]
@@ -197,7 +178,7 @@ class _Block:
             scope.problems.append(words.many_defaults(found.span, MAX_DEFAULTS))
             return [found]
 
-    def rule(self, rule: model.Rule, scope: Scope) -> Rule | None:
+    def rule(self, rule: model.Rule, scope: Scope) -> typed.Rule | None:
         if len(scope.problems) >= MAX_PROBLEMS:
             raise EnoughError
         match rule:
@@ -210,7 +191,7 @@ class _Block:
             case model.When():
                 return self.when(rule, scope)
             case model.Reject(text, span, pieces, written):
-                return Reject(text, span, type_pieces(pieces, scope, type_expr), written=written)
+                return typed.Reject(text, span, type_pieces(pieces, scope, type_expr), written=written)
             case model.Ignore(path) | model.Default(path):
                 return self.left_alone(rule, path, scope)
             case model.SetState():
@@ -225,28 +206,28 @@ class _Block:
             case _:
                 assert_never(rule)
 
-    def left_alone(self, rule: model.Ignore[expr.Path] | model.Default[expr.Path], path: expr.Path, scope: Scope) -> Rule | None:
+    def left_alone(self, rule: model.Ignore[expr.Path] | model.Default[expr.Path], path: expr.Path, scope: Scope) -> typed.Rule | None:
         place = resolve_path(path, scope, type_index)
         if isinstance(place, Broken):
             self.broken.append(place.fields)
             return None
         if isinstance(rule, model.Ignore):
-            return Ignore(place, rule.span)
+            return typed.Ignore(place, rule.span)
         if has_array(place.type, scope.messages[scope.target].schema, told=True):
             scope.problems.append(about_rest.no_default(rule.span, describe(place.type)))
             self.broken.append(field_names(place))
             return None
-        return Default(place, rule.span)
+        return typed.Default(place, rule.span)
 
-    def when(self, rule: model.When[model.Rule, expr.Expr], scope: Scope) -> Rule | None:
+    def when(self, rule: model.When[model.Rule, expr.Expr], scope: Scope) -> typed.Rule | None:
         condition = type_condition(rule.condition, scope, type_expr)
         then, otherwise = self.rules(rule.then, scope), self.rules(rule.otherwise, scope)
         if condition is None:
             self.broken.extend(field_names(place) for place in places_in((*then, *otherwise)))
             return None
-        return When(condition, then, otherwise, rule.span)
+        return typed.When(condition, then, otherwise, rule.span)
 
-    def group(self, rule: model.Assignment, group: Group, scope: Scope) -> list[Rule | None]:
+    def group(self, rule: model.Assignment, group: Group, scope: Scope) -> list[typed.Rule | None]:
         """The rules of a group: one for each of its numbers."""
         place = self.place(rule, scope)
         values = type_group(rule.value, scope, type_expr, type_index)
@@ -258,12 +239,12 @@ class _Block:
         ends = [(self.place(replace(rule, place=path), scope), value) for path, value in zip(paths, values, strict=True)]
         return [*lengths, *(self.assigned(end, value, rule, scope) for end, value in ends if end is not None)]
 
-    def assign(self, rule: model.Assignment, scope: Scope) -> Rule | None:
+    def assign(self, rule: model.Assignment, scope: Scope) -> typed.Rule | None:
         place = self.place(rule, scope)
         value = type_expr(rule.value, scope)
         return None if place is None else self.assigned(place, value, rule, scope)
 
-    def assigned(self, place: Place, value: Expr | None, rule: model.Assignment, scope: Scope) -> Rule | None:
+    def assigned(self, place: typed.Place, value: typed.Expr | None, rule: model.Assignment, scope: Scope) -> typed.Rule | None:
         """The rule that sets a place to a value, which becomes of its type."""
         if value is not None:
             value = in_unit(value, place, scope, packs=rule.by == "checked")
@@ -277,9 +258,9 @@ class _Block:
             return None
         change = change_within(fitting, place, scope)
         made = _by_case(place, fitting, rule.span)
-        return made if change is None or not isinstance(made, Assign) else replace(made, by=change)
+        return made if change is None or not isinstance(made, typed.Assign) else replace(made, by=change)
 
-    def set_length(self, rule: model.SetLength[expr.Path, expr.Expr], scope: Scope) -> Rule | None:
+    def set_length(self, rule: model.SetLength[expr.Path, expr.Expr], scope: Scope) -> typed.Rule | None:
         place = self.place(rule, scope)
         value = type_integer(rule.value, scope, "a length")
         if place is None:
@@ -287,26 +268,26 @@ class _Block:
         if value is None or not _length_can_be(value, place, scope):
             self.broken.append(field_names(place))
             return None
-        return SetLength(place, value, rule.span)
+        return typed.SetLength(place, value, rule.span)
 
-    def set_state(self, rule: model.SetState[str, expr.Expr], scope: Scope) -> Rule | None:
+    def set_state(self, rule: model.SetState[str, expr.Expr], scope: Scope) -> typed.Rule | None:
         variable = scope.state.get(rule.variable)
         value = type_expr(rule.value, scope)
         if variable is None:
             scope.problems.append(states.unknown(rule.span, rule.variable, scope.state))
         if variable is None or value is None:
             return None
-        fitting = fit(_rounded(value, variable.type, scope), Place(scope.target, (), variable.type), scope)
-        return None if fitting is None else SetState(variable, fitting, rule.span)
+        fitting = fit(_rounded(value, variable.type, scope), typed.Place(scope.target, (), variable.type), scope)
+        return None if fitting is None else typed.SetState(variable, fitting, rule.span)
 
-    def place(self, rule: model.Assignment | model.SetLength[expr.Path, expr.Expr], scope: Scope) -> Place | None:
+    def place(self, rule: model.Assignment | model.SetLength[expr.Path, expr.Expr], scope: Scope) -> typed.Place | None:
         place = resolve_path(rule.place, scope, type_index)
         if isinstance(place, Broken):
             self.broken.append(place.fields)
             return None
         return place
 
-    def loop(self, rule: model.For[model.Rule, expr.Expr], scope: Scope) -> Rule | None:
+    def loop(self, rule: model.For[model.Rule, expr.Expr], scope: Scope) -> typed.Rule | None:
         if rule.variable in scope.locals:
             scope.problems.append(words.shadowed(rule.span, rule.variable))
         if rule.variable in scope.state:
@@ -317,74 +298,74 @@ class _Block:
         if start is None or stop is None:
             self.broken.extend(field_names(place) for place in places_in(body))
             return None
-        if isinstance(start, Const) and isinstance(stop, Const) and int(stop.value) < int(start.value):
+        if isinstance(start, typed.Const) and isinstance(stop, typed.Const) and int(stop.value) < int(start.value):
             scope.problems.append(words.loop_range(rule.stop.span, int(start.value), int(stop.value)))
             self.broken.extend(field_names(place) for place in places_in(body))
             return None
-        return For(rule.variable + scope.suffix, start, stop, body, rule.span)
+        return typed.For(rule.variable + scope.suffix, start, stop, body, rule.span)
 
-    def filtered(self, rule: model.For[model.Rule, expr.Expr], kept: Kept[expr.Expr], scope: Scope) -> list[Rule | None]:
+    def filtered(self, rule: model.For[model.Rule, expr.Expr], kept: Kept[expr.Expr], scope: Scope) -> list[typed.Rule | None]:
         """A loop of which some rounds are kept, behind the lengths of the arrays that have an element for each of them."""
-        inside = scope.inside(rule.variable, Const(0, INT64))
+        inside = scope.inside(rule.variable, typed.Const(0, typed.INT64))
         stop = type_integer(rule.stop, scope, "where a loop ends")
         condition = type_condition(kept.condition, inside, type_expr)
         body = self.rules(rule.body, inside.inside(kept.variable))
         if stop is None or condition is None:
             self.broken.extend(field_names(place) for place in places_in(body))
             return [None]
-        variable, counter = Local(rule.variable + scope.suffix), kept.variable + scope.suffix
-        count = Reduce("count", variable, stop, condition, INT64, span=rule.span)
-        loop = For(variable.name, Const(0, INT64), stop, body, rule.span, Kept(condition, counter, count))
+        variable, counter = typed.Local(rule.variable + scope.suffix), kept.variable + scope.suffix
+        count = typed.Reduce("count", variable, stop, condition, typed.INT64, span=rule.span)
+        loop = typed.For(variable.name, typed.Const(0, typed.INT64), stop, body, rule.span, Kept(condition, counter, count))
         arrays = dict.fromkeys(array for place in places_in(body) if (array := _array_of(place, counter, scope)) is not None)
-        return [*(SetLength(array, count, rule.span) for array in arrays), loop]
+        return [*(typed.SetLength(array, count, rule.span) for array in arrays), loop]
 
 
-def _array_of(place: Place, counter: str, scope: Scope) -> Place | None:
+def _array_of(place: typed.Place, counter: str, scope: Scope) -> typed.Place | None:
     """The array whose element of a counter's number a place is, or is in."""
-    number = next((number for number, step in enumerate(place.steps) if step == IndexStep(Local(counter))), None)
+    number = next((number for number, step in enumerate(place.steps) if step == typed.IndexStep(typed.Local(counter))), None)
     if number is None:
         return None
     message = scope.messages[place.side]
     type_: Type = message.root
     for step in place.steps[:number]:
-        if isinstance(step, FieldStep):
+        if isinstance(step, typed.FieldStep):
             type_ = message.value_type(step.field.type)
         elif isinstance(type_, Array | Bytes | Map):
             type_ = message.value_type(element_type(type_))
-    return Place(place.side, place.steps[:number], type_, place.span)
+    return typed.Place(place.side, place.steps[:number], type_, place.span)
 
 
-def _rounded(value: Expr, target: Type, scope: Scope) -> Expr:
+def _rounded(value: typed.Expr, target: Type, scope: Scope) -> typed.Expr:
     """A float64 as a float32 is set to it, where the mapping says that it is rounded."""
-    if not scope.rounds or isinstance(value, Const) or not (is_single(target) and same(value.type, FLOAT64)):
+    if not scope.rounds or isinstance(value, typed.Const) or not (is_single(target) and same(value.type, FLOAT64)):
         return value
     scope.problems.extend([words.rounded_silently(value.span)] if scope.is_old else [])
-    return Convert(value, target, "nearest", value.span)
+    return typed.Convert(value, target, "nearest", value.span)
 
 
 def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | None:
     if rules is None:
         return None
     block = _Block()
-    typed = block.whole(rules, scope)
-    return TypedRules(typed, tuple(block.broken))
+    whole = block.whole(rules, scope)
+    return TypedRules(whole, tuple(block.broken))
 
 
-def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:
+def _by_case(place: typed.Place, value: typed.Expr, span: Span | None) -> typed.Rule:
     """A choice among texts as one rule a text: numbers alone are chosen in an expression."""
-    if not (isinstance(value, Choice) and isinstance(place.type, String | Bytes)):
-        return Assign(place, value, span)
-    rest: tuple[Rule, ...] = (
-        (Reject(value.reason, span, value.pieces),) if value.otherwise is None else (_by_case(place, value.otherwise, span),)
+    if not (isinstance(value, typed.Choice) and isinstance(place.type, String | Bytes)):
+        return typed.Assign(place, value, span)
+    rest: tuple[typed.Rule, ...] = (
+        (typed.Reject(value.reason, span, value.pieces),) if value.otherwise is None else (_by_case(place, value.otherwise, span),)
     )
     for condition, chosen in reversed(value.cases):
-        rest = (When(condition, (_by_case(place, chosen, span),), rest, span),)
+        rest = (typed.When(condition, (_by_case(place, chosen, span),), rest, span),)
     return rest[0]
 
 
-def _length_can_be(value: Expr, place: Place, scope: Scope) -> bool:
+def _length_can_be(value: typed.Expr, place: typed.Place, scope: Scope) -> bool:
     match place.type:
-        case Array(length=int(length)) if not (isinstance(value, Const) and value.value == length):
+        case Array(length=int(length)) if not (isinstance(value, typed.Const) and value.value == length):
             scope.problems.append(words.length_not_settable(place.span, describe(place.type)))
             return False
         case Array() | Bytes() | Map():

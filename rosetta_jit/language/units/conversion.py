@@ -19,7 +19,7 @@ from rosetta_jit.language.places import field_names
 from rosetta_jit.language.typed import Access, Binary, Call, Choice, Convert, IndexStep, Nearest, Reduce, Unary
 from rosetta_jit.language.units.dimensions import conversion
 from rosetta_jit.language.units.numbers import exactly, nearest, scaled, scaled_before_rounding
-from rosetta_jit.language.units.places import Mixed, pairs_in_step, unit_at
+from rosetta_jit.language.units.unit_at import Mixed, pairs_in_step, unit_at
 from rosetta_jit.model.types import Enum, Float, Int
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.language.typed import Expr, Place
     from rosetta_jit.language.units.numbers import Factors
-    from rosetta_jit.language.units.places import Unit
+    from rosetta_jit.language.units.unit_at import Unit
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 

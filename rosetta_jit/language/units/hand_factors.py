@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import units as words
 from rosetta_jit.language.typed import Access, Assign, Binary, Const, Convert
 from rosetta_jit.language.units.dimensions import conversion
-from rosetta_jit.language.units.places import unit_at
+from rosetta_jit.language.units.unit_at import unit_at
 from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from rosetta_jit.language.limits import MAX_WHOLE_DEPTH, MAX_WHOLE_VALUES
 from rosetta_jit.language.typed import Access, Binary, Const, Convert, EachElement, EachMember, Rescale
 from rosetta_jit.language.units.conversion import factors_between, shown, unit_of
 from rosetta_jit.language.units.dimensions import conversion
-from rosetta_jit.language.units.places import contexts_at, unit_at
+from rosetta_jit.language.units.unit_at import contexts_at, unit_at
 from rosetta_jit.model.types import Array, Float, Int, Map, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 

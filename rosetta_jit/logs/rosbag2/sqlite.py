@@ -14,6 +14,7 @@ from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
+from rosetta_jit.logs.rosbag2.pages import Pages
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -45,20 +46,31 @@ class SqliteReader:
         except (sqlite3.Error, ValueError, OverflowError) as error:
             raise LogError((words.unreadable(storage.name, str(error)),)) from error
         self.extent = Extent(first, last) if isinstance(first, int) and isinstance(last, int) else None
-        promised = _promised(storage.read(0, HEADER_BYTES))
-        if storage.size < promised:
-            tell(words.file_cut(storage.name, storage.size, promised))
+        self._cut = self._cut_rows(storage)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         return blocks_of(self._messages(wanted))
 
+    def _cut_rows(self, storage: Storage) -> set[int] | None:
+        """The numbers of messages of which bytes are missing: SQLite takes those as zeros. None of a file that is whole."""
+        page, usable, promised = _sizes(storage.read(0, HEADER_BYTES))
+        if storage.size >= promised:
+            return None
+        self._tell(words.file_cut(storage.name, storage.size, promised))
+        found = Pages(storage, page, usable).rows_cut(self._root)
+        if found:
+            self._tell(words.rows_cut(storage.name, len(found)))
+        return found
+
     def _check_tables(self) -> None:
         self._database.execute("PRAGMA trusted_schema = OFF")
-        found = dict(self._database.execute("SELECT name, type FROM sqlite_master WHERE sql NOT LIKE 'CREATE VIRTUAL%'").fetchall())
+        rows = self._database.execute("SELECT name, type, rootpage FROM sqlite_master WHERE sql NOT LIKE 'CREATE VIRTUAL%'").fetchall()
+        found, roots = {name: type_ for name, type_, _ in rows}, {name: root for name, _, root in rows}
         for table, columns in TABLES.items():
             there = {each[1] for each in self._database.execute(f"PRAGMA table_info({table})")}
             if found.get(table) != "table" or not there.issuperset(columns):
                 raise LogError((words.not_a(self._name, "rosbag2 file: it has no tables `topics` and `messages`"),))
+        self._root = int(roots["messages"])
         self._has_definitions = found.get("message_definitions") == "table"
 
     def _defined(self) -> dict[int, Connection]:
@@ -75,9 +87,11 @@ class SqliteReader:
         return found
 
     def _messages(self, wanted: Wanted) -> Iterator[tuple[int, int, int, bytes]]:
-        query, parameters = _query(wanted)
+        query, parameters = _query(wanted, "messages" if self._cut is None else "messages NOT INDEXED")  # whose end may be missing, too
         try:
             for number, topic, time_ns, data in self._database.execute(query, parameters):
+                if self._cut and number in self._cut:
+                    continue
                 if not isinstance(topic, int) or not isinstance(time_ns, int):
                     self._tell(words.bad_definition(self._name, number, "a message without a topic or a time"))
                     continue
@@ -86,13 +100,14 @@ class SqliteReader:
             self._tell(words.stopped(self._name, str(error)))
 
 
-def _promised(header: bytes) -> int:
-    """How many bytes the file has, by its header; 0 where that does not say. SQLite takes what is missing of the last page as zeros."""
-    page, change, pages, said_at = struct.unpack_from(">16xH6xII60xI", header)
-    return pages * (MOST_OF_PAGE if page == 1 else page) if change == said_at else 0
+def _sizes(header: bytes) -> tuple[int, int, int]:
+    """The bytes of a page, those of it that SQLite uses, and those that the file has, by its header; 0 where that does not say."""
+    page, reserved, change, pages, said_at = struct.unpack_from(">16xH2xB3xII60xI", header)
+    size = MOST_OF_PAGE if page == 1 else page
+    return size, size - reserved, pages * size if change == said_at else 0
 
 
-def _query(wanted: Wanted) -> tuple[str, list[int]]:
+def _query(wanted: Wanted, table: str) -> tuple[str, list[int]]:
     conditions, parameters = list[str](), list[int]()
     if wanted.connections is not None:
         conditions.append(f"topic_id IN ({', '.join('?' for _ in wanted.connections)})")
@@ -102,7 +117,7 @@ def _query(wanted: Wanted) -> tuple[str, list[int]]:
             conditions.append(condition)
             parameters.append(moment)
     where = f" WHERE {' AND '.join(conditions)}" if conditions else ""
-    return f"SELECT id, topic_id, timestamp, data FROM messages{where} ORDER BY timestamp, id", parameters  # noqa: S608 - of our own words
+    return f"SELECT id, topic_id, timestamp, data FROM {table}{where} ORDER BY timestamp, id", parameters  # noqa: S608 - of our own words
 
 
 def _octets(value: object) -> bytes:

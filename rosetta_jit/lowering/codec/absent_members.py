@@ -12,48 +12,26 @@ from rosetta_jit.kernel.ir import Const, For, Local
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.codec.fields import scalar_name
 from rosetta_jit.lowering.writer import block
-from rosetta_jit.wire.codec import (
-    Align,
-    Blob,
-    Cases,
-    Choice,
-    Codec,
-    Computed,
-    Constant,
-    Delimited,
-    Maybe,
-    Members,
-    Number,
-    Padding,
-    Parameter,
-    Parameters,
-    Recursion,
-    Repeat,
-    Seq,
-    Table,
-    Tagged,
-    Utf16,
-    Varint,
-)
+from rosetta_jit.wire import codec as wire
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering.codec.fields import Elements, Fields
     from rosetta_jit.lowering.writer import Writer
 
 
-def give(codec: Codec, fields: Fields, writer: Writer) -> None:
+def give(codec: wire.Codec, fields: Fields, writer: Writer) -> None:
     """Set what a codec describes to the values that it has where it did not come."""
     match codec:
-        case Number(path, scalar):
+        case wire.Number(path, scalar):
             fields.put(path, Const(scalar_name(scalar), bool(codec.absent) if scalar == "bool" else codec.absent))
-        case Table(path):
+        case wire.Table(path):
             fields.put(path, index(int(codec.absent)))
-        case Blob(path):
-            octet = Number((), "u8")
+        case wire.Blob(path):
+            octet = wire.Number((), "u8")
             _give_elements(codec, fields.open(path, index(_length(codec))), octet, writer)
-        case Repeat(path, _, item):
+        case wire.Repeat(path, _, item):
             _give_elements(codec, fields.open(path, index(_length(codec))), item, writer)
-        case Cases(path, discriminator, cases):
+        case wire.Cases(path, discriminator, cases):
             give(discriminator, fields, writer)
             number = _selected(codec)
             fields.choose(path, number)
@@ -64,46 +42,57 @@ def give(codec: Codec, fields: Fields, writer: Writer) -> None:
                 give(each, fields, writer)
 
 
-def elements_given(codec: Codec) -> int:
+def elements_given(codec: wire.Codec) -> int:
     """How many elements of arrays there are in what a codec describes, where it did not come."""
     match codec:
-        case Blob():
+        case wire.Blob():
             return _length(codec)
-        case Repeat(_, _, item):
+        case wire.Repeat(_, _, item):
             return _length(codec) * (1 + elements_given(item))
-        case Cases(_, _, cases):
+        case wire.Cases(_, _, cases):
             number = _selected(codec)
             return elements_given(cases[number - 1][1]) if number else 0
-        case Number() | Table():
+        case wire.Number() | wire.Table():
             return 0
         case _:
             return sum(map(elements_given, _parts(codec)))
 
 
-def _parts(codec: Codec) -> tuple[Codec, ...]:
+def _parts(codec: wire.Codec) -> tuple[wire.Codec, ...]:
     """The codecs of the values in what is none itself, but for those that are optional."""
     match codec:
-        case Seq(items):
+        case wire.Seq(items):
             return items
-        case Delimited(_, value):
+        case wire.Delimited(_, value):
             return (value,)
-        case Members(_, members) | Parameters(_, members):
+        case wire.Members(_, members) | wire.Parameters(_, members):
             return tuple(each.value for each in members if not each.optional)
-        case Parameter(member):
+        case wire.Parameter(member):
             return () if member.optional else (member.value,)
-        case Align() | Padding() | Constant() | Computed() | Maybe():
+        case wire.Align() | wire.Padding() | wire.Constant() | wire.Computed() | wire.Maybe():
             return ()
-        case Number() | Table() | Blob() | Repeat() | Cases() | Varint() | Utf16() | Choice() | Tagged() | Recursion():
+        case (
+            wire.Number()
+            | wire.Table()
+            | wire.Blob()
+            | wire.Repeat()
+            | wire.Cases()
+            | wire.Varint()
+            | wire.Utf16()
+            | wire.Choice()
+            | wire.Tagged()
+            | wire.Recursion()
+        ):
             raise AssertionError(codec)  # values themselves, and what no mutable struct has within it
         case _:
             assert_never(codec)
 
 
-def _length(codec: Blob | Repeat) -> int:
+def _length(codec: wire.Blob | wire.Repeat) -> int:
     return codec.count.value if isinstance(codec.count.value, int) else len(codec.absent)
 
 
-def _give_elements(codec: Blob | Repeat, elements: Elements, item: Codec, writer: Writer) -> None:
+def _give_elements(codec: wire.Blob | wire.Repeat, elements: Elements, item: wire.Codec, writer: Writer) -> None:
     """Those that the schema gives, in a text or bytes; others are as elements that did not come."""
     known = tuple(codec.absent)[: _length(codec)]
     for number, value in enumerate(known):
@@ -115,12 +104,12 @@ def _give_elements(codec: Blob | Repeat, elements: Elements, item: Codec, writer
         writer.emit(For(number.name, index(_length(codec) - len(known)), block(body)))
 
 
-def _unit(item: Codec) -> Number:
+def _unit(item: wire.Codec) -> wire.Number:
     """The number that a unit of a text is."""
-    return next(each for each in (item.items if isinstance(item, Seq) else (item,)) if isinstance(each, Number))
+    return next(each for each in (item.items if isinstance(item, wire.Seq) else (item,)) if isinstance(each, wire.Number))
 
 
-def _selected(cases: Cases) -> int:
+def _selected(cases: wire.Cases) -> int:
     """The number of the case that the discriminator's value selects, from 1 on; 0 for none."""
     value = _number(cases.discriminator)
     for number, (labels, _) in enumerate(cases.cases, 1):
@@ -129,13 +118,13 @@ def _selected(cases: Cases) -> int:
     return 0 if cases.default is None else cases.default + 1
 
 
-def _number(codec: Codec) -> float:
+def _number(codec: wire.Codec) -> float:
     match codec:
-        case Number() | Table():
+        case wire.Number() | wire.Table():
             return codec.absent
-        case Seq(items):
+        case wire.Seq(items):
             return _number(items[-1])
-        case Parameter(member):
+        case wire.Parameter(member):
             return _number(member.value)
         case _:
             raise AssertionError(codec)

@@ -9,26 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
-from rosetta_jit.kernel.ir import (
-    Advance,
-    Binary,
-    Compare,
-    Const,
-    Convert,
-    Copy,
-    Expr,
-    Fill,
-    For,
-    Get,
-    Local,
-    Place,
-    Reserve,
-    Scalar,
-    SetField,
-    Unary,
-    Used,
-    Wire,
-)
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import ROW, add, index, mul, type_of
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
@@ -43,8 +24,8 @@ if TYPE_CHECKING:
 class Stored:
     """How many bytes or elements a field has, and the row where they start, where it is known: both read at one moment."""
 
-    size: Expr
-    start: Expr | None = None
+    size: ir.Expr
+    start: ir.Expr | None = None
 
 
 OTHER_CASE = "another case is set than the discriminator says"
@@ -62,15 +43,15 @@ class Fields(Protocol):
         """The place of a field, for errors."""
         ...
 
-    def put(self, path: Path, value: Expr) -> None:
+    def put(self, path: Path, value: ir.Expr) -> None:
         """Decode: a number has come."""
         ...
 
-    def get(self, path: Path) -> Expr | None:
+    def get(self, path: Path) -> ir.Expr | None:
         """Encode: the number to write; None where it is written later, in its place."""
         ...
 
-    def put_bytes(self, path: Path, at: Expr, size: Expr) -> None:
+    def put_bytes(self, path: Path, at: ir.Expr, size: ir.Expr) -> None:
         """Decode: bytes have come."""
         ...
 
@@ -82,7 +63,7 @@ class Fields(Protocol):
         """Encode: write bytes to the current position."""
         ...
 
-    def open(self, path: Path, count: Expr) -> Elements:
+    def open(self, path: Path, count: ir.Expr) -> Elements:
         """Decode: so many elements come, one after another."""
         ...
 
@@ -106,7 +87,7 @@ class Fields(Protocol):
         """Decode: an optional field is there, whatever is put into it."""
         ...
 
-    def present(self, path: Path) -> Expr:
+    def present(self, path: Path) -> ir.Expr:
         """Encode: whether an optional field is there."""
         ...
 
@@ -119,11 +100,11 @@ class Fields(Protocol):
 class Elements(Protocol):
     """The fields of each element of an array."""
 
-    def place(self, item: Codec, first: Expr, step: int) -> Elements:
+    def place(self, item: Codec, first: ir.Expr, step: int) -> Elements:
         """The elements are of one size: the first lies there, the others each a step further."""
         ...
 
-    def at(self, number: Expr) -> Fields:
+    def at(self, number: ir.Expr) -> Fields:
         """The fields of one element."""
         ...
 
@@ -133,11 +114,11 @@ class Cell:
     """A slot of a row of a lane."""
 
     lane: int
-    row: Expr
+    row: ir.Expr
     slot: Slot
 
-    def place(self, offset: int) -> Place:
-        return Place(self.lane, self.row, offset)
+    def place(self, offset: int) -> ir.Place:
+        return ir.Place(self.lane, self.row, offset)
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,23 +144,23 @@ class HolderFields:
             where = where.member(name) if number == len(path) or not isinstance(slot, Variant) else where
         return where
 
-    def put(self, path: Path, value: Expr) -> None:
+    def put(self, path: Path, value: ir.Expr) -> None:
         cell = self.mark(path)
         match cell.slot:
             case Number(offset, scalar):
-                self.writer.emit(SetField(cell.place(offset), converted(value, scalar)))
+                self.writer.emit(ir.SetField(cell.place(offset), converted(value, scalar)))
             case _:
                 raise AssertionError(path)
 
-    def get(self, path: Path) -> Expr | None:
+    def get(self, path: Path) -> ir.Expr | None:
         cell = self.find(path)
         match cell.slot:
             case Number(offset, scalar):
-                return Get(scalar_name(scalar), cell.place(offset))
+                return ir.Get(scalar_name(scalar), cell.place(offset))
             case _:
                 raise AssertionError(path)
 
-    def put_bytes(self, path: Path, at: Expr, size: Expr) -> None:
+    def put_bytes(self, path: Path, at: ir.Expr, size: ir.Expr) -> None:
         cell = self.mark(path)
         span = span_of(cell)
         left = self.writer.left_in_message(span.lane, size) if self.borrow else None
@@ -187,7 +168,7 @@ class HolderFields:
             self.set_span(cell, at, left)
             return
         start = self.reserve(span.lane, size)
-        self.writer.emit(Copy(Place(span.lane, start), Wire(at), size))
+        self.writer.emit(ir.Copy(ir.Place(span.lane, start), ir.Wire(at), size))
         self.set_span(cell, start, size)
 
     def stored(self, path: Path, fixed: int | None = None) -> Stored:
@@ -197,17 +178,17 @@ class HolderFields:
 
     def copy_bytes(self, path: Path, stored: Stored) -> None:
         assert stored.start is not None
-        source = Place(span_of(self.find(path)).lane, stored.start)
-        self.writer.emit(Copy(Wire(self.writer.position), source, stored.size))
+        source = ir.Place(span_of(self.find(path)).lane, stored.start)
+        self.writer.emit(ir.Copy(ir.Wire(self.writer.position), source, stored.size))
 
-    def open(self, path: Path, count: Expr) -> HolderElements:
+    def open(self, path: Path, count: ir.Expr) -> HolderElements:
         cell = self.mark(path)
         lane = span_of(cell).lane
         start = self.reserve(lane, count)
         self.set_span(cell, start, count)
         if has_gaps(self.layout.lanes[lane].element):
             stride = self.layout.lanes[lane].stride
-            self.writer.expect(Compare("le", count, index(MAX_SIZE // stride)), "count", self.shown(path), "too many elements")
+            self.writer.expect(ir.Compare("le", count, index(MAX_SIZE // stride)), "count", self.shown(path), "too many elements")
             self.clear(lane, start, count)
         return HolderElements(self, lane, start, self.shown(path))
 
@@ -223,9 +204,9 @@ class HolderFields:
         assert isinstance(cell.slot, Variant)
         place = cell.place(cell.slot.offset)
         if self.writer.direction == "decode":
-            self.writer.emit(SetField(place, index(number)))
+            self.writer.emit(ir.SetField(place, index(number)))
         else:
-            agrees = Compare("eq", Get("i64", place), index(number))
+            agrees = ir.Compare("eq", ir.Get("i64", place), index(number))
             self.writer.expect(agrees, "union", self.shown(path[:-1]), OTHER_CASE)
 
     def scatter(self, path: Path) -> None:
@@ -234,13 +215,13 @@ class HolderFields:
     def appear(self, path: Path) -> None:
         self.mark(path)
 
-    def present(self, path: Path) -> Expr:
+    def present(self, path: Path) -> ir.Expr:
         owner = self.find(path[:-1])
         member = member_of(owner.slot, path[-1])
         assert isinstance(owner.slot, Row)
         assert member.presence is not None
         place, mask = presence_bit(owner, owner.slot, member.presence)
-        return Compare("ne", Binary("and", Get("u64", place), mask), Const("u64", 0))
+        return ir.Compare("ne", ir.Binary("and", ir.Get("u64", place), mask), ir.Const("u64", 0))
 
     # --- places ------------------------------------------------------------------------------------------------------
 
@@ -264,45 +245,45 @@ class HolderFields:
         match slot:
             case Row() if member.presence is not None:
                 place, mask = presence_bit(self.cell, slot, member.presence)
-                self.writer.emit(SetField(place, Binary("or", Get("u64", place), mask)))
+                self.writer.emit(ir.SetField(place, ir.Binary("or", ir.Get("u64", place), mask)))
             case Variant(offset, members):
-                self.writer.emit(SetField(self.cell.place(offset), index(1 + members.index(member))))
+                self.writer.emit(ir.SetField(self.cell.place(offset), index(1 + members.index(member))))
             case _:
                 pass
 
-    def reserve(self, lane: int, count: Expr) -> Expr:
+    def reserve(self, lane: int, count: ir.Expr) -> ir.Expr:
         """Take ``count`` new rows of a lane; gives the first."""
-        self.writer.emit(Reserve(lane, count))
-        start = self.writer.let("start", Used(lane))
-        self.writer.emit(Advance(lane, count))
+        self.writer.emit(ir.Reserve(lane, count))
+        start = self.writer.let("start", ir.Used(lane))
+        self.writer.emit(ir.Advance(lane, count))
         return start
 
-    def clear(self, lane: int, start: Expr, count: Expr) -> None:
+    def clear(self, lane: int, start: ir.Expr, count: ir.Expr) -> None:
         """Zeros in so many rows; but what `size` has left in their hidden words is kept for `encode`."""
         links = self.layout.lanes[lane].links
         if links is None or self.writer.direction != "encode":
-            self.writer.emit(Fill(Place(lane, start), mul(count, self.layout.lanes[lane].stride)))
+            self.writer.emit(ir.Fill(ir.Place(lane, start), mul(count, self.layout.lanes[lane].stride)))
             return
         number = self.writer.fresh("cleared")
-        row = add(start, Local("i64", number))
-        self.writer.emit(For(number, count, (Fill(Place(lane, row), index(links)),)))
+        row = add(start, ir.Local("i64", number))
+        self.writer.emit(ir.For(number, count, (ir.Fill(ir.Place(lane, row), index(links)),)))
 
     def is_own_row(self, span: Span) -> bool:
         """Whether a span leads to messages that can contain themselves."""
         return self.layout.lanes[span.lane].links is not None
 
-    def set_span(self, cell: Cell, start: Expr, count: Expr) -> None:
+    def set_span(self, cell: Cell, start: ir.Expr, count: ir.Expr) -> None:
         offset = cell.slot.offset if isinstance(cell.slot, Span) else 0
-        self.writer.emit(SetField(cell.place(offset), start), SetField(cell.place(offset + 8), count))
+        self.writer.emit(ir.SetField(cell.place(offset), start), ir.SetField(cell.place(offset + 8), count))
 
-    def read_span(self, cell: Cell, where: Where) -> tuple[Expr, Expr]:
+    def read_span(self, cell: Cell, where: Where) -> tuple[ir.Expr, ir.Expr]:
         """Start and count of a field's elements, checked: a damaged holder must not lead outside its lanes."""
         span = span_of(cell)
-        start = self.writer.let("start", Get("i64", cell.place(span.offset)))
-        count = self.writer.let("count", Get("i64", cell.place(span.offset + 8)))
-        inside = Binary("and", Compare("ge", count, index(0)), Compare("le", count, Used(span.lane)))
+        start = self.writer.let("start", ir.Get("i64", cell.place(span.offset)))
+        count = self.writer.let("count", ir.Get("i64", cell.place(span.offset + 8)))
+        inside = ir.Binary("and", ir.Compare("ge", count, index(0)), ir.Compare("le", count, ir.Used(span.lane)))
         self.writer.expect(inside, "length", where, "the holder is damaged")
-        inside = Binary("and", Compare("ge", start, index(0)), Compare("le", start, Binary("sub", Used(span.lane), count)))
+        inside = ir.Binary("and", ir.Compare("ge", start, index(0)), ir.Compare("le", start, ir.Binary("sub", ir.Used(span.lane), count)))
         self.writer.expect(inside, "length", where, "the holder is damaged")
         return start, count
 
@@ -313,14 +294,14 @@ class HolderElements:
 
     parent: HolderFields
     lane: int
-    start: Expr
+    start: ir.Expr
     where: Where
 
-    def place(self, item: Codec, first: Expr, step: int) -> HolderElements:
+    def place(self, item: Codec, first: ir.Expr, step: int) -> HolderElements:
         del item, first, step
         return self
 
-    def at(self, number: Expr) -> HolderFields:
+    def at(self, number: ir.Expr) -> HolderFields:
         slot = self.parent.layout.lanes[self.lane].element
         cell = Cell(self.lane, add(self.start, number), slot)
         owner = None if isinstance(slot, Row) else self.parent.scope
@@ -363,28 +344,28 @@ def span_of(cell: Cell) -> Span:
             raise AssertionError(cell)
 
 
-def presence_bit(cell: Cell, row: Row, bit: int) -> tuple[Place, Const]:
+def presence_bit(cell: Cell, row: Row, bit: int) -> tuple[ir.Place, ir.Const]:
     """The presence word of a field, and its bit in there."""
-    return cell.place(row.offset + 8 * (bit // 64)), Const("u64", 1 << bit % 64)
+    return cell.place(row.offset + 8 * (bit // 64)), ir.Const("u64", 1 << bit % 64)
 
 
-def converted(value: Expr, scalar: str) -> Expr:
+def converted(value: ir.Expr, scalar: str) -> ir.Expr:
     """A value as the scalar that a slot holds; nothing is checked."""
     source, target = type_of(value), scalar_name(scalar)
     if source == target:
         return value
     if target == "bool":
-        zero = Const(source, 0)
-        return Compare("ne", value, zero)
-    return Convert(target, value)
+        zero = ir.Const(source, 0)
+        return ir.Compare("ne", value, zero)
+    return ir.Convert(target, value)
 
 
-def negated(condition: Expr) -> Expr:
+def negated(condition: ir.Expr) -> ir.Expr:
     """The opposite of a condition."""
-    return Unary("not", condition)
+    return ir.Unary("not", condition)
 
 
-def scalar_name(scalar: str) -> Scalar:
+def scalar_name(scalar: str) -> ir.Scalar:
     """The same word, as the kernel's type."""
     match scalar:
         case "bool" | "i8" | "u8" | "i16" | "u16" | "i32" | "u32" | "i64" | "u64" | "f32" | "f64":

@@ -12,28 +12,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import (
-    WIDTH,
-    Advance,
-    Binary,
-    Compare,
-    Const,
-    Convert,
-    Copy,
-    Expr,
-    Fill,
-    For,
-    If,
-    IsText,
-    Load,
-    Local,
-    Place,
-    Reserve,
-    SetField,
-    Used,
-    While,
-    Wire,
-)
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, add, index, mul
 from rosetta_jit.lowering.codec.field_order import NONE, Case, read_cases
 from rosetta_jit.lowering.codec.fields import Cell, HolderFields, converted, scalar_name, span_of
@@ -57,12 +36,11 @@ from rosetta_jit.wire.codec import Blob, Entry, Number, Recursion, Tagged, Varin
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from rosetta_jit.kernel.ir import Stmt
 
 BYTES, GROUP, END_GROUP = 2, 3, 4
 
 
-def read_message(writer: Writer, fields: HolderFields, tagged: Tagged, stop: Expr, *, fresh: bool, depth: Expr) -> None:
+def read_message(writer: Writer, fields: HolderFields, tagged: Tagged, stop: ir.Expr, *, fresh: bool, depth: ir.Expr) -> None:
     """Read fields up to ``stop`` (or the end of the group) into a row; a ``fresh`` row holds nothing yet, another is merged into.
 
     ``depth`` is how many messages of recursive structs there are around it.
@@ -70,19 +48,19 @@ def read_message(writer: Writer, fields: HolderFields, tagged: Tagged, stop: Exp
     presence = presence_words(writer, fields, fresh=fresh)
     message = Message(writer, fields, tagged, stop, presence, array_starts(writer, fields, tagged, fresh=fresh), depth)
     at = writer.var("at", writer.position)
-    ended = writer.var("ended", Const("bool", value=False)) if tagged.group is not None else None
+    ended = writer.var("ended", ir.Const("bool", value=False)) if tagged.group is not None else None
     with writer.nested() as body:
         writer.position = at
         _read_field(message, ended)
-        writer.expect(Compare("le", writer.position, stop), "truncated", fields.where, "a field goes beyond its message")
+        writer.expect(ir.Compare("le", writer.position, stop), "truncated", fields.where, "a field goes beyond its message")
         writer.assign(at, writer.position)
-    goes_on: Expr = Compare("lt", at, stop)
+    goes_on: ir.Expr = ir.Compare("lt", at, stop)
     if ended is not None:
-        goes_on = Binary("and", goes_on, Compare("eq", ended, Const("bool", value=False)))
-    invariant = [Compare("ge", at, BEGIN), Compare("le", at, stop)]
+        goes_on = ir.Binary("and", goes_on, ir.Compare("eq", ended, ir.Const("bool", value=False)))
+    invariant = [ir.Compare("ge", at, BEGIN), ir.Compare("le", at, stop)]
     for path, start in message.starts.items():
-        invariant += [Compare("ge", start, index(0)), Compare("le", start, Used(lane_of(fields, path)))]
-    writer.emit(While(goes_on, block(body), tuple(invariant), at))
+        invariant += [ir.Compare("ge", start, index(0)), ir.Compare("le", start, ir.Used(lane_of(fields, path)))]
+    writer.emit(ir.While(goes_on, block(body), tuple(invariant), at))
     writer.position = at
     if ended is not None:
         writer.expect(ended, "truncated", fields.where, "the group has no end")
@@ -94,24 +72,24 @@ def _finish(message: Message) -> None:
     writer, fields, row = message.writer, message.fields, row_of(message.fields)
     for path, start in message.starts.items():
         cell = fields.find(path)
-        fields.set_span(cell, start, Binary("sub", Used(span_of(cell).lane), start))
+        fields.set_span(cell, start, ir.Binary("sub", ir.Used(span_of(cell).lane), start))
     for number, word in enumerate(message.presence):
-        writer.emit(SetField(fields.cell.place(row.offset + 8 * number), word))
+        writer.emit(ir.SetField(fields.cell.place(row.offset + 8 * number), word))
     for name in message.tagged.required:
         bit = row.member(name).presence
         assert bit is not None
-        mask = Const("u64", 1 << bit % 64)
-        present = Compare("ne", Binary("and", message.presence[bit // 64], mask), Const("u64", 0))
+        mask = ir.Const("u64", 1 << bit % 64)
+        present = ir.Compare("ne", ir.Binary("and", message.presence[bit // 64], mask), ir.Const("u64", 0))
         writer.expect(present, "missing", fields.where.member(name), "a required field did not come")
 
 
-def _read_field(message: Message, ended: Local | None) -> None:
+def _read_field(message: Message, ended: ir.Local | None) -> None:
     writer, group = message.writer, message.tagged.group
     begin = writer.position
-    tag = writer.let("tag", Convert("i64", read_tag(writer, message.fields.where)))
+    tag = writer.let("tag", ir.Convert("i64", read_tag(writer, message.fields.where)))
     cases = list(_known_fields(message))
     if ended is not None and group is not None:
-        cases.append(Case(group << 3 | END_GROUP, partial(writer.assign, ended, Const("bool", value=True))))
+        cases.append(Case(group << 3 | END_GROUP, partial(writer.assign, ended, ir.Const("bool", value=True))))
 
     def unknown() -> None:
         skip_unknown(writer, message.fields, tag, message.stop)
@@ -154,18 +132,18 @@ def _read_entry(message: Message, entry: Entry, *, packed: bool) -> None:
         _read_element(message, entry)
 
 
-def _keep(message: Message, begin: Expr, tag: bytes = b"") -> None:
+def _keep(message: Message, begin: ir.Expr, tag: bytes = b"") -> None:
     """Append what was read since then to the unknown fields of the message, behind a tag if it had none of its own."""
     unknown = row_of(message.fields).unknown
     if unknown is None:
         return
     writer = message.writer
-    size = writer.let("size_of_field", Binary("sub", writer.position, begin))
-    writer.expect(Compare("ge", size, index(0)), "length", message.fields.where, "a field goes beyond its message")  # said for the proof
+    size = writer.let("size_of_field", ir.Binary("sub", writer.position, begin))
+    writer.expect(ir.Compare("ge", size, index(0)), "length", message.fields.where, "a field goes beyond its message")  # said for the proof
     start = message.fields.reserve(unknown.lane, add(size, len(tag)))
     for number, byte in enumerate(tag):
-        writer.emit(SetField(Place(unknown.lane, add(start, number)), Const("u8", byte)))
-    writer.emit(Copy(Place(unknown.lane, add(start, len(tag))), Wire(begin), size))
+        writer.emit(ir.SetField(ir.Place(unknown.lane, add(start, number)), ir.Const("u8", byte)))
+    writer.emit(ir.Copy(ir.Place(unknown.lane, add(start, len(tag))), ir.Wire(begin), size))
 
 
 # --- one value ---------------------------------------------------------------------------------------------------------------
@@ -205,55 +183,57 @@ def _read_single(message: Message, entry: Entry) -> None:
 
 
 def _varint_value(
-    message: Message, varint: Varint, slot: Slot, where: Where, read: Callable[[Writer, Where], Local] = read_varint
-) -> Local:
+    message: Message, varint: Varint, slot: Slot, where: Where, read: Callable[[Writer, Where], ir.Local] = read_varint
+) -> ir.Local:
     scalar = slot.scalar if isinstance(slot, NumberSlot) else "u64"
     value = from_varint(varint, read(message.writer, where), scalar)
     return message.writer.let("value", value if scalar == "bool" else converted(value, scalar))
 
 
-def _if_allowed(message: Message, entry: Entry, value: Local, known: list[Stmt], begin: Expr) -> None:
+def _if_allowed(message: Message, entry: Entry, value: ir.Local, known: list[ir.Stmt], begin: ir.Expr) -> None:
     """A number that a closed enum does not name counts as an unknown field. It begins behind its tag."""
     writer = message.writer
     if not entry.allowed:
         writer.emit(*known)
         return
-    number = value if value.type == "i64" else Convert("i64", value)
+    number = value if value.type == "i64" else ir.Convert("i64", value)
     low, high = entry.allowed[0], entry.allowed[-1]
     if high - low + 1 == len(entry.allowed):
-        allowed: Expr = Binary("and", Compare("ge", number, index(low)), Compare("le", number, index(high)))
+        allowed: ir.Expr = ir.Binary("and", ir.Compare("ge", number, index(low)), ir.Compare("le", number, index(high)))
     else:
-        allowed = Compare("eq", number, index(low))
+        allowed = ir.Compare("eq", number, index(low))
         for each in entry.allowed[1:]:
-            allowed = Binary("or", allowed, Compare("eq", number, index(each)))
+            allowed = ir.Binary("or", allowed, ir.Compare("eq", number, index(each)))
     with writer.nested() as unknown:
         _keep(message, begin, varint_bytes(entry.number << 3))
-    writer.emit(If(allowed, block(known), block(unknown)))
+    writer.emit(ir.If(allowed, block(known), block(unknown)))
 
 
-def _read_bytes(message: Message, fields: HolderFields, span: Span, where: Where, *, text: bool) -> tuple[Expr, Expr]:
+def _read_bytes(message: Message, fields: HolderFields, span: Span, where: Where, *, text: bool) -> tuple[ir.Expr, ir.Expr]:
     """Bytes of a string or bytes field, taken into their lane or left where they are; start and count as a span has them."""
     writer = message.writer
     size = read_length(writer, where, message.stop)
     at = writer.position
     if text:
-        writer.expect(IsText(Wire(at), size), "text", where, "not valid UTF-8")
+        writer.expect(ir.IsText(ir.Wire(at), size), "text", where, "not valid UTF-8")
     writer.advance(size)
     left = writer.left_in_message(span.lane, size) if fields.borrow and not text else None
     if left is not None:
         return at, left
     start = fields.reserve(span.lane, size)
-    writer.emit(Copy(Place(span.lane, start), Wire(at), size))
+    writer.emit(ir.Copy(ir.Place(span.lane, start), ir.Wire(at), size))
     return start, size
 
 
-def _stop(message: Message, tagged: Tagged, where: Where) -> Expr:
+def _stop(message: Message, tagged: Tagged, where: Where) -> ir.Expr:
     """Where an inner message stops: behind its length, or with what is around it if it is a group."""
     if tagged.group is not None:
-        message.writer.expect(Compare("le", message.writer.position, message.stop), "truncated", where, "the group goes beyond its message")
+        message.writer.expect(
+            ir.Compare("le", message.writer.position, message.stop), "truncated", where, "the group goes beyond its message"
+        )
         return message.stop
     size = read_length(message.writer, where, message.stop)
-    return message.writer.let("stop", Binary("add", message.writer.position, size))
+    return message.writer.let("stop", ir.Binary("add", message.writer.position, size))
 
 
 # --- arrays ------------------------------------------------------------------------------------------------------------------
@@ -263,7 +243,7 @@ def _read_element(message: Message, entry: Entry) -> None:
     """One more element at the end of its lane."""
     writer, fields, begin = message.writer, message.fields, message.writer.position
     lane = lane_of(fields, entry.path)
-    where = fields.shown(entry.path).element(Binary("sub", Used(lane), message.starts[entry.path]))
+    where = fields.shown(entry.path).element(ir.Binary("sub", ir.Used(lane), message.starts[entry.path]))
     match entry.value:
         case Number(_, scalar, order):
             value = writer.let("value", writer.load(scalar_name(scalar), where, order))
@@ -282,9 +262,9 @@ def _read_element(message: Message, entry: Entry) -> None:
         case Tagged() as tagged:
             stop = _stop(message, tagged, where)
             row = fields.reserve(lane, index(1))
-            writer.emit(Fill(Place(lane, row), index(fields.layout.lanes[lane].stride)))
+            writer.emit(ir.Fill(ir.Place(lane, row), index(fields.layout.lanes[lane].stride)))
             # Its number is that of the last row now. Of the locals that say it, all are in use anyway: one more would cost calls 7 %.
-            inside = fields.shown(entry.path).element(Binary("sub", Used(lane), add(message.starts[entry.path], 1)))
+            inside = fields.shown(entry.path).element(ir.Binary("sub", ir.Used(lane), add(message.starts[entry.path], 1)))
             inner = HolderFields(writer, fields.layout, Cell(lane, row, fields.layout.lanes[lane].element), inside, fields.borrow)
             read_message(writer, inner, tagged, stop, fresh=True, depth=message.depth)
         case Recursion() as recursion:
@@ -295,11 +275,11 @@ def _read_element(message: Message, entry: Entry) -> None:
             raise AssertionError(entry)
 
 
-def _append(message: Message, lane: int, value: Local) -> None:
+def _append(message: Message, lane: int, value: ir.Local) -> None:
     element = message.fields.layout.lanes[lane].element
     assert isinstance(element, NumberSlot)
     message.writer.emit(
-        Reserve(lane, index(1)), SetField(Place(lane, Used(lane)), converted(value, element.scalar)), Advance(lane, index(1))
+        ir.Reserve(lane, index(1)), ir.SetField(ir.Place(lane, ir.Used(lane)), converted(value, element.scalar)), ir.Advance(lane, index(1))
     )
 
 
@@ -317,29 +297,29 @@ def _read_packed(message: Message, entry: Entry) -> None:
             raise AssertionError(entry)
 
 
-def _read_packed_fixed(writer: Writer, fields: HolderFields, lane: int, size: Local, scalar: str, order: str, where: Where) -> None:
-    width = WIDTH[scalar]
-    count = writer.let("count", Binary("div", size, index(width)))
-    whole = Compare("eq", Binary("rem", size, index(width)), index(0))
+def _read_packed_fixed(writer: Writer, fields: HolderFields, lane: int, size: ir.Local, scalar: str, order: str, where: Where) -> None:
+    width = ir.WIDTH[scalar]
+    count = writer.let("count", ir.Binary("div", size, index(width)))
+    whole = ir.Compare("eq", ir.Binary("rem", size, index(width)), index(0))
     writer.expect(whole, "length", where, f"not a multiple of {width} bytes")
     start = fields.reserve(lane, count)
-    number = Local("i64", writer.fresh("i"))
+    number = ir.Local("i64", writer.fresh("i"))
     first = writer.position
     with writer.nested() as body:
-        writer.position = writer.let("item", Binary("add", first, mul(number, width)))
+        writer.position = writer.let("item", ir.Binary("add", first, mul(number, width)))
         writer.require(width, where)
-        value = Load(scalar_name(scalar), writer.position, ">" if order == ">" else "<")
+        value = ir.Load(scalar_name(scalar), writer.position, ">" if order == ">" else "<")
         element = fields.layout.lanes[lane].element
         assert isinstance(element, NumberSlot)
-        writer.emit(SetField(Place(lane, add(start, number)), converted(value, element.scalar)))
-    writer.emit(For(number.name, count, block(body)))
+        writer.emit(ir.SetField(ir.Place(lane, add(start, number)), converted(value, element.scalar)))
+    writer.emit(ir.For(number.name, count, block(body)))
     writer.advance(size)
 
 
-def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: int, size: Local) -> None:
+def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: int, size: ir.Local) -> None:
     writer, fields = message.writer, message.fields
     where = fields.shown(entry.path)
-    stop = writer.let("stop", Binary("add", writer.position, size))
+    stop = writer.let("stop", ir.Binary("add", writer.position, size))
     at = writer.var("at", writer.position)
     with writer.nested() as body:
         writer.position = at
@@ -347,11 +327,11 @@ def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: i
         with writer.nested() as known:
             _append(message, lane, value)
         _if_allowed(message, entry, value, known, at)
-        writer.expect(Compare("le", writer.position, stop), "truncated", where, "the last number goes beyond the array")
+        writer.expect(ir.Compare("le", writer.position, stop), "truncated", where, "the last number goes beyond the array")
         writer.assign(at, writer.position)
     start = message.starts[entry.path]
-    invariant = (Compare("ge", at, BEGIN), Compare("le", at, stop), Compare("le", start, Used(lane)))
-    writer.emit(While(Compare("lt", at, stop), block(body), invariant, at))
+    invariant = (ir.Compare("ge", at, BEGIN), ir.Compare("le", at, stop), ir.Compare("le", start, ir.Used(lane)))
+    writer.emit(ir.While(ir.Compare("lt", at, stop), block(body), invariant, at))
     writer.position = at
 
 

@@ -9,30 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import (
-    Advance,
-    Assign,
-    Binary,
-    Capacity,
-    Compare,
-    Const,
-    Convert,
-    Fill,
-    For,
-    Get,
-    If,
-    Kernel,
-    Load,
-    Local,
-    Place,
-    Reserve,
-    Return,
-    SetField,
-    Store,
-    Switch,
-    Used,
-    While,
-)
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
 from rosetta_jit.lowering.codec.fields import root_fields, span_of
 from rosetta_jit.lowering.limits import MAX_LIST_NESTING
@@ -42,7 +19,6 @@ from rosetta_jit.model.types import Array, Bytes, Field, Int, Ref, Schema, Struc
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.kernel.ir import Block, Direction, Expr, Stmt
     from rosetta_jit.lowering.codec.fields import HolderFields
     from rosetta_jit.model.layout import Layout
     from rosetta_jit.wire.tree import Header, Scalar, Tree
@@ -61,20 +37,20 @@ MESSAGES = Schema(
 """What lies between decoding and encoding: the message, and which i32 of it become others."""
 
 
-def transcoding_kernel(tree: Tree, layout: Layout, direction: Direction, references: References) -> Kernel:
+def transcoding_kernel(tree: Tree, layout: Layout, direction: ir.Direction, references: References) -> ir.Kernel:
     """The kernel that reads messages, or that measures or writes what they become."""
     writer = Writer(direction, [*(lane.stride for lane in layout.lanes), SCRATCH_STRIDE], references=references)
     with writer.nested() as body:
         writer.position = BEGIN if direction != "size" else index(0)
         fields = root_fields(writer, layout, borrow=True)
-        writer.expect(Compare("lt", ROW, Capacity(0)), "index", MESSAGE, "the holder has no row for the message")
+        writer.expect(ir.Compare("lt", ROW, ir.Capacity(0)), "index", MESSAGE, "the holder has no row for the message")
         if direction == "decode":
-            writer.emit(Fill(Place(0, ROW), index(layout.lanes[0].stride)))
+            writer.emit(ir.Fill(ir.Place(0, ROW), index(layout.lanes[0].stride)))
             _Walk(writer, fields, tree).read()
         else:
             _write(writer, fields)
-        writer.emit(Return(writer.position))
-    return Kernel(f"message of {tree.there}", direction, tuple(writer.strides), (block(body),), tuple(writer.sites))
+        writer.emit(ir.Return(writer.position))
+    return ir.Kernel(f"message of {tree.there}", direction, tuple(writer.strides), (block(body),), tuple(writer.sites))
 
 
 def _write(writer: Writer, fields: HolderFields) -> None:
@@ -85,18 +61,18 @@ def _write(writer: Writer, fields: HolderFields) -> None:
         fields.copy_bytes(("data",), stored)
         changes = fields.stored(("changes",))
         elements = fields.elements(("changes",), changes)
-        number = Local("i64", writer.fresh("i"))
+        number = ir.Local("i64", writer.fresh("i"))
         with writer.nested() as each:
             change = elements.at(number)
             at = writer.let("change", _known(change.get(("at",))))
-            inside = Binary("and", Compare("ge", at, index(0)), Compare("le", at, Binary("sub", stored.size, index(4))))
+            inside = ir.Binary("and", ir.Compare("ge", at, index(0)), ir.Compare("le", at, ir.Binary("sub", stored.size, index(4))))
             writer.expect(inside, "length", MESSAGE, "the holder is damaged")
-            writer.emit(Store(add(begin, at), Convert("i32", _known(change.get(("number",))))))
-        writer.emit(For(number.name, changes.size, block(each)))
+            writer.emit(ir.Store(add(begin, at), ir.Convert("i32", _known(change.get(("number",))))))
+        writer.emit(ir.For(number.name, changes.size, block(each)))
     writer.advance(stored.size)
 
 
-def _known(value: Expr | None) -> Expr:
+def _known(value: ir.Expr | None) -> ir.Expr:
     assert value is not None
     return value
 
@@ -122,74 +98,74 @@ class _Walk:
     def read(self) -> None:
         """Go through the whole message."""
         writer = self.writer
-        size = writer.let("size", Binary("sub", END, BEGIN))
+        size = writer.let("size", ir.Binary("sub", END, BEGIN))
         self.fields.put_bytes(("data",), BEGIN, size)
-        writer.emit(Reserve(self.stack, index(2 * MAX_LIST_NESTING)), Advance(self.stack, index(2 * MAX_LIST_NESTING)))
+        writer.emit(ir.Reserve(self.stack, index(2 * MAX_LIST_NESTING)), ir.Advance(self.stack, index(2 * MAX_LIST_NESTING)))
         self.expect_list(BEGIN)
         limit = writer.let("limit", add(mul(size, 2), 2))
-        goes_on = Binary("or", Compare("gt", self.left, index(0)), Compare("gt", self.depth, index(0)))
+        goes_on = ir.Binary("or", ir.Compare("gt", self.left, index(0)), ir.Compare("gt", self.depth, index(0)))
         with writer.nested() as body:
-            writer.emit(If(Compare("eq", self.left, index(0)), self.close(), self.element()))
+            writer.emit(ir.If(ir.Compare("eq", self.left, index(0)), self.close(), self.element()))
             writer.assign(self.rounds, add(self.rounds, 1))
         invariant = (
             *writer.within(self.at),
             *self.between(self.depth, MAX_LIST_NESTING),
             *self.between(self.left, 1 << 31),
-            Compare("ge", self.rounds, index(0)),
-            Compare("le", self.rounds, limit),
+            ir.Compare("ge", self.rounds, index(0)),
+            ir.Compare("le", self.rounds, limit),
         )
-        writer.emit(While(Binary("and", goes_on, Compare("lt", self.rounds, limit)), block(body), invariant, self.rounds))
+        writer.emit(ir.While(ir.Binary("and", goes_on, ir.Compare("lt", self.rounds, limit)), block(body), invariant, self.rounds))
         writer.expect(
-            Binary("and", Compare("eq", self.left, index(0)), Compare("eq", self.depth, index(0))),
+            ir.Binary("and", ir.Compare("eq", self.left, index(0)), ir.Compare("eq", self.depth, index(0))),
             "truncated",
             MESSAGE,
             "the message ends here",
             at=self.at,
         )
-        writer.expect(Compare("eq", self.at, END), "trailing", MESSAGE, "bytes are left over", at=self.at)
-        self.fields.set_span(self.fields.find(("changes",)), index(0), writer.let("changes", Used(self.changes.lane)))
+        writer.expect(ir.Compare("eq", self.at, END), "trailing", MESSAGE, "bytes are left over", at=self.at)
+        self.fields.set_span(self.fields.find(("changes",)), index(0), writer.let("changes", ir.Used(self.changes.lane)))
         writer.position = self.at
 
     @staticmethod
-    def between(value: Expr, most: int) -> tuple[Expr, Expr]:
-        return Compare("ge", value, index(0)), Compare("le", value, index(most))
+    def between(value: ir.Expr, most: int) -> tuple[ir.Expr, ir.Expr]:
+        return ir.Compare("ge", value, index(0)), ir.Compare("le", value, index(most))
 
-    def close(self) -> Block:
+    def close(self) -> ir.Block:
         """The list is at its end: go on in the one around it."""
         writer = self.writer
         with writer.nested() as body:
-            writer.expect(Compare("gt", self.depth, index(0)), "nesting", MESSAGE, "more lists end than begin", at=self.at)
-            writer.assign(self.depth, Binary("sub", self.depth, index(1)))
+            writer.expect(ir.Compare("gt", self.depth, index(0)), "nesting", MESSAGE, "more lists end than begin", at=self.at)
+            writer.assign(self.depth, ir.Binary("sub", self.depth, index(1)))
             row = mul(self.depth, 2)
-            left = writer.let("left_around", Get("i64", Place(self.stack, row)))
-            writer.expect(Binary("and", *self.between(left, 1 << 31)), "count", MESSAGE, "the holder is damaged", at=self.at)
+            left = writer.let("left_around", ir.Get("i64", ir.Place(self.stack, row)))
+            writer.expect(ir.Binary("and", *self.between(left, 1 << 31)), "count", MESSAGE, "the holder is damaged", at=self.at)
             writer.assign(self.left, left)
-            writer.assign(self.unit, Get("i64", Place(self.stack, add(row, 1))))
+            writer.assign(self.unit, ir.Get("i64", ir.Place(self.stack, add(row, 1))))
         return block(body)
 
-    def element(self) -> Block:
+    def element(self) -> ir.Block:
         """The next element of the list."""
         writer = self.writer
         with writer.nested() as body:
-            writer.assign(self.left, Binary("sub", self.left, index(1)))
+            writer.assign(self.left, ir.Binary("sub", self.left, index(1)))
             writer.assign(self.code, self.unit)
             writer.assign(self.after, self.at)
-            has_code = writer.let("has_code", Compare("eq", self.unit, index(0)))
-            writer.emit(If(has_code, self.read_code()))
+            has_code = writer.let("has_code", ir.Compare("eq", self.unit, index(0)))
+            writer.emit(ir.If(has_code, self.read_code()))
             writer.assign(self.there, self.code)
-            writer.emit(Switch(self.code, tuple(self.cases()), self.refused("no code of this dialect")))
-            bounded = Binary("and", *self.between(self.size, SCALAR_BYTES))
+            writer.emit(ir.Switch(self.code, tuple(self.cases()), self.refused("no code of this dialect")))
+            bounded = ir.Binary("and", *self.between(self.size, SCALAR_BYTES))
             writer.expect(bounded, "length", MESSAGE, "the holder is damaged")  # true anyway; said for the proof
             self.values()
-            writer.expect(Binary("and", *writer.within(self.after)), "truncated", MESSAGE, "the message ends here", at=END)
-            differs = Binary("and", has_code, Compare("ne", self.there, self.code))
+            writer.expect(ir.Binary("and", *writer.within(self.after)), "truncated", MESSAGE, "the message ends here", at=END)
+            differs = ir.Binary("and", has_code, ir.Compare("ne", self.there, self.code))
             with writer.nested() as noted:
                 self.note(self.at, self.there)
-            writer.emit(If(differs, block(noted)))
+            writer.emit(ir.If(differs, block(noted)))
             writer.assign(self.at, self.after)
         return block(body)
 
-    def read_code(self) -> Block:
+    def read_code(self) -> ir.Block:
         writer = self.writer
         with writer.nested() as body:
             writer.position = self.at
@@ -197,7 +173,7 @@ class _Walk:
             writer.assign(self.after, writer.position)
         return block(body)
 
-    def cases(self) -> Iterator[tuple[int, Block]]:
+    def cases(self) -> Iterator[tuple[int, ir.Block]]:
         """What each code announces."""
         tree = self.tree
         for scalar in tree.scalars:
@@ -208,7 +184,7 @@ class _Walk:
         yield tree.list_code, self.announced(LIST, None, tree.list_code)
         yield tree.whole_code, self.announced(WHOLE, None, tree.whole_code)
 
-    def announced(self, kind: int, scalar: Scalar | None, there: int | None) -> Block:
+    def announced(self, kind: int, scalar: Scalar | None, there: int | None) -> ir.Block:
         """What follows the code: note it for `values`, where all codes of a kind are treated together."""
         if there is None:
             assert scalar is not None
@@ -224,25 +200,25 @@ class _Walk:
         """Move on behind the value; into a list, unless all its elements have one size."""
         writer = self.writer
         cases = {SCALAR: self.scalar, TEXT: self.text, LIST: self.list_of, WHOLE: self.whole}
-        blocks: list[tuple[int, Block]] = []
+        blocks: list[tuple[int, ir.Block]] = []
         for kind, read in cases.items():
             with writer.nested() as body:
                 read()
             blocks.append((kind, block(body)))
-        writer.emit(Switch(self.kind, tuple(blocks), self.refused("no code of this dialect")))
+        writer.emit(ir.Switch(self.kind, tuple(blocks), self.refused("no code of this dialect")))
 
     def scalar(self) -> None:
         writer = self.writer
-        writer.assign(self.after, Binary("add", self.after, self.size))
+        writer.assign(self.after, ir.Binary("add", self.after, self.size))
         for header in self.tree.headers:
             with writer.nested() as noted:
                 writer.emit(*self.header(header))
-            writer.emit(If(Compare("eq", self.code, index(header.words[0])), block(noted)))
+            writer.emit(ir.If(ir.Compare("eq", self.code, index(header.words[0])), block(noted)))
 
     def text(self) -> None:
         self.writer.position = self.after
         count = self.count("length")
-        self.writer.assign(self.after, Binary("add", self.writer.position, count))
+        self.writer.assign(self.after, ir.Binary("add", self.writer.position, count))
 
     def list_of(self) -> None:
         writer = self.writer
@@ -250,67 +226,67 @@ class _Walk:
         count = self.count("count")
         writer.assign(self.after, writer.position)
         with writer.nested() as skipped:
-            writer.assign(self.after, Binary("add", self.after, Binary("mul", count, self.size)))
+            writer.assign(self.after, ir.Binary("add", self.after, ir.Binary("mul", count, self.size)))
         with writer.nested() as opened:
             self.open_list(count, self.inner)
-        writer.emit(If(Compare("gt", self.size, index(0)), block(skipped), block(opened)))
+        writer.emit(ir.If(ir.Compare("gt", self.size, index(0)), block(skipped), block(opened)))
 
     def whole(self) -> None:
         self.expect_list(self.after)
         self.open_list(index(1), index(0))
 
-    def count(self, kind: str) -> Local:
+    def count(self, kind: str) -> ir.Local:
         """The number before the bytes of a text, or before the elements of a list."""
         writer, at = self.writer, self.writer.position
         count = writer.let("count", integer(writer.load("i32", MESSAGE)))
-        writer.expect(Compare("ge", count, index(0)), kind, MESSAGE, "must not be negative", at=at)
+        writer.expect(ir.Compare("ge", count, index(0)), kind, MESSAGE, "must not be negative", at=at)
         return count
 
-    def open_list(self, count: Expr, unit: Expr) -> None:
+    def open_list(self, count: ir.Expr, unit: ir.Expr) -> None:
         """Go on with the elements of a list, and then with what is behind it."""
         writer, row = self.writer, mul(self.depth, 2)
         writer.expect(
-            Compare("lt", self.depth, index(MAX_LIST_NESTING)),
+            ir.Compare("lt", self.depth, index(MAX_LIST_NESTING)),
             "nesting",
             MESSAGE,
             f"more than {MAX_LIST_NESTING} lists within each other",
             at=self.at,
         )
-        writer.emit(SetField(Place(self.stack, row), self.left), SetField(Place(self.stack, add(row, 1)), self.unit))
-        writer.emit(Assign(self.depth.name, add(self.depth, 1)), Assign(self.left.name, count), Assign(self.unit.name, unit))
+        writer.emit(ir.SetField(ir.Place(self.stack, row), self.left), ir.SetField(ir.Place(self.stack, add(row, 1)), self.unit))
+        writer.emit(ir.Assign(self.depth.name, add(self.depth, 1)), ir.Assign(self.left.name, count), ir.Assign(self.unit.name, unit))
 
-    def expect_list(self, at: Expr) -> None:
+    def expect_list(self, at: ir.Expr) -> None:
         """A message is a list, whatever a reader would take."""
         writer = self.writer
         writer.require(4, MESSAGE, at=at)
-        codes = Binary("and", Load("i32", at), Const("i32", self.tree.whole_code | self.tree.list_code))
-        writer.expect(Compare("eq", codes, Const("i32", self.tree.list_code)), "tag", MESSAGE, "a message is a list", at=at)
+        codes = ir.Binary("and", ir.Load("i32", at), ir.Const("i32", self.tree.whole_code | self.tree.list_code))
+        writer.expect(ir.Compare("eq", codes, ir.Const("i32", self.tree.list_code)), "tag", MESSAGE, "a message is a list", at=at)
 
-    def refused(self, why: str) -> Block:
+    def refused(self, why: str) -> ir.Block:
         with self.writer.nested() as body:
-            self.writer.expect(Const("bool", value=False), "tag", MESSAGE, why, at=self.at)
+            self.writer.expect(ir.Const("bool", value=False), "tag", MESSAGE, why, at=self.at)
         return block(body)
 
-    def header(self, header: Header) -> tuple[Stmt, ...]:
+    def header(self, header: Header) -> tuple[ir.Stmt, ...]:
         """Note the number that differs, if this element and those behind it are a header."""
         writer = self.writer
         with writer.nested() as there:
             writer.require(header.size, MESSAGE, at=self.at)
-            known: Expr = Compare("eq", self.unit, index(0))
+            known: ir.Expr = ir.Compare("eq", self.unit, index(0))
             for offset, word in header.words.items():
-                known = Binary("and", known, Compare("eq", Load("i32", add(self.at, offset)), Const("i32", word)))
+                known = ir.Binary("and", known, ir.Compare("eq", ir.Load("i32", add(self.at, offset)), ir.Const("i32", word)))
             with writer.nested() as found:
-                number = writer.let("number", integer(Load("i32", add(self.at, header.at))))
-                changed = Binary("or", Binary("and", number, index(header.keep)), index(header.put))
+                number = writer.let("number", integer(ir.Load("i32", add(self.at, header.at))))
+                changed = ir.Binary("or", ir.Binary("and", number, index(header.keep)), index(header.put))
                 self.note(add(self.at, header.at), changed)
-            writer.emit(If(known, block(found)))
-        fits = Compare("ge", Binary("sub", END, self.at), index(header.size))
-        return (If(fits, block(there)),)
+            writer.emit(ir.If(known, block(found)))
+        fits = ir.Compare("ge", ir.Binary("sub", END, self.at), index(header.size))
+        return (ir.If(fits, block(there)),)
 
-    def note(self, at: Expr, number: Expr) -> None:
+    def note(self, at: ir.Expr, number: ir.Expr) -> None:
         """Note that an i32 of the message becomes another one."""
         writer, lane = self.writer, self.changes.lane
-        writer.emit(Reserve(lane, index(1)))
-        row = writer.let("row", Used(lane))
-        writer.emit(Advance(lane, index(1)))
-        writer.emit(SetField(Place(lane, row), Binary("sub", at, BEGIN)), SetField(Place(lane, row, 8), number))
+        writer.emit(ir.Reserve(lane, index(1)))
+        row = writer.let("row", ir.Used(lane))
+        writer.emit(ir.Advance(lane, index(1)))
+        writer.emit(ir.SetField(ir.Place(lane, row), ir.Binary("sub", at, BEGIN)), ir.SetField(ir.Place(lane, row, 8), number))

@@ -15,29 +15,7 @@ from rosetta_jit.lowering.codec.xcdr1_members import parameter, parameters
 from rosetta_jit.lowering.codec.xcdr2_members import members, store_size
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, block, integer
-from rosetta_jit.wire.codec import (
-    Align,
-    Blob,
-    Cases,
-    Choice,
-    Codec,
-    Computed,
-    Constant,
-    Delimited,
-    Maybe,
-    Members,
-    Number,
-    Padding,
-    Parameter,
-    Parameters,
-    Recursion,
-    Repeat,
-    Seq,
-    Table,
-    Tagged,
-    Utf16,
-    Varint,
-)
+from rosetta_jit.wire import codec as wire
 from rosetta_jit.wire.size import fixed_size, minimum_size
 
 if TYPE_CHECKING:
@@ -50,37 +28,37 @@ EMPTY_ELEMENTS = 1 << 16
 """How many elements that take no bytes a message may have, whatever its own size."""
 
 
-def walk(codec: Codec, fields: Fields, writer: Writer) -> None:
+def walk(codec: wire.Codec, fields: Fields, writer: Writer) -> None:
     """Read or write what a codec describes, at the current position."""
     match codec:
-        case Seq(items):
+        case wire.Seq(items):
             for item in items:
                 walk(item, fields, writer)
-        case Number() | Table() | Constant() | Computed() | Padding() | Align() | Blob() | Utf16():
+        case wire.Number() | wire.Table() | wire.Constant() | wire.Computed() | wire.Padding() | wire.Align() | wire.Blob() | wire.Utf16():
             leaves.leaf(codec, fields, writer)
-        case Repeat():
+        case wire.Repeat():
             _repeat(writer, fields, codec)
-        case Choice():
+        case wire.Choice():
             _choice(writer, fields, codec)
-        case Cases():
+        case wire.Cases():
             _cases(writer, fields, codec)
-        case Maybe():
+        case wire.Maybe():
             _maybe(writer, fields, codec)
-        case Delimited():
+        case wire.Delimited():
             _delimited(writer, fields, codec)
-        case Members():
+        case wire.Members():
             members(codec, fields, writer, walk)
-        case Parameter():
+        case wire.Parameter():
             parameter(codec, fields, writer, walk)
-        case Parameters():
+        case wire.Parameters():
             parameters(codec, fields, writer, walk)
-        case Tagged() | Varint() | Recursion():
+        case wire.Tagged() | wire.Varint() | wire.Recursion():
             raise AssertionError(codec)  # `tagged`, `recursion` and `descent` read and write these
         case _:
             assert_never(codec)
 
 
-def _repeat(writer: Writer, fields: Fields, repeat: Repeat) -> None:
+def _repeat(writer: Writer, fields: Fields, repeat: wire.Repeat) -> None:
     elements, count = begin_elements(writer, fields, repeat)
     where, size = fields.shown(repeat.path), fixed_size(repeat.item)
     if size is None:
@@ -89,30 +67,30 @@ def _repeat(writer: Writer, fields: Fields, repeat: Repeat) -> None:
         _each_at_its_place(writer, repeat.item, elements, count, size, where)
 
 
-def begin_elements(writer: Writer, fields: Fields, repeat: Repeat) -> tuple[Elements, Expr]:
+def begin_elements(writer: Writer, fields: Fields, repeat: wire.Repeat) -> tuple[Elements, Expr]:
     """The count and what stands before the first element; the elements, and how many there are."""
     where = fields.shown(repeat.path)
     if writer.direction == "decode":
         total = leaves.read_count(writer, fields, repeat.path, repeat.count, "count", least=repeat.extra)
         count = writer.let("elements", add(total, -repeat.extra)) if repeat.extra else total
-        walk(Seq(repeat.head), fields, writer)
+        walk(wire.Seq(repeat.head), fields, writer)
         _align_first(writer, repeat, count)
         _plausible(writer, repeat, count, where)
         return fields.open(repeat.path, count), count
     fixed = repeat.count.value - repeat.extra if isinstance(repeat.count.value, int) else None
     stored = fields.stored(repeat.path, fixed)
     leaves.write_count(writer, fields, repeat.count, stored.size, where, extra=repeat.extra)
-    walk(Seq(repeat.head), fields, writer)
+    walk(wire.Seq(repeat.head), fields, writer)
     _align_first(writer, repeat, stored.size)
     return fields.elements(repeat.path, stored), stored.size
 
 
-def _align_first(writer: Writer, repeat: Repeat, count: Expr) -> None:
+def _align_first(writer: Writer, repeat: wire.Repeat, count: Expr) -> None:
     if repeat.align > 1:
         leaves.align(writer, repeat.align, Compare("gt", count, index(0)))
 
 
-def _plausible(writer: Writer, repeat: Repeat, count: Expr, where: Where) -> None:
+def _plausible(writer: Writer, repeat: wire.Repeat, count: Expr, where: Where) -> None:
     """A message has at least as many bytes as its elements need, so that a count alone cannot take much memory."""
     if isinstance(count, Const):
         return
@@ -124,7 +102,7 @@ def _plausible(writer: Writer, repeat: Repeat, count: Expr, where: Where) -> Non
         writer.expect(Compare("le", count, index(EMPTY_ELEMENTS)), "count", where, "too many elements that take no bytes")
 
 
-def _each_at_its_place(writer: Writer, item: Codec, elements: Elements, count: Expr, size: int, where: Where) -> None:
+def _each_at_its_place(writer: Writer, item: wire.Codec, elements: Elements, count: Expr, size: int, where: Where) -> None:
     """Elements of one size: each position follows from the number."""
     writer.expect(Compare("le", count, index(MAX_SIZE // max(size, 1))), "count", where, "too many elements")
     total = mul(count, size)
@@ -141,7 +119,7 @@ def _each_at_its_place(writer: Writer, item: Codec, elements: Elements, count: E
     writer.advance(total)
 
 
-def _each_in_turn(writer: Writer, item: Codec, elements: Elements, count: Expr) -> None:
+def _each_in_turn(writer: Writer, item: wire.Codec, elements: Elements, count: Expr) -> None:
     """Elements of their own sizes, one behind the other."""
     number, at = writer.var("i", index(0)), writer.cursor()
     with writer.nested() as body:
@@ -155,7 +133,7 @@ def _each_in_turn(writer: Writer, item: Codec, elements: Elements, count: Expr) 
     writer.position = at
 
 
-def _choice(writer: Writer, fields: Fields, choice: Choice) -> None:
+def _choice(writer: Writer, fields: Fields, choice: wire.Choice) -> None:
     if writer.direction != "decode":
         _write_choice(writer, fields, choice)
         return
@@ -172,7 +150,7 @@ def _choice(writer: Writer, fields: Fields, choice: Choice) -> None:
     writer.position = at
 
 
-def _write_choice(writer: Writer, fields: Fields, choice: Choice) -> None:
+def _write_choice(writer: Writer, fields: Fields, choice: wire.Choice) -> None:
     where = fields.shown(choice.path)
     if choice.labels:
         _write_labelled(writer, fields, choice, where)
@@ -193,7 +171,7 @@ def _write_choice(writer: Writer, fields: Fields, choice: Choice) -> None:
     writer.position = at
 
 
-def _write_labelled(writer: Writer, fields: Fields, choice: Choice, where: Where) -> None:
+def _write_labelled(writer: Writer, fields: Fields, choice: wire.Choice, where: Where) -> None:
     label = integer(_got(fields, choice.path))
     fields.branch(choice)
     at = writer.var("next", writer.position)
@@ -208,27 +186,27 @@ def _write_labelled(writer: Writer, fields: Fields, choice: Choice, where: Where
     writer.position = at
 
 
-def _written_alternative(writer: Writer, fields: Fields, choice: Choice, number: int, where: Where) -> None:
+def _written_alternative(writer: Writer, fields: Fields, choice: wire.Choice, number: int, where: Where) -> None:
     value, codec = choice.alternatives[number]
     writer.store(Const(scalar_name(choice.scalar), value), where, choice.order)
     walk(codec, fields, writer)
 
 
-def _alternative(writer: Writer, fields: Fields, codec: Codec, at: Local) -> Block:
+def _alternative(writer: Writer, fields: Fields, codec: wire.Codec, at: Local) -> Block:
     with writer.nested() as body:
         walk(codec, fields, writer)
         writer.emit(Assign(at.name, writer.position))
     return block(body)
 
 
-def _cases(writer: Writer, fields: Fields, cases: Cases) -> None:
+def _cases(writer: Writer, fields: Fields, cases: wire.Cases) -> None:
     walk(cases.discriminator, fields, writer)
     at = writer.var("next", writer.position)
     switch_cases(writer, fields, cases, lambda codec: (walk(codec, fields, writer), writer.assign(at, writer.position)))
     writer.position = at
 
 
-def switch_cases(writer: Writer, fields: Fields, cases: Cases, body: Callable[[Codec], object]) -> None:
+def switch_cases(writer: Writer, fields: Fields, cases: wire.Cases, body: Callable[[wire.Codec], object]) -> None:
     """What is done in the case that the discriminator names, after it has come; where it names none, with an empty codec."""
     value = _first_label(writer, cases, integer(_got(fields, discriminator_path(cases.discriminator))))
     blocks: list[tuple[int, Block]] = []
@@ -244,12 +222,12 @@ def switch_cases(writer: Writer, fields: Fields, cases: Cases, body: Callable[[C
     if default is None:
         with writer.nested() as statements:
             fields.choose(cases.path, 0)
-            body(Seq(()))
+            body(wire.Seq(()))
         default = block(statements)
     writer.emit(Switch(value, tuple(blocks), default))
 
 
-def _first_label(writer: Writer, cases: Cases, value: Expr) -> Expr:
+def _first_label(writer: Writer, cases: wire.Cases, value: Expr) -> Expr:
     """The first label of the case that a value names, so that each case is written once."""
     value = writer.let("label", value)
     others = [(other, labels[0]) for number, (labels, _) in enumerate(cases.cases) for other in labels[1:] if number != cases.default]
@@ -260,26 +238,26 @@ def _first_label(writer: Writer, cases: Cases, value: Expr) -> Expr:
     return first
 
 
-def discriminator_path(codec: Codec) -> tuple[str, ...]:
+def discriminator_path(codec: wire.Codec) -> tuple[str, ...]:
     """The field that a discriminator carries."""
     match codec:
-        case Number(path) | Table(path) | Choice(path):
+        case wire.Number(path) | wire.Table(path) | wire.Choice(path):
             return path
-        case Parameter(member):
+        case wire.Parameter(member):
             return member.path
-        case Seq(items):
+        case wire.Seq(items):
             return discriminator_path(items[-1])
         case _:
             raise AssertionError(codec)
 
 
-def _maybe(writer: Writer, fields: Fields, maybe: Maybe) -> None:
+def _maybe(writer: Writer, fields: Fields, maybe: wire.Maybe) -> None:
     at = writer.var("next", writer.position)
     if_present(writer, fields, maybe, lambda codec: (walk(codec, fields, writer), writer.assign(at, writer.position)))
     writer.position = at
 
 
-def if_present(writer: Writer, fields: Fields, maybe: Maybe, body: Callable[[Codec], object]) -> None:
+def if_present(writer: Writer, fields: Fields, maybe: wire.Maybe, body: Callable[[wire.Codec], object]) -> None:
     """The flag, and what is done if the field is there; otherwise with an empty codec."""
     where, begin = fields.shown(maybe.path), writer.position
     if writer.direction == "decode":
@@ -290,7 +268,7 @@ def if_present(writer: Writer, fields: Fields, maybe: Maybe, body: Callable[[Cod
         present = writer.let("present", fields.present(maybe.path))
         writer.store(Convert("u8", present), where)
     blocks: list[Block] = []
-    for codec in (maybe.value, Seq(())):
+    for codec in (maybe.value, wire.Seq(())):
         with writer.nested() as statements:
             if writer.direction == "decode" and codec is maybe.value:
                 fields.appear(maybe.path)
@@ -299,7 +277,7 @@ def if_present(writer: Writer, fields: Fields, maybe: Maybe, body: Callable[[Cod
     writer.emit(If(present, blocks[0], blocks[1]))
 
 
-def _delimited(writer: Writer, fields: Fields, delimited: Delimited) -> None:
+def _delimited(writer: Writer, fields: Fields, delimited: wire.Delimited) -> None:
     where, begin = fields.shown(delimited.path), writer.position
     if writer.direction == "decode":
         size = writer.let("size", integer(writer.load("u32", where, delimited.order)))

@@ -15,43 +15,20 @@ from rosetta_jit.lowering.rules.packed_values import rule_for
 from rosetta_jit.model import expr
 from rosetta_jit.model.walk import names_of, parts
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.wire.codec import (
-    Align,
-    Blob,
-    Cases,
-    Choice,
-    Codec,
-    Computed,
-    Constant,
-    Delimited,
-    Maybe,
-    Members,
-    Number,
-    Padding,
-    Parameter,
-    Parameters,
-    Recursion,
-    Repeat,
-    Seq,
-    Table,
-    Tagged,
-    Utf16,
-    Varint,
-)
+from rosetta_jit.wire import codec as wire
 from rosetta_jit.wire.size import fixed_size
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.kernel.ir import Direction
-    from rosetta_jit.wire.codec import Count, Path
 
 
 @dataclass(frozen=True, slots=True)
 class Obstacle:
     """A field of the wire that rules cannot read or write in place, or have no need to, but the walk has; and why."""
 
-    path: Path
+    path: wire.Path
     why: str
 
 
@@ -59,9 +36,9 @@ class Obstacle:
 class _Here:
     """Where the walk stands: in the message, or in an element, of which the numbers ``passing`` by are known as long as it is there."""
 
-    path: Path = ()
+    path: wire.Path = ()
     outer: _Here | None = None
-    passing: set[Path] = field(default_factory=set["Path"])
+    passing: set[wire.Path] = field(default_factory=set["wire.Path"])
 
     @property
     def scope(self) -> _Here:
@@ -75,16 +52,16 @@ class BoundFields:
 
     direction: Direction
     rules: tuple[typed.Rule, ...]
-    numbers: set[Path] = field(default_factory=set["Path"])
-    counts: set[Path] = field(default_factory=set["Path"])
-    regions: set[Path] = field(default_factory=set["Path"])
+    numbers: set[wire.Path] = field(default_factory=set["wire.Path"])
+    counts: set[wire.Path] = field(default_factory=set["wire.Path"])
+    regions: set[wire.Path] = field(default_factory=set["wire.Path"])
     deferred: list[Iterator[Obstacle]] = field(default_factory=list["Iterator[Obstacle]"])
 
-    def message(self, codec: Codec) -> Iterator[Obstacle]:
+    def message(self, codec: wire.Codec) -> Iterator[Obstacle]:
         """What is in the way of the walk over a message."""
         yield from self.whole(codec, _Here())
 
-    def whole(self, codec: Codec, here: _Here) -> Iterator[Obstacle]:
+    def whole(self, codec: wire.Codec, here: _Here) -> Iterator[Obstacle]:
         """A message or an element: what is checked at its end is looked at then."""
         outer, self.deferred = self.deferred, []
         yield from self.walk(codec, here)
@@ -92,83 +69,85 @@ class BoundFields:
             yield from each
         self.deferred = outer
 
-    def walk(self, codec: Codec, here: _Here) -> Iterator[Obstacle]:
+    def walk(self, codec: wire.Codec, here: _Here) -> Iterator[Obstacle]:
         match codec:
-            case Seq(items):
+            case wire.Seq(items):
                 for item in items:
                     yield from self.walk(item, here)
-            case Number(path) | Table(path):
+            case wire.Number(path) | wire.Table(path):
                 yield from self.number(path, here)
-            case Computed(path, _, value):
+            case wire.Computed(path, _, value):
                 yield from self.computed(path, value, here)
-            case Constant(path, value, kind=kind):
+            case wire.Constant(path, value, kind=kind):
                 self.constant(path, value, kind, here)
-            case Blob():
+            case wire.Blob():
                 yield from self.blob(codec, here)
-            case Utf16():
+            case wire.Utf16():
                 yield from self.utf16(codec, here)
-            case Repeat():
+            case wire.Repeat():
                 yield from self.repeat(codec, here)
-            case Choice():
+            case wire.Choice():
                 yield from self.choice(codec, here)
-            case Delimited(_, value):
+            case wire.Delimited(_, value):
                 yield from self.walk(value, here)
-            case Cases() | Maybe() | Members() | Parameter() | Parameters():
+            case wire.Cases() | wire.Maybe() | wire.Members() | wire.Parameter() | wire.Parameters():
                 yield from self.conditional(codec, here)
-            case Tagged(path) | Varint(path) | Recursion(path):
+            case wire.Tagged(path) | wire.Varint(path) | wire.Recursion(path):
                 yield Obstacle(here.path + path, "fields with tags come in any order, and more than once")
-            case Padding() | Align():
+            case wire.Padding() | wire.Align():
                 pass
             case _:
                 assert_never(codec)
 
-    def conditional(self, codec: Cases | Maybe | Members | Parameter | Parameters, here: _Here) -> Iterator[Obstacle]:
+    def conditional(
+        self, codec: wire.Cases | wire.Maybe | wire.Members | wire.Parameter | wire.Parameters, here: _Here
+    ) -> Iterator[Obstacle]:
         """What need not be there, or may be anywhere. Members that always are have their places when they are written."""
         match codec:
-            case Members(path, members) | Parameters(path, members) if self.direction != "decode":
+            case wire.Members(path, members) | wire.Parameters(path, members) if self.direction != "decode":
                 for member in members:
                     if member.optional:
                         yield Obstacle(here.path + member.path, "it may be absent")
                     yield from self.walk(member.value, here)
-            case Parameter(member, _, second) if self.direction != "decode" and (second or not member.optional):
+            case wire.Parameter(member, _, second) if self.direction != "decode" and (second or not member.optional):
                 yield from self.walk(member.value, here)
-            case Members(path) | Parameters(path):
+            case wire.Members(path) | wire.Parameters(path):
                 yield Obstacle(here.path + path, "its members come in any order")
-            case Parameter(member):
+            case wire.Parameter(member):
                 yield Obstacle(here.path + member.path, "it may be absent")
-            case Maybe(path):
+            case wire.Maybe(path):
                 yield Obstacle(here.path + path, "it may be absent")
-            case Cases(path):
+            case wire.Cases(path):
                 yield Obstacle(here.path + path, "it is of one of several cases")
 
     # --- leaves ----------------------------------------------------------------------------------------------------------
 
-    def number(self, path: Path, here: _Here) -> Iterator[Obstacle]:
+    def number(self, path: wire.Path, here: _Here) -> Iterator[Obstacle]:
         if self.direction == "decode":
             self.put(path, here)
         elif self.direction == "encode" and here.outer is None:
             yield from self.told(path, here)
 
-    def put(self, path: Path, here: _Here) -> None:
+    def put(self, path: wire.Path, here: _Here) -> None:
         """A number that has come."""
         if here.outer is None:
             self.numbers.add(path)
         else:
             here.passing.add(path)
 
-    def put_bytes(self, path: Path, here: _Here) -> None:
+    def put_bytes(self, path: wire.Path, here: _Here) -> None:
         if here.outer is None:
             self.counts.add(path)
             self.regions.add((*path, EACH))
 
-    def computed(self, path: Path, value: expr.Expr, here: _Here) -> Iterator[Obstacle]:
+    def computed(self, path: wire.Path, value: expr.Expr, here: _Here) -> Iterator[Obstacle]:
         if self.direction == "decode":
             self.put(path, here)
             self.deferred.append(self.expression(value, here))
         elif self.direction == "encode":
             yield from self.expression(value, here)
 
-    def constant(self, path: Path, value: float | bytes, kind: str, here: _Here) -> None:
+    def constant(self, path: wire.Path, value: float | bytes, kind: str, here: _Here) -> None:
         if self.direction != "decode" or not path:
             return
         if isinstance(value, bytes):
@@ -176,7 +155,7 @@ class BoundFields:
         elif kind == "constant":
             self.put(path, here)
 
-    def blob(self, blob: Blob, here: _Here) -> Iterator[Obstacle]:
+    def blob(self, blob: wire.Blob, here: _Here) -> Iterator[Obstacle]:
         yield from self.count(blob.path, blob.count, here)
         if self.direction == "decode":
             self.put_bytes(blob.path, here)
@@ -187,7 +166,7 @@ class BoundFields:
                 case _:
                     self.regions.add((*here.path, *blob.path, EACH))
 
-    def utf16(self, text: Utf16, here: _Here) -> Iterator[Obstacle]:
+    def utf16(self, text: wire.Utf16, here: _Here) -> Iterator[Obstacle]:
         yield from self.count(text.path, text.count, here)
         if self.direction == "decode":
             self.counts.add(here.path + text.path)
@@ -196,7 +175,7 @@ class BoundFields:
 
     # --- arrays and choices ----------------------------------------------------------------------------------------------
 
-    def count(self, path: Path, count: Count, here: _Here) -> Iterator[Obstacle]:
+    def count(self, path: wire.Path, count: wire.Count, here: _Here) -> Iterator[Obstacle]:
         """A count is read, or asked for; where other fields determine it, these must be known."""
         computed = None if count.value is None or isinstance(count.value, int) else count.value
         if self.direction != "decode":
@@ -208,12 +187,12 @@ class BoundFields:
         else:
             yield from self.expression(computed, here.scope)
 
-    def repeat(self, repeat: Repeat, here: _Here) -> Iterator[Obstacle]:
+    def repeat(self, repeat: wire.Repeat, here: _Here) -> Iterator[Obstacle]:
         key, size = here.path + repeat.path, fixed_size(repeat.item)
         if self.direction != "decode" and isinstance(repeat.count.value, int):
             self.counts.add(key)
         yield from self.count(repeat.path, repeat.count, here)
-        yield from self.walk(Seq(repeat.head), here)
+        yield from self.walk(wire.Seq(repeat.head), here)
         self.counts.add(key)
         if size is not None and self.direction == "size":
             return
@@ -221,7 +200,7 @@ class BoundFields:
             self.regions.update((*key, EACH, *leaf.path) for leaf in leaves(repeat.item))
         yield from self.whole(repeat.item, _Here((*key, EACH), here))
 
-    def choice(self, choice: Choice, here: _Here) -> Iterator[Obstacle]:
+    def choice(self, choice: wire.Choice, here: _Here) -> Iterator[Obstacle]:
         """All alternatives are read; which one is written, its label or the number of elements says, or it is the first."""
         alternatives = [codec for _, codec in choice.alternatives]
         if self.direction != "decode":
@@ -251,7 +230,7 @@ class BoundFields:
                 case _:
                     pass
 
-    def told(self, path: Path, here: _Here) -> Iterator[Obstacle]:
+    def told(self, path: wire.Path, here: _Here) -> Iterator[Obstacle]:
         """A number that says something of what follows."""
         key = here.path + path
         if key in self.numbers or path in here.passing:
@@ -265,7 +244,7 @@ class BoundFields:
         else:
             self.numbers.add(key)
 
-    def counted(self, path: Path, here: _Here) -> Iterator[Obstacle]:
+    def counted(self, path: wire.Path, here: _Here) -> Iterator[Obstacle]:
         """How many elements or bytes there are."""
         key = here.path + path
         if key in self.counts:
@@ -280,7 +259,7 @@ class BoundFields:
             self.counts.add(key)
 
 
-def _is_made(key: Path, rules: tuple[typed.Rule, ...]) -> bool:
+def _is_made(key: wire.Path, rules: tuple[typed.Rule, ...]) -> bool:
     """Whether a rule, or one of those in its blocks, sets a field to what a function makes."""
     match rule_for(key, rules):
         case typed.Assign(_, typed.Call()):

@@ -6,23 +6,7 @@ from dataclasses import field, replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, assert_never, cast
 
-from rosetta_jit.kernel.ir import (
-    Assign,
-    Binary,
-    Call,
-    Compare,
-    Const,
-    Convert,
-    Expect,
-    Expr,
-    HostCall,
-    If,
-    Local,
-    Require,
-    Scalar,
-    Switch,
-    Unary,
-)
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language import typed
@@ -49,7 +33,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from typing import TypeGuard
 
-    from rosetta_jit.kernel.ir import Block, Stmt
     from rosetta_jit.lowering.evaluation import Awaited, Source
     from rosetta_jit.model.expr import Operator
     from rosetta_jit.model.types import Type
@@ -62,16 +45,16 @@ class Values:
 
     writer: Writer
     source: Source
-    variables: Mapping[str, Expr]
+    variables: Mapping[str, ir.Expr]
     where: Where = MESSAGE
     line: str = ""
-    decided: dict[typed.Expr, tuple[list[Stmt], Expr]] = field(default_factory=dict["typed.Expr", "tuple[list[Stmt], Expr]"])
-    groups: dict[typed.Expr, tuple[list[Stmt], Mapping[str, Expr]]] = field(
-        default_factory=dict["typed.Expr", "tuple[list[Stmt], Mapping[str, Expr]]"]
+    decided: dict[typed.Expr, tuple[list[ir.Stmt], ir.Expr]] = field(default_factory=dict["typed.Expr", "tuple[list[ir.Stmt], ir.Expr]"])
+    groups: dict[typed.Expr, tuple[list[ir.Stmt], Mapping[str, ir.Expr]]] = field(
+        default_factory=dict["typed.Expr", "tuple[list[ir.Stmt], Mapping[str, ir.Expr]]"]
     )
     awaited: dict[typed.Expr, Awaited] = field(default_factory=dict["typed.Expr", "Awaited"])
 
-    def of(self, value: typed.Expr) -> Expr:
+    def of(self, value: typed.Expr) -> ir.Expr:
         """The kernel expression of a number. Choices and searches are made once where they are known: nothing that rules read changes."""
         if isinstance(value, typed.Reduce) and value in self.awaited and self.writer.is_around(self.awaited[value].block):
             return self.first_time(value, self.awaited[value])
@@ -84,7 +67,7 @@ class Values:
             self.decided[value] = block, found
         return found
 
-    def together(self, value: typed.Expr, compute: Callable[[], Mapping[str, Expr]]) -> Mapping[str, Expr]:
+    def together(self, value: typed.Expr, compute: Callable[[], Mapping[str, ir.Expr]]) -> Mapping[str, ir.Expr]:
         """Numbers that are computed together, by name; what was computed for an equal value is found again where it is known."""
         if asks_others(value):
             return compute()
@@ -94,15 +77,15 @@ class Values:
             self.groups[value] = block, found
         return found
 
-    def first_time(self, value: typed.Reduce, awaited: Awaited) -> Expr:
+    def first_time(self, value: typed.Reduce, awaited: Awaited) -> ir.Expr:
         """A value that is computed here unless it is known."""
         with self.source.forgetting(), self.writer.nested() as body:
             self.writer.assign(awaited.found, self.computed(value))
-            self.writer.assign(awaited.is_known, Const("bool", value=True))
-        self.writer.emit(If(Unary("not", awaited.is_known), block(body)))
+            self.writer.assign(awaited.is_known, ir.Const("bool", value=True))
+        self.writer.emit(ir.If(ir.Unary("not", awaited.is_known), block(body)))
         return awaited.found
 
-    def computed(self, value: typed.Expr) -> Expr:
+    def computed(self, value: typed.Expr) -> ir.Expr:
         match value:
             case typed.Const(number, type_):
                 return constant(number, scalar_type(type_))
@@ -114,7 +97,7 @@ class Values:
             case typed.LenOf(place):
                 return self.source.count(place, self)
             case typed.Unary("not", operand):
-                return Unary("not", self.of(operand))
+                return ir.Unary("not", self.of(operand))
             case typed.Unary(_, operand):
                 return self.negative(self.of(operand))
             case typed.Binary(operator, left, right):
@@ -129,7 +112,7 @@ class Values:
             case typed.Nearest():
                 return nearest(value, self)
             case typed.Call():
-                return cast("Expr", lowered(value, self))
+                return cast("ir.Expr", lowered(value, self))
             case typed.HostCall():
                 return called(value, self)
             case typed.IsText(place, text):
@@ -143,7 +126,7 @@ class Values:
             case _:
                 assert_never(value)
 
-    def asked(self, value: typed.Has | typed.Search | typed.Reduce) -> Expr:
+    def asked(self, value: typed.Has | typed.Search | typed.Reduce) -> ir.Expr:
         """What is asked of a place, or of the elements of arrays."""
         match value:
             case typed.Has(place):
@@ -155,16 +138,16 @@ class Values:
             case _:
                 assert_never(value)
 
-    def operation(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> Expr:
+    def operation(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> ir.Expr:
         if operator in ("and", "or"):
             return self.joined(operator, left, right)
         if operator == "differs":
             return differ(self.writer, self.of(left), self.of(right))
         if operator in COMPARISONS:
-            return Compare(COMPARISONS[operator], self.of(left), self.of(right))
+            return ir.Compare(COMPARISONS[operator], self.of(left), self.of(right))
         return binary(self.writer, operator, self.of(left), self.of(right), self.where, self.line)
 
-    def joined(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> Expr:
+    def joined(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> ir.Expr:
         """``left and right``, ``left or right``: where the left one decides, the right one may have no value."""
         writer, first = self.writer, self.of(left)
         with self.source.forgetting(), writer.nested() as step:
@@ -173,32 +156,32 @@ class Values:
             writer.emit(*step)
             return binary(writer, operator, first, second, self.where, self.line)
         found = writer.var("joined", first)
-        step.append(Assign(found.name, second))
-        writer.emit(If(found, block(step)) if operator == "and" else If(found, (), block(step)))
+        step.append(ir.Assign(found.name, second))
+        writer.emit(ir.If(found, block(step)) if operator == "and" else ir.If(found, (), block(step)))
         return found
 
-    def choice(self, choice: typed.Choice) -> Expr:
+    def choice(self, choice: typed.Choice) -> ir.Expr:
         """Only the value that is chosen is computed, and only the conditions before it: others may not have one."""
         writer = self.writer
         found = writer.var("chosen", constant(0, scalar_type(choice.type)))
-        undecided = writer.var("undecided", Const("bool", value=True))
+        undecided = writer.var("undecided", ir.Const("bool", value=True))
         for condition, chosen in choice.cases:
             with self.source.forgetting(), writer.nested() as step:
                 holds = self.of(condition)
                 with writer.nested() as then:
                     writer.assign(found, self.of(chosen))
-                    writer.assign(undecided, Const("bool", value=False))
-                writer.emit(If(holds, block(then)))
-            writer.emit(If(undecided, block(step)))
+                    writer.assign(undecided, ir.Const("bool", value=False))
+                writer.emit(ir.If(holds, block(then)))
+            writer.emit(ir.If(undecided, block(step)))
         if choice.otherwise is None:
             self.reject(choice.reason, choice.pieces, when=undecided)
             return found
         with self.source.forgetting(), writer.nested() as other:
             writer.assign(found, self.of(choice.otherwise))
-        writer.emit(If(undecided, block(other)))
+        writer.emit(ir.If(undecided, block(other)))
         return found
 
-    def listed(self, listed: typed.Listed | typed.Given) -> Expr:
+    def listed(self, listed: typed.Listed | typed.Given) -> ir.Expr:
         """Only the item that is chosen is computed."""
         assert isinstance(listed, typed.Listed), "parameters are given before a mapping is lowered"
         found = self.writer.var("item", constant(0, scalar_type(listed.type)))
@@ -209,33 +192,33 @@ class Values:
         """Do something with the item of a list that an index chooses."""
         writer = self.writer
         number = writer.let("number", self.of(listed.index))
-        there = Binary("and", Compare("ge", number, index(0)), Compare("lt", number, index(len(listed.items))))
+        there = ir.Binary("and", ir.Compare("ge", number, index(0)), ir.Compare("lt", number, index(len(listed.items))))
         writer.expect(there, "index", self.where, f"the list has {len(listed.items)} items", line=self.line)
-        cases: list[tuple[int, Block]] = []
+        cases: list[tuple[int, ir.Block]] = []
         for case, item in enumerate(listed.items):
             with self.source.forgetting(), writer.nested() as body:
                 use(item)
             cases.append((case, block(body)))
-        writer.emit(Switch(number, tuple(cases), ()))
+        writer.emit(ir.Switch(number, tuple(cases), ()))
 
-    def reject(self, reason: str, pieces: tuple[typed.Expr, ...] = (), *, when: Expr | None = None) -> None:
+    def reject(self, reason: str, pieces: tuple[typed.Expr, ...] = (), *, when: ir.Expr | None = None) -> None:
         """Refuse the message, always or where something holds: with a reason, or with what its pieces say."""
         if pieces:
             reject_with(pieces, reason, when, self)
             return
-        good = Const("bool", value=False) if when is None else Unary("not", when)
+        good = ir.Const("bool", value=False) if when is None else ir.Unary("not", when)
         self.writer.expect(good, "rejected", self.where, reason, line=self.line)
 
     def look_ahead(self, asked: tuple[typed.Expr, ...]) -> None:
         """Before a loop that computes some expressions: what is the same in each round, and takes a loop of its own."""
         look_ahead_of(asked, self)
 
-    def with_local(self, name: str, number: Expr, *, afresh: bool = False) -> Values:
+    def with_local(self, name: str, number: ir.Expr, *, afresh: bool = False) -> Values:
         """The same where a loop variable has a value; ``afresh`` where what was decided may be something else for it."""
         variables = {**self.variables, name: number}
         return replace(self, variables=variables, decided={}, groups={}, awaited={}) if afresh else replace(self, variables=variables)
 
-    def with_locals(self, numbers: Mapping[str, Expr]) -> Values:
+    def with_locals(self, numbers: Mapping[str, ir.Expr]) -> Values:
         """The same where these names alone have values, and nothing is decided yet."""
         return replace(self, variables=numbers, decided={}, groups={}, awaited={})
 
@@ -246,23 +229,23 @@ class Values:
         line, column = span.source.line_column(span.start)
         return replace(self, line=f"{PurePath(span.source.name).name}:{line}:{column}")
 
-    def negative(self, operand: Expr) -> Expr:
+    def negative(self, operand: ir.Expr) -> ir.Expr:
         if type_of(operand) in ("f32", "f64"):
-            return Unary("neg", operand)
+            return ir.Unary("neg", operand)
         return binary(self.writer, "-", index(0), operand, self.where, self.line)
 
     # --- conversions ---------------------------------------------------------------------------------------------------
 
-    def convert(self, value: Expr, target: Scalar, rule: typed.ConversionRule) -> Expr:
+    def convert(self, value: ir.Expr, target: ir.Scalar, rule: typed.ConversionRule) -> ir.Expr:
         """A number as another type, by the rule that the mapping states."""
         source = type_of(value)
-        if isinstance(value, Const):
+        if isinstance(value, ir.Const):
             folded = _folded(value, target)
             if folded is not None:
                 return folded
         match rule:
             case "widen" | "nearest" | "wrap":
-                return value if source == target else Convert(target, value)
+                return value if source == target else ir.Convert(target, value)
             case "saturate":
                 return self.saturated(value, target)
             case "exact" | "round" | "truncate":
@@ -270,78 +253,78 @@ class Values:
             case _:
                 assert_never(rule)
 
-    def named(self, value: Expr, type_: Bool | Enum) -> Expr:
+    def named(self, value: ir.Expr, type_: Bool | Enum) -> ir.Expr:
         """A number as one of the few that a type has."""
         known = (0, 1) if isinstance(type_, Bool) else sorted({number for _, number in type_.values})
         number = self.writer.let("number", value)
         self.in_range(number, scalar_type(type_))
         with self.writer.nested() as other:
-            self.expect(Const("bool", value=False), describe(type_))
-        self.writer.emit(Switch(Convert("i64", number), tuple((each, ()) for each in known), block(other)))
+            self.expect(ir.Const("bool", value=False), describe(type_))
+        self.writer.emit(ir.Switch(ir.Convert("i64", number), tuple((each, ()) for each in known), block(other)))
         return self.convert(number, scalar_type(type_), "wrap")
 
-    def exact(self, value: Expr, target: Scalar, rule: str) -> Expr:
+    def exact(self, value: ir.Expr, target: ir.Scalar, rule: str) -> ir.Expr:
         source = type_of(value)
         local = self.writer.let("number", value)
         if target in ("f32", "f64"):
             return self.exact_float(local, target)
         if source in ("f32", "f64"):
-            whole = self.writer.let("whole", Unary("rint" if rule == "round" else "trunc", local))
+            whole = self.writer.let("whole", ir.Unary("rint" if rule == "round" else "trunc", local))
             if rule == "exact":
-                self.expect(Compare("eq", whole, local), target)
+                self.expect(ir.Compare("eq", whole, local), target)
             local = whole
         self.in_range(local, target)
-        return Convert(target, local)
+        return ir.Convert(target, local)
 
-    def exact_float(self, value: Local, target: Scalar) -> Expr:
+    def exact_float(self, value: ir.Local, target: ir.Scalar) -> ir.Expr:
         """A float that is the same number; NaN stays one."""
         source = type_of(value)
-        made = self.writer.let("float", Convert(target, value))
-        same: Expr = Compare("eq", Convert(source, made), value)
+        made = self.writer.let("float", ir.Convert(target, value))
+        same: ir.Expr = ir.Compare("eq", ir.Convert(source, made), value)
         if source in ("f32", "f64"):
-            same = Binary("or", same, Compare("ne", value, value))
+            same = ir.Binary("or", same, ir.Compare("ne", value, value))
         else:  # what is rounded up beyond the integers comes back as the last of them
-            same = Binary("and", same, Compare("lt", made, Const(target, float(RANGES[source][1]))))
+            same = ir.Binary("and", same, ir.Compare("lt", made, ir.Const(target, float(RANGES[source][1]))))
         self.expect(same, target)
         return made
 
-    def in_range(self, value: Local, target: Scalar) -> None:
+    def in_range(self, value: ir.Local, target: ir.Scalar) -> None:
         source = type_of(value)
         if target in ("f32", "f64", "bool"):
             return
         low, high = RANGES[target]
         if source in ("f32", "f64"):
-            self.expect(Compare("ge", value, Const(source, float(low))), target)
-            self.expect(Compare("lt", value, Const(source, float(high))), target)
+            self.expect(ir.Compare("ge", value, ir.Const(source, float(low))), target)
+            self.expect(ir.Compare("lt", value, ir.Const(source, float(high))), target)
             return
         least, most = RANGES.get(source, (0, 2))
         if low > least:
-            self.expect(Compare("ge", value, Const(source, low)), target)
+            self.expect(ir.Compare("ge", value, ir.Const(source, low)), target)
         if high < most:
-            self.expect(Compare("lt", value, Const(source, high)), target)
+            self.expect(ir.Compare("lt", value, ir.Const(source, high)), target)
 
-    def saturated(self, value: Expr, target: Scalar) -> Expr:
+    def saturated(self, value: ir.Expr, target: ir.Scalar) -> ir.Expr:
         source = type_of(value)
         if source in ("f32", "f64"):
             number = self.writer.let("number", value)
-            self.expect(Compare("eq", number, number), target)  # NaN is none
-            return Convert(target, Unary("rint", number))
+            self.expect(ir.Compare("eq", number, number), target)  # NaN is none
+            return ir.Convert(target, ir.Unary("rint", number))
         low, high = RANGES[target]
         least, most = RANGES[source]
         if low > least:
-            value = Binary("max", value, Const(source, low))
+            value = ir.Binary("max", value, ir.Const(source, low))
         if high < most:
-            value = Binary("min", value, Const(source, high - 1))
-        return Convert(target, value)
+            value = ir.Binary("min", value, ir.Const(source, high - 1))
+        return ir.Convert(target, value)
 
-    def expect(self, condition: Expr, target: str) -> None:
+    def expect(self, condition: ir.Expr, target: str) -> None:
         self.writer.expect(condition, "range", self.where, f"the value does not fit {NAMES.get(target, target)}", line=self.line)
 
 
 KEPT = (typed.IsText, typed.Choice, typed.Reduce)
 """Values that take a loop, or statements."""
 
-FAILING = (Require, Expect, HostCall, Call)
+FAILING = (ir.Require, ir.Expect, ir.HostCall, ir.Call)
 """Statements that may refuse a message."""
 
 RANGES: dict[str, tuple[int, int]] = {
@@ -359,7 +342,7 @@ RANGES: dict[str, tuple[int, int]] = {
 NAMES = {scalar: f"{'u' if scalar[0] == 'u' else ''}int{scalar[1:]}" for scalar in RANGES} | {"f32": "float32", "f64": "float64"}
 
 
-def scalar_type(type_: Type) -> Scalar:
+def scalar_type(type_: Type) -> ir.Scalar:
     """The kernel's type of a number."""
     match type_:
         case Bool() | Int() | Float() | Enum():
@@ -368,24 +351,24 @@ def scalar_type(type_: Type) -> Scalar:
             raise AssertionError(type_)
 
 
-def is_named(type_: Type, number: Expr) -> TypeGuard[Bool | Enum]:
+def is_named(type_: Type, number: ir.Expr) -> TypeGuard[Bool | Enum]:
     """Whether a type has some numbers alone, and it is not known which one comes."""
-    return isinstance(type_, Bool | Enum) and not isinstance(number, Const) and type_of(number) != "bool"
+    return isinstance(type_, Bool | Enum) and not isinstance(number, ir.Const) and type_of(number) != "bool"
 
 
-def constant(number: float | str, scalar: Scalar) -> Const:
+def constant(number: float | str, scalar: ir.Scalar) -> ir.Const:
     """A number that the mapping writes down."""
     assert not isinstance(number, str)
-    return Const(scalar, float(number) if scalar in ("f32", "f64") else int(number))
+    return ir.Const(scalar, float(number) if scalar in ("f32", "f64") else int(number))
 
 
-def _folded(value: Const, target: Scalar) -> Const | None:
+def _folded(value: ir.Const, target: ir.Scalar) -> ir.Const | None:
     """A constant of another type, where that is the same number."""
     if target in ("f32", "f64"):
-        return Const(target, float(value.value)) if abs(value.value) <= 1 << 24 or target == "f64" else None
+        return ir.Const(target, float(value.value)) if abs(value.value) <= 1 << 24 or target == "f64" else None
     if target in RANGES and float(value.value).is_integer():
         low, high = RANGES[target]
-        return Const(target, int(value.value)) if low <= value.value < high else None
+        return ir.Const(target, int(value.value)) if low <= value.value < high else None
     return None
 
 

@@ -6,23 +6,7 @@ import itertools
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import (
-    Advance,
-    Binary,
-    Capacity,
-    Compare,
-    Const,
-    Copy,
-    Get,
-    Load,
-    Place,
-    Reserve,
-    Select,
-    SetField,
-    Used,
-    While,
-    Wire,
-)
+from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.writer import MESSAGE, block
 from rosetta_jit.startup.dataclass import dataclass
@@ -30,7 +14,6 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable
 
-    from rosetta_jit.kernel.ir import Address, Expr, Local
     from rosetta_jit.lowering.writer import Writer
 
 LANE = "texts"
@@ -48,17 +31,17 @@ class View:
     """
 
     lane: int | None
-    first: Expr
-    after: Expr
+    first: ir.Expr
+    after: ir.Expr
     valid: bool = False
 
     @property
-    def size(self) -> Expr:
-        return Binary("sub", self.after, self.first)
+    def size(self) -> ir.Expr:
+        return ir.Binary("sub", self.after, self.first)
 
     @property
-    def address(self) -> Address:
-        return Wire(self.first) if self.lane is None else Place(self.lane, self.first)
+    def address(self) -> ir.Address:
+        return ir.Wire(self.first) if self.lane is None else ir.Place(self.lane, self.first)
 
     @property
     def memory(self) -> str:
@@ -81,49 +64,49 @@ def lane_of(writer: Writer) -> int:
     return writer.lane(LANE, 1)
 
 
-def byte_at(lane: int | None, at: Expr) -> Expr:
+def byte_at(lane: int | None, at: ir.Expr) -> ir.Expr:
     """One byte of a lane of bytes, or of the message."""
-    return Load("u8", at) if lane is None else Get("u8", Place(lane, at))
+    return ir.Load("u8", at) if lane is None else ir.Get("u8", ir.Place(lane, at))
 
 
-def lies_in(lane: int | None, at: Expr) -> Expr:
+def lies_in(lane: int | None, at: ir.Expr) -> ir.Expr:
     """Whether there is such a byte."""
-    low, high = (BEGIN, END) if lane is None else (index(0), Capacity(lane))
-    return Binary("and", Compare("ge", at, low), Compare("lt", at, high))
+    low, high = (BEGIN, END) if lane is None else (index(0), ir.Capacity(lane))
+    return ir.Binary("and", ir.Compare("ge", at, low), ir.Compare("lt", at, high))
 
 
-def put(writer: Writer, at: Expr, byte: Expr | int) -> None:
+def put(writer: Writer, at: ir.Expr, byte: ir.Expr | int) -> None:
     """Write a byte of the hidden lane."""
-    writer.emit(SetField(Place(lane_of(writer), at), Const("u8", byte) if isinstance(byte, int) else byte))
+    writer.emit(ir.SetField(ir.Place(lane_of(writer), at), ir.Const("u8", byte) if isinstance(byte, int) else byte))
 
 
-def room(writer: Writer, size: Expr) -> Local:
+def room(writer: Writer, size: ir.Expr) -> ir.Local:
     """Where the next so many bytes of the hidden lane begin; they become part of it by `kept`."""
-    writer.emit(Reserve(lane_of(writer), size))
-    start = writer.let("text", Used(lane_of(writer)))
+    writer.emit(ir.Reserve(lane_of(writer), size))
+    start = writer.let("text", ir.Used(lane_of(writer)))
     for each in has_room(writer, start, size):  # there is: said again, as what is used becomes a long sum where many texts are made
         writer.expect(each, "length", MESSAGE, LOST)
     return start
 
 
-def kept(writer: Writer, start: Expr, first: Expr, after: Expr, *, valid: bool) -> View:
+def kept(writer: Writer, start: ir.Expr, first: ir.Expr, after: ir.Expr, *, valid: bool) -> View:
     """The view of what was written from ``first`` to ``after``, into the room that starts there or before."""
     lane, end = lane_of(writer), writer.let("after", after)
-    count = writer.let("written", Binary("sub", end, start))
-    writer.emit(Reserve(lane, count), Advance(lane, count))  # there is room: said again where the proof may have lost it
+    count = writer.let("written", ir.Binary("sub", end, start))
+    writer.emit(ir.Reserve(lane, count), ir.Advance(lane, count))  # there is room: said again where the proof may have lost it
     return sound(writer, View(lane, first, end, valid))
 
 
-def sound(writer: Writer, view: View, expect: Callable[[Expr], None] | None = None) -> View:
+def sound(writer: Writer, view: View, expect: Callable[[ir.Expr], None] | None = None) -> View:
     """A view that lies where it says. That follows from how it was made; written down, each use of it is proven at a glance.
 
     Where it follows from a check before, ``expect`` is that check: in a loop, this one may be made before it.
     """
-    known = [Compare("le", view.first, view.after)]
+    known = [ir.Compare("le", view.first, view.after)]
     if view.lane is None:
-        known += [Compare("ge", view.first, BEGIN), Compare("le", view.after, END)]
+        known += [ir.Compare("ge", view.first, BEGIN), ir.Compare("le", view.after, END)]
     else:
-        known += [Compare("ge", view.first, index(0)), Compare("le", view.after, Capacity(view.lane))]
+        known += [ir.Compare("ge", view.first, index(0)), ir.Compare("le", view.after, ir.Capacity(view.lane))]
     for each in known:
         if expect is None:
             writer.expect(each, "length", MESSAGE, LOST)
@@ -139,23 +122,23 @@ def append(writer: Writer, text: Text) -> None:
         start = room(writer, index(len(text.text)))
         for number, byte in enumerate(text.text):
             put(writer, add(start, number), byte)
-        writer.emit(Advance(lane, index(len(text.text))))
+        writer.emit(ir.Advance(lane, index(len(text.text))))
         return
     size = writer.let("size", text.size)
     start = room(writer, size)
     if text.lane == lane:
-        writer.expect(Compare("le", text.after, start), "length", MESSAGE, LOST)
-    writer.emit(Copy(Place(lane, start), text.address, size), Advance(lane, size))
+        writer.expect(ir.Compare("le", text.after, start), "length", MESSAGE, LOST)
+    writer.emit(ir.Copy(ir.Place(lane, start), text.address, size), ir.Advance(lane, size))
 
 
 def joined(writer: Writer, texts: Iterable[Text]) -> View:
     """One text of several."""
     pieces = tuple(texts)
-    start = writer.let("text", Used(lane_of(writer)))
+    start = writer.let("text", ir.Used(lane_of(writer)))
     for piece in pieces:
         append(writer, piece)
     valid = all(isinstance(piece, Quoted) or piece.valid for piece in pieces)
-    return sound(writer, View(lane_of(writer), start, writer.let("after", Used(lane_of(writer))), valid))
+    return sound(writer, View(lane_of(writer), start, writer.let("after", ir.Used(lane_of(writer))), valid))
 
 
 def placed(writer: Writer, text: Text) -> View:
@@ -166,61 +149,63 @@ def placed(writer: Writer, text: Text) -> View:
 # --- within routines -----------------------------------------------------------------------------------------------------
 
 
-def parameters(writer: Writer, lane: int | None, names: tuple[str, str] = ("first", "after")) -> tuple[Local, Local, tuple[Expr, ...]]:
+def parameters(
+    writer: Writer, lane: int | None, names: tuple[str, str] = ("first", "after")
+) -> tuple[ir.Local, ir.Local, tuple[ir.Expr, ...]]:
     """The ends of a text that a routine is given, and what it relies on."""
     first, after = (writer.parameter(name, "i64") for name in names)
-    low, high = (BEGIN, END) if lane is None else (index(0), Capacity(lane))
-    return first, after, (Compare("ge", first, low), Compare("le", first, after), Compare("le", after, high))
+    low, high = (BEGIN, END) if lane is None else (index(0), ir.Capacity(lane))
+    return first, after, (ir.Compare("ge", first, low), ir.Compare("le", first, after), ir.Compare("le", after, high))
 
 
-def has_room(writer: Writer, target: Expr, size: Expr) -> tuple[Expr, Expr]:
+def has_room(writer: Writer, target: ir.Expr, size: ir.Expr) -> tuple[ir.Expr, ir.Expr]:
     """What a routine relies on that writes so many bytes to the hidden lane."""
-    return Compare("ge", target, index(0)), Compare("le", target, Binary("sub", Capacity(lane_of(writer)), size))
+    return ir.Compare("ge", target, index(0)), ir.Compare("le", target, ir.Binary("sub", ir.Capacity(lane_of(writer)), size))
 
 
-def between(value: Expr, low: Expr, high: Expr) -> Expr:
+def between(value: ir.Expr, low: ir.Expr, high: ir.Expr) -> ir.Expr:
     """A value that is known to lie there, so that the proof knows it too: that it is not too low at once."""
-    return Binary("max", Binary("min", value, high), low)
+    return ir.Binary("max", ir.Binary("min", value, high), low)
 
 
-def within(first: Expr, *inside: Expr, after: Expr) -> tuple[Expr, ...]:
+def within(first: ir.Expr, *inside: ir.Expr, after: ir.Expr) -> tuple[ir.Expr, ...]:
     """What a routine gives: places in order, from one end of a text to the other."""
     places = (first, *inside, after)
-    return tuple(Compare("le", before, behind) for before, behind in itertools.pairwise(places))
+    return tuple(ir.Compare("le", before, behind) for before, behind in itertools.pairwise(places))
 
 
 @dataclass(frozen=True, slots=True)
 class Scan:
     """A byte at a place; ``done`` is a variable that ends the scan."""
 
-    at: Local
-    byte: Local
-    done: Local
+    at: ir.Local
+    byte: ir.Local
+    done: ir.Local
 
 
 @contextmanager
 def scanning(
-    writer: Writer, lane: int | None, first: Expr, after: Expr, keeps: Callable[[Local], tuple[Expr, ...]] = lambda _: ()
+    writer: Writer, lane: int | None, first: ir.Expr, after: ir.Expr, keeps: Callable[[ir.Local], tuple[ir.Expr, ...]] = lambda _: ()
 ) -> Generator[Scan]:
     """A block that looks at each byte of a text in turn; ``keeps`` says what holds at each place."""
-    at, done = writer.var("at", first), writer.var("done", Const("bool", value=False))
+    at, done = writer.var("at", first), writer.var("done", ir.Const("bool", value=False))
     with writer.nested() as body:
         yield Scan(at, writer.let("byte", byte_at(lane, at)), done)
-        writer.assign(at, Select(done, after, add(at, 1)))
-    writer.emit(While(Compare("lt", at, after), block(body), (*within(first, at, after=after), *keeps(at)), at))
+        writer.assign(at, ir.Select(done, after, add(at, 1)))
+    writer.emit(ir.While(ir.Compare("lt", at, after), block(body), (*within(first, at, after=after), *keeps(at)), at))
 
 
-def is_one_of(byte: Expr, characters: bytes) -> Expr:
+def is_one_of(byte: ir.Expr, characters: bytes) -> ir.Expr:
     """Whether a byte is among some, of which there is one at least."""
-    found: Expr = Compare("eq", byte, Const("u8", characters[0]))
+    found: ir.Expr = ir.Compare("eq", byte, ir.Const("u8", characters[0]))
     for character in characters[1:]:
-        found = Binary("or", found, Compare("eq", byte, Const("u8", character)))
+        found = ir.Binary("or", found, ir.Compare("eq", byte, ir.Const("u8", character)))
     return found
 
 
-def is_between(byte: Expr, low: int, high: int) -> Expr:
+def is_between(byte: ir.Expr, low: int, high: int) -> ir.Expr:
     """Whether a byte lies between two, both included."""
-    return Binary("and", Compare("ge", byte, Const("u8", low)), Compare("le", byte, Const("u8", high)))
+    return ir.Binary("and", ir.Compare("ge", byte, ir.Const("u8", low)), ir.Compare("le", byte, ir.Const("u8", high)))
 
 
-TRUE = Const("bool", value=True)
+TRUE = ir.Const("bool", value=True)

@@ -5,26 +5,13 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.attributes.field_table import PLACE_BYTES, KeptFields
 from rosetta_jit.runtime.attributes.names import Names
-from rosetta_jit.runtime.attributes.places import PLACE_BYTES, KeptFields
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.limits import MAX_VIEWS
-from rosetta_jit.runtime.specs import (
-    BASETYPE,
-    DEFAULT,
-    OBJECT,
-    READONLY,
-    TP_SETATTRO,
-    GetSet,
-    Member,
-    attribute_of,
-    from_spec,
-    member_of,
-    slot_offset,
-    with_attributes,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -46,7 +33,7 @@ def take_slots(made: type, entries: Sequence[Entry]) -> KeptFields:
     """Where a class's objects keep what shows each field. The slots are no attributes any more: only accessors use them."""
     offsets: dict[str, int] = {}
     for slot in slots(entries):
-        offsets[entries[int(slot.rpartition("_")[2])].name] = slot_offset(made.__dict__[slot])
+        offsets[entries[int(slot.rpartition("_")[2])].name] = specs.slot_offset(made.__dict__[slot])
         delattr(made, slot)
     records = [entry for entry in entries if isinstance(entry.node, Record)]
     few = sum(map(_records_within, records)) <= MAX_VIEWS
@@ -64,9 +51,11 @@ def assignable(base: type) -> type:
     """A subclass whose objects can assign to members (`describe`), as far as their type lets them."""
     code = library()
     assert code is not None, "there are members for it"
-    created = from_spec(base.__name__, base, base.__basicsize__, DEFAULT | BASETYPE, ((TP_SETATTRO, code["set_attribute"]),))
+    created = specs.from_spec(
+        base.__name__, base, base.__basicsize__, specs.DEFAULT | specs.BASETYPE, ((specs.TP_SETATTRO, code["set_attribute"]),)
+    )
     names = {"__module__": base.__module__, "__qualname__": base.__qualname__, "__doc__": base.__doc__, "_code": code}
-    return with_attributes(created, names)
+    return specs.with_attributes(created, names)
 
 
 def describe(
@@ -78,9 +67,14 @@ def describe(
     numbers = {name: number for number, name in enumerate(entries)}
     members = [name for name in shown if name in kept.members]
     others = [name for name in shown if name not in kept.members]
-    slots, table = (Member * len(members))(), (GetSet * len(others))()
+    slots, table = (specs.Member * len(members))(), (specs.GetSet * len(others))()
     for definition, name in zip(slots, members, strict=True):
-        definition.name, definition.type, definition.offset, definition.flags = _c_name(name), OBJECT, kept.offsets[name], READONLY
+        definition.name, definition.type, definition.offset, definition.flags = (
+            _c_name(name),
+            specs.OBJECT,
+            kept.offsets[name],
+            specs.READONLY,
+        )
     for definition, name in zip(table, others, strict=True):
         get, set_ = accessors(entries[name], plain_arrays=plain_arrays)
         definition.name, definition.get, definition.set = _c_name(name), code[get], code[set_]
@@ -88,9 +82,9 @@ def describe(
     names = Names({name: (each.get, each.set, each.closure or 0) for name, each in zip(others, table, strict=True)})
     made._attributes = slots, table, names  # noqa: SLF001 # pyright: ignore[reportAttributeAccessIssue] - the class is ours; they live as long as it
     for name, definition in zip(members, slots, strict=True):
-        setattr(made, name, member_of(made, definition))
+        setattr(made, name, specs.member_of(made, definition))
     for name, definition in zip(others, table, strict=True):
-        setattr(made, name, attribute_of(made, definition))
+        setattr(made, name, specs.attribute_of(made, definition))
     names.give(made, reads=not kept.offsets and not has_methods)
 
 

@@ -6,20 +6,8 @@ import ctypes
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
 
+from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.attributes.code import library
-from rosetta_jit.runtime.specs import (
-    DEFAULT,
-    READONLY,
-    SSIZE_T,
-    TP_CALL,
-    TP_MEMBERS,
-    VECTORCALL,
-    Member,
-    address_of,
-    from_spec,
-    with_attributes,
-    write_word,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -42,10 +30,10 @@ class _Handing:
 
 @cache
 def _handing_class() -> type:
-    members = (Member * 2)(Member(b"__vectorcalloffset__", SSIZE_T, ENTRY, READONLY, None))
-    slots = ((TP_MEMBERS, ctypes.addressof(members)), (TP_CALL, address_of("PyVectorcall_Call")))
-    created = from_spec("Handing", _Handing, HANDING_BYTES, DEFAULT | VECTORCALL, slots)
-    return with_attributes(created, {"__module__": __name__, "_members": members, "_code": library()})
+    members = (specs.Member * 2)(specs.Member(b"__vectorcalloffset__", specs.SSIZE_T, ENTRY, specs.READONLY, None))
+    slots = ((specs.TP_MEMBERS, ctypes.addressof(members)), (specs.TP_CALL, specs.address_of("PyVectorcall_Call")))
+    created = specs.from_spec("Handing", _Handing, HANDING_BYTES, specs.DEFAULT | specs.VECTORCALL, slots)
+    return specs.with_attributes(created, {"__module__": __name__, "_members": members, "_code": library()})
 
 
 def handing(
@@ -79,5 +67,5 @@ def handing(
     made.decode, made.new, made.over, made.slow = decode, new, over, slow
     if encode is not None:
         made.encode = encode
-    write_word(id(made) + ENTRY, code[kind])
+    specs.write_word(id(made) + ENTRY, code[kind])
     return made

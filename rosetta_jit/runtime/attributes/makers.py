@@ -6,23 +6,9 @@ import ctypes
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
+from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.attributes.code import HEAP_TYPE_BYTES, functions, library
 from rosetta_jit.runtime.callable import is_native
-from rosetta_jit.runtime.specs import (
-    BASETYPE,
-    DEFAULT,
-    READONLY,
-    SSIZE_T,
-    TP_CALL,
-    TP_MEMBERS,
-    VECTORCALL,
-    Member,
-    address_of,
-    from_spec,
-    read_word,
-    with_attributes,
-    write_word,
-)
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.plan import Plan
@@ -53,10 +39,10 @@ class _Maker:
 
 @cache
 def _maker_class() -> type:
-    members = (Member * 2)(Member(b"__vectorcalloffset__", SSIZE_T, ENTRY, READONLY, None))
-    slots = ((TP_MEMBERS, ctypes.addressof(members)), (TP_CALL, address_of("PyVectorcall_Call")))
-    created = from_spec("Maker", _Maker, MAKER_BYTES, DEFAULT | VECTORCALL, slots)
-    return with_attributes(created, {"__module__": __name__, "_members": members, "_code": library()})
+    members = (specs.Member * 2)(specs.Member(b"__vectorcalloffset__", specs.SSIZE_T, ENTRY, specs.READONLY, None))
+    slots = ((specs.TP_MEMBERS, ctypes.addressof(members)), (specs.TP_CALL, specs.address_of("PyVectorcall_Call")))
+    created = specs.from_spec("Maker", _Maker, MAKER_BYTES, specs.DEFAULT | specs.VECTORCALL, slots)
+    return specs.with_attributes(created, {"__module__": __name__, "_members": members, "_code": library()})
 
 
 def maker(holder_type: Any, plan: Plan) -> Any:
@@ -67,7 +53,7 @@ def maker(holder_type: Any, plan: Plan) -> Any:
     made = maker_class.__new__(maker_class)
     made.holder_type, made.cell, made.plan, made.slow = holder_type, holder_type.family_.cell, plan, _made
     made.recipe = made.seen = None
-    write_word(id(made) + ENTRY, code["call_maker"])
+    specs.write_word(id(made) + ENTRY, code["call_maker"])
     return made
 
 
@@ -84,13 +70,13 @@ def class_of_holder_classes() -> type:
     """A class to derive the class of holder classes from, with room behind each for what compiled code makes its objects of."""
     if not is_native():
         return type("HolderClassBase", (type,), {"__module__": __name__})
-    return from_spec("HolderClassBase", type, HEAP_TYPE_BYTES + 16, DEFAULT | BASETYPE, ())
+    return specs.from_spec("HolderClassBase", type, HEAP_TYPE_BYTES + 16, specs.DEFAULT | specs.BASETYPE, ())
 
 
 def let_call(metaclass: type) -> None:
     """Let CPython call the classes of a metaclass through what each of them has for that, as it calls all whose class is `type`."""
     if is_native():
-        write_word(id(metaclass) + FLAGS, read_word(id(metaclass) + FLAGS) | VECTORCALL)
+        specs.write_word(id(metaclass) + FLAGS, specs.read_word(id(metaclass) + FLAGS) | specs.VECTORCALL)
 
 
 def make_quickly(holder_type: type) -> None:
@@ -98,8 +84,8 @@ def make_quickly(holder_type: type) -> None:
     code = library()
     assert code is not None, "there is code for it"
     if not holder_type.__dictoffset__:  # whose base, which is not ours, has forgotten its slots: CPython lets go of the dict
-        write_word(id(holder_type) + DEALLOC, code["end_holder"])
-    write_word(id(holder_type) + CLASS_CALL, code["call_class"])
+        specs.write_word(id(holder_type) + DEALLOC, code["end_holder"])
+    specs.write_word(id(holder_type) + CLASS_CALL, code["call_class"])
 
 
 def set_recipe(holder_type: type, recipe: tuple[Any, ...] | None) -> None:
@@ -107,10 +93,10 @@ def set_recipe(holder_type: type, recipe: tuple[Any, ...] | None) -> None:
     call the class as any other.
     """
     if is_native():
-        write_word(id(holder_type) + HEAP_TYPE_BYTES, 0 if recipe is None else id(recipe))
+        specs.write_word(id(holder_type) + HEAP_TYPE_BYTES, 0 if recipe is None else id(recipe))
 
 
 def call_as_any(holder_type: type) -> None:
     """Let a class make its objects as Python says from now on: somebody gives it another constructor."""
     if is_native():
-        write_word(id(holder_type) + CLASS_CALL, 0)
+        specs.write_word(id(holder_type) + CLASS_CALL, 0)

@@ -11,21 +11,8 @@ from functools import cache
 from types import MethodType
 from typing import TYPE_CHECKING, Any, Literal, cast
 
+from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.attributes.code import library
-from rosetta_jit.runtime.specs import (
-    DEFAULT,
-    METHOD_DESCRIPTOR,
-    READONLY,
-    SSIZE_T,
-    TP_CALL,
-    TP_MEMBERS,
-    VECTORCALL,
-    Member,
-    address_of,
-    from_spec,
-    with_attributes,
-    write_word,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -77,12 +64,12 @@ class _BoundMethod(_Method):  # one that is called on an object
 def _class_of(kind: Kind) -> type:
     """The class of methods of a kind."""
     base = _Method if kind in OF_CLASSES else _BoundMethod
-    flags = DEFAULT | VECTORCALL | (0 if kind in OF_CLASSES else METHOD_DESCRIPTOR)
-    members = (Member * 2)(Member(b"__vectorcalloffset__", SSIZE_T, ENTRY, READONLY, None))
-    slots = ((TP_MEMBERS, ctypes.addressof(members)), (TP_CALL, address_of("PyVectorcall_Call")))
-    created = from_spec("Method", base, METHOD_BYTES, flags, slots)
+    flags = specs.DEFAULT | specs.VECTORCALL | (0 if kind in OF_CLASSES else specs.METHOD_DESCRIPTOR)
+    members = (specs.Member * 2)(specs.Member(b"__vectorcalloffset__", specs.SSIZE_T, ENTRY, specs.READONLY, None))
+    slots = ((specs.TP_MEMBERS, ctypes.addressof(members)), (specs.TP_CALL, specs.address_of("PyVectorcall_Call")))
+    created = specs.from_spec("Method", base, METHOD_BYTES, flags, slots)
     doc = property(lambda method: method.function.__doc__)
-    return with_attributes(created, {"__module__": __name__, "__doc__": doc, "_members": members, "_code": library()})
+    return specs.with_attributes(created, {"__module__": __name__, "__doc__": doc, "_members": members, "_code": library()})
 
 
 def method(kind: Kind, function: Any, bind: Callable[[Any], None]) -> Any:
@@ -99,7 +86,7 @@ def method(kind: Kind, function: Any, bind: Callable[[Any], None]) -> Any:
     assert code is not None, "there are methods"
     method_class: Any = _class_of(kind)
     made = method_class.__new__(method_class)
-    write_word(id(made) + ENTRY, code[f"method_{kind}"])
+    specs.write_word(id(made) + ENTRY, code[f"method_{kind}"])
     made.function = function
 
     def slow(*arguments: Any, **named: Any) -> Any:

@@ -98,6 +98,7 @@ def place(image: bytes, symbols: Sequence[str]) -> tuple[dict[str, int], Callabl
     return {symbol: base + prelinked.gives[symbol] for symbol in symbols}, partial(_system().munmap, base, size)
 
 
+@cache
 def _address_of(name: str) -> int:
     try:
         found = getattr(ctypes.pythonapi, name)

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.runtime.attributes.places import KeptFields, OfSequences
+    from rosetta_jit.runtime.attributes.field_table import KeptFields, OfSequences
     from rosetta_jit.runtime.attributes.sameness import Sameness
     from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.objects.foreign import Foreign
@@ -67,6 +67,7 @@ class Family:
         self.assigns_whole = manners.assigns_whole
         self._accesses: dict[int, Access] = {}
         self._views: dict[str, type[View]] = {}
+        self._others: dict[str, type[Holder]] = {}
         self._shown_of: dict[int, frozenset[str]] = {}
         self._recipes: dict[int, tuple[Any, ...]] = {}
         self.latest: tuple[Any, Any, Any] = None, None, None
@@ -131,8 +132,11 @@ class Family:
         """The holder class of another struct of the schema, with the same manners."""
         if struct == self.struct.name:
             return self.holder
-        type_ = Ref(struct) if struct in self.schema.types else written_within(self.struct, self.schema, struct)
-        return holder_class(type_, self.schema, self.manners)
+        other = self._others.get(struct)
+        if other is None:
+            type_ = Ref(struct) if struct in self.schema.types else written_within(self.struct, self.schema, struct)
+            other = self._others[struct] = holder_class(type_, self.schema, self.manners)
+        return other
 
     def view_class(self, struct: str) -> type[View]:
         """The class of views of a struct: a subclass of its holder class."""

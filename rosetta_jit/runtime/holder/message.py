@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from rosetta_jit.errors import EncodeError, InvalidHolder
 from rosetta_jit.kernel.state import ADDRESS, VALID, lane_word
 from rosetta_jit.runtime.attributes.code import functions, library
-from rosetta_jit.runtime.attributes.places import PLACE_BYTES, Places
+from rosetta_jit.runtime.attributes.field_table import PLACE_BYTES, FieldTable
 from rosetta_jit.runtime.callable import ALWAYS, NEVER, bind_state, message_base
 from rosetta_jit.runtime.holder import arena
 from rosetta_jit.runtime.holder.record import Child, Items, Pairs, Record
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from rosetta_jit.model.types import Schema, Struct
-    from rosetta_jit.runtime.attributes.places import KeptFields, OfSequences
+    from rosetta_jit.runtime.attributes.field_table import KeptFields, OfSequences
     from rosetta_jit.runtime.attributes.sameness import Sameness
     from rosetta_jit.runtime.holder.record import Entry
     from rosetta_jit.runtime.holder.tree import Tree
@@ -126,7 +126,7 @@ class Access:
         self.getters = _Made(lambda name: getter(record.entries[name], family))
         self.setters = _Made(lambda name: setter(record.entries[name], family))
         kept = family.kept_of(record.struct)
-        self._places = None if kept is None else Places(record, self._read, write_field, kept, family.sequences)
+        self._places = None if kept is None else FieldTable(record, self._read, write_field, kept, family.sequences)
         self._numbers = {name: number for number, name in enumerate(record.entries)}
         for name in kept.members if kept is not None else ():
             self._show(name)

@@ -10,8 +10,8 @@ from rosetta_jit.transports.base import Message, Sink, Source
 from rosetta_jit.transports.connecting import Dialer, Listener
 from rosetta_jit.transports.limits import MAX_CONNECTIONS
 from rosetta_jit.transports.loop import loop
+from rosetta_jit.transports.sockets.endpoints import targets
 from rosetta_jit.transports.sockets.framing import framed, messages
-from rosetta_jit.transports.sockets.places import targets
 from rosetta_jit.transports.stream import Stream, finish_all
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class Links:
         went: Callable[[], object] = lambda: None,
         again: bool = True,
     ) -> None:
-        self.streams: set[Stream] = set()
+        self.streams: tuple[Stream, ...] = ()
         self._counts = counts
         self._machine = machine
         self._went = went
@@ -72,7 +72,7 @@ class Links:
 
     def flush(self, timeout: float) -> bool:
         """Wait until nothing waits to be sent."""
-        return all(each.wait(timeout, empty=True) for each in tuple(self.streams))
+        return all(each.wait(timeout, empty=True) for each in self.streams)
 
     def _stop(self) -> None:
         self._closed = True
@@ -88,12 +88,12 @@ class Links:
             self._counts.reconnects += 1
         self._was_connected = True
         stream = Stream(sock, self._machine, self._gone)
-        self.streams.add(stream)
+        self.streams = *self.streams, stream
         self._counts.connections = len(self.streams)
         stream.start()
 
     def _gone(self, stream: Stream, why: str) -> None:
-        self.streams.discard(stream)
+        self.streams = tuple(each for each in self.streams if each is not stream)
         self._counts.connections = len(self.streams)
         if stream.unsent:
             self._counts.lose("closed before it was sent" if self._closed else "the peer went away", stream.unsent.total())
@@ -143,7 +143,7 @@ class TcpSink(Sink):
         if self._closed:
             raise TransportError("closed", self.address, "this sink is closed")
         parts = framed(self._frame, data, self._most, self.address)
-        streams = tuple(self._links.streams) or self._first()
+        streams = self._links.streams or self._first()
         if not streams:
             self.lose("nobody is connected")
             return False
@@ -167,10 +167,10 @@ class TcpSink(Sink):
 
     def _first(self) -> tuple[Stream, ...]:
         """The first connection, where one comes in time."""
-        return () if loop().is_current else tuple(waited(self._links, self._wait))
+        return () if loop().is_current else waited(self._links, self._wait)
 
 
-def waited(links: Links, seconds: float) -> set[Stream]:
+def waited(links: Links, seconds: float) -> tuple[Stream, ...]:
     """The connections, as soon as there is one or so many seconds have passed."""
     from time import monotonic, sleep
 

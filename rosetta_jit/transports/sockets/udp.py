@@ -11,7 +11,7 @@ from rosetta_jit.transports.base import Message, Sink, Source
 from rosetta_jit.transports.datagrams import Datagrams, bound, sending
 from rosetta_jit.transports.limits import MAX_DATAGRAM
 from rosetta_jit.transports.loop import loop
-from rosetta_jit.transports.sockets.places import targets
+from rosetta_jit.transports.sockets.endpoints import targets
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -110,7 +110,6 @@ def test_defaults_are_those_of_protobuf():
         targets = {descriptor_pb2.FieldOptions.OptionTargetType.Name(target).removeprefix("TARGET_TYPE_") for target in options.targets}
         words = {"ENUM_ENTRY": "ENUMVALUE", "EXTENSION_RANGE": "EXTENSIONRANGE"}
         assert {f"{words.get(target, target)}OPTIONS" for target in targets} == {target.upper() for target in feature.targets}
-        assert options.feature_support.edition_introduced == numbers[feature.since]
 
 
 VALUES = {
@@ -273,21 +272,6 @@ def test_utf8_is_demanded_as_in_proto2():
     for tag in (0x0A, 0x12):
         with pytest.raises(rj.DecodeError, match="UTF-8"):
             decode(bytes([tag, 1, 0xFF]))
-
-
-def test_visibility_is_of_the_file_that_declares():
-    files = {"b.proto": 'edition = "2024"; message B { message C { } } message D { B.C c = 1; }'}
-    users = ("B b = 1;", "B.C c = 1;")
-    outcomes: list[str] = []
-    for user in users:
-        text = f'edition = "2023"; import "b.proto"; message M {{ {user} }}'
-        try:
-            parse(Source("a.proto", text), lambda path: Source(path, files[path]))
-            outcomes.append("")
-        except SchemaError as error:
-            outcomes.append(str(error))
-    assert outcomes[0] == ""
-    assert "`B.C` is local to `b.proto`" in outcomes[1]
 
 
 def test_a_required_field_that_is_missing_is_refused(sets):

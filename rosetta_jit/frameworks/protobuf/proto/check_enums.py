@@ -28,10 +28,8 @@ def check_enums(declared: Declarations) -> Iterator[Diagnostic]:
         yield from check_overlaps(enum.reserved, -(2**31), 2**31 - 1)
         yield from repeated_names(enum.reserved_names)
         yield from _values(entry)
-        yield from _aliases(enum)
-        # Enums that are older than the rule can say so, but in proto2 only.
-        if entry.version != "proto2" or not flag(enum.options, "deprecated_legacy_json_field_conflicts"):
-            yield from _stripped_names(enum)
+        if not flag(enum.options, "allow_alias"):
+            yield from _aliases(enum)
 
 
 def _values(entry: DeclaredEnum) -> Iterator[Diagnostic]:
@@ -48,34 +46,7 @@ def _values(entry: DeclaredEnum) -> Iterator[Diagnostic]:
 
 def _aliases(enum: Enum) -> Iterator[Diagnostic]:
     users: dict[int, EnumValue] = {}
-    aliases = [value for value in enum.values if users.setdefault(value.number, value) is not value]
-    allowed = flag(enum.options, "allow_alias")
-    if allowed is False or (allowed and not aliases):
-        yield say.idle_alias_option(enum.name)
-    if not allowed:
-        for value in aliases:
-            yield say.alias(value.number_span, value.number, users[value.number].name)
-
-
-def _stripped_names(enum: Enum) -> Iterator[Diagnostic]:
-    """Some languages drop the enum's name from its values, and case: the rest must still tell them apart."""
-    seen: dict[str, EnumValue] = {}
-    prefix = enum.name.text.replace("_", "").lower()
     for value in enum.values:
-        first = seen.setdefault(_stripped(value.name.text, prefix), value)
-        if first is not value and first.number != value.number and first.name.text != value.name.text:
-            yield say.same_stripped_name(value.name, first.name)
-
-
-def _stripped(name: str, prefix: str) -> str:
-    bare = name.lower()
-    taken, index = 0, 0
-    while index < len(bare) and taken < len(prefix):
-        if bare[index] == "_":
-            index += 1
-        elif bare[index] == prefix[taken]:
-            index, taken = index + 1, taken + 1
-        else:
-            return bare.replace("_", "")
-    rest = bare[index:].replace("_", "") if taken == len(prefix) else ""
-    return rest or bare.replace("_", "")
+        first = users.setdefault(value.number, value)
+        if first is not value:
+            yield say.alias(value.number_span, value.number, first.name)

@@ -14,7 +14,7 @@ from rosetta_jit.frameworks.protobuf.proto.declarations import fields_in, file_f
 from rosetta_jit.frameworks.protobuf.proto.features import FEATURES, choices, chosen_word, own
 from rosetta_jit.frameworks.protobuf.proto.options import options_of, type_at
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS, is_packable
-from rosetta_jit.frameworks.protobuf.proto.tree import EDITIONS, MapType, Word
+from rosetta_jit.frameworks.protobuf.proto.tree import EDITIONS, MapType
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,15 +22,7 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredField
     from rosetta_jit.frameworks.protobuf.proto.features import Choice
-    from rosetta_jit.frameworks.protobuf.proto.tree import Edition, Field, Option, Version
-
-REPLACED: dict[tuple[str, str], tuple[Edition, str]] = {
-    ("FieldOptions", "packed"): ("2023", "features.repeated_field_encoding"),
-    ("FileOptions", "java_string_check_utf8"): ("2023", "features.(pb.java).utf8_validation"),
-    ("FieldOptions", "ctype"): ("2024", "features.(pb.cpp).string_type"),
-    ("FileOptions", "java_multiple_files"): ("2024", "features.(pb.java).nest_in_file_class"),
-}
-"""Options that gave way to features: since which edition, and to which."""
+    from rosetta_jit.frameworks.protobuf.proto.tree import Field, Option, Version
 
 
 def check_features(declared: Declarations) -> Iterator[Diagnostic]:
@@ -38,10 +30,10 @@ def check_features(declared: Declarations) -> Iterator[Diagnostic]:
     for file in declared.files:
         for holder, options in options_of(file):
             for option in options:
-                yield from _option(holder, option, file.version)
+                yield from _option(option, file.version)
             if file.version in EDITIONS:
                 for choice in choices(options):
-                    yield from _choice(holder, choice, file.version, declared)
+                    yield from _choice(holder, choice, declared)
         if file_features(file).field_presence == "LEGACY_REQUIRED":
             yield from (say_edition.required_by_default(option.span) for option in file.options if "field_presence" in own((option,)))
     for message in declared.messages.values():
@@ -51,7 +43,7 @@ def check_features(declared: Declarations) -> Iterator[Diagnostic]:
         yield from _field(extension.entry, declared)
 
 
-def _option(holder: str, option: Option, version: Version) -> Iterator[Diagnostic]:
+def _option(option: Option, version: Version) -> Iterator[Diagnostic]:
     if version not in EDITIONS:
         if option.parts[0] == "features":
             yield say_edition.features_before_editions(option.span)
@@ -59,13 +51,9 @@ def _option(holder: str, option: Option, version: Version) -> Iterator[Diagnosti
     told = [choice.path for choice in choices((option,))]
     if len(set(told)) < len(told):
         yield say.repeated_option(option.span, option.name)
-    since, feature = REPLACED.get((holder, option.name), ("", ""))
-    unset = option.name == "java_string_check_utf8" and option.value == Word("false")
-    if since and since <= version and not unset:
-        yield say_edition.replaced_option(option.span, option.name, since, feature)
 
 
-def _choice(holder: str, choice: Choice, version: Version, declared: Declarations) -> Iterator[Diagnostic]:
+def _choice(holder: str, choice: Choice, declared: Declarations) -> Iterator[Diagnostic]:
     span = choice.option.span
     name = ".".join(("features", *choice.path)).replace("(.", "(")
     if "()" in choice.path:
@@ -78,11 +66,9 @@ def _choice(holder: str, choice: Choice, version: Version, declared: Declaration
     if type_ is None:
         yield say_edition.unknown_feature(span, name)
     elif feature is None:
-        return  # of another language's generator: it changes no byte
+        return  # of another language's generator, or for protoc alone: it changes no byte
     elif chosen_word(feature, choice) is None:
         yield say.wrong_option(span, name, "one of " + ", ".join(f"`{word}`" for word in feature.values), spelled(choice.value))
-    elif version < feature.since:
-        yield say_edition.early_feature(span, name, feature.since)
     elif holder not in feature.targets:
         yield say_edition.feature_elsewhere(span, name, sorted(feature.targets))
 

@@ -8,27 +8,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.frameworks.protobuf import diagnostics as say
-from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
-from rosetta_jit.frameworks.protobuf.proto.syntax import VISIBILITIES
-from rosetta_jit.frameworks.protobuf.proto.tree import (
-    EDITIONS,
-    LARGEST_ENUM_NUMBER,
-    LARGEST_FIELD_NUMBER,
-    LARGEST_MESSAGE_SET_NUMBER,
-    Enum,
-    EnumValue,
-    Extend,
-    Field,
-    Label,
-    MapType,
-    Message,
-    Name,
-    Oneof,
-    Range,
-    Visibility,
-)
-from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, ends, one, tokens_of
+from rosetta_jit.frameworks.protobuf.proto import tree
+from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, one, tokens_of
 from rosetta_jit.parsing.lalr import Token, Tree
 
 if TYPE_CHECKING:
@@ -42,29 +24,20 @@ class DeclarationReader(ValueReader):
 
     __slots__ = ()
 
-    def visibility(self, node: Node) -> Visibility | None:
-        word = tokens_of(node)[0]
-        if word.type != "VISIBILITY":
-            return None
-        if self.version != "2024":
-            self.problems.append(say_edition.early_visibility(self.at(word)))
-        return cast("Visibility", str(word))
-
     # Messages
 
-    def message(self, node: Node) -> Message:
-        return self.body(node, self.name(tokens_of(node)[-1]), self.doc(node), self.visibility(node))
+    def message(self, node: Node) -> tree.Message:
+        return self.body(node, self.name(tokens_of(node)[-1]), self.doc(node))
 
-    def body(self, node: Node, name: Name, doc: str, visibility: Visibility | None = None) -> Message:
+    def body(self, node: Node, name: tree.Name, doc: str) -> tree.Message:
         members = tuple(
             self.oneof(child) if child.data == "oneof" else self.field(child) for child in all_of(node, "field", "group", "oneof")
         )
-        self.check_words(node)
         extends, extend_groups = self.extends(node)
         reserved, reserved_names = self.reserved(node)
         options = self.options(node)
         message_set = any(option.parts == ("message_set_wire_format",) for option in options)
-        return Message(
+        return tree.Message(
             name=name,
             members=members,
             messages=(
@@ -75,29 +48,21 @@ class DeclarationReader(ValueReader):
             ),
             enums=tuple(self.enum(child) for child in all_of(node, "enum")),
             extends=extends,
-            extensions=self.extensions(node, LARGEST_MESSAGE_SET_NUMBER if message_set else LARGEST_FIELD_NUMBER),
+            extensions=self.extensions(node, tree.LARGEST_MESSAGE_SET_NUMBER if message_set else tree.LARGEST_FIELD_NUMBER),
             extension_options=tuple(option for block in all_of(node, "extensions") for option in self.settings(block)),
             reserved=reserved,
             reserved_names=reserved_names,
             options=options,
             doc=doc,
-            visibility=visibility,
         )
 
-    def check_words(self, node: Node) -> None:
-        """In edition 2024 a field of a message cannot begin with the words for visibility, though types may have such names."""
-        for field in all_of(node, "field"):
-            first = ends(field)[0]
-            if self.version == "2024" and first in VISIBILITIES:
-                self.problems.append(say_edition.misplaced_visibility(self.at(first), first))
-
-    def groups(self, node: Node) -> Iterator[Message]:
+    def groups(self, node: Node) -> Iterator[tree.Message]:
         """The messages that the groups among some fields declare."""
         for child in _fields(node):
             if child.data == "group":
                 yield self.body(child, self.name(tokens_of(child)[-2]), self.doc(child))
 
-    def field(self, node: Node) -> Field:
+    def field(self, node: Node) -> tree.Field:
         tokens = tokens_of(node)
         group = node.data == "group"
         # `repeated = 1` without a label is a field of that name: only the count of words tells.
@@ -108,15 +73,15 @@ class DeclarationReader(ValueReader):
             if not written.text[0].isupper():
                 # Its field would have the same name.
                 self.problems.append(say.lower_case_group(written))
-            name, type_ = Name(written.text.lower(), written.span), written
+            name, type_ = tree.Name(written.text.lower(), written.span), written
         else:
             name, type_ = self.name(tokens[-2]), self.type(node)
-        return Field(
+        return tree.Field(
             name=name,
             type=type_,
             number=self.integer(number),
             number_span=self.at(number),
-            label=cast("Label", str(label)) if label else None,
+            label=cast("tree.Label", str(label)) if label else None,
             label_span=self.at(label) if label else None,
             group=group,
             options=self.settings(node),
@@ -124,21 +89,21 @@ class DeclarationReader(ValueReader):
             span=self.at(tokens[-2]),
         )
 
-    def type(self, node: Node) -> Name | MapType:
+    def type(self, node: Node) -> tree.Name | tree.MapType:
         for map_ in all_of(node, "map"):
             key, value = all_of(map_, "path")
-            return MapType(self.path(key), self.path(value), self.at(tokens_of(map_)[0]))
+            return tree.MapType(self.path(key), self.path(value), self.at(tokens_of(map_)[0]))
         return self.path(one(node, "path"))
 
-    def oneof(self, node: Node) -> Oneof:
-        return Oneof(
+    def oneof(self, node: Node) -> tree.Oneof:
+        return tree.Oneof(
             name=self.name(tokens_of(node)[1]),
             fields=tuple(self.field(child) for child in _fields(node)),
             options=self.options(node),
             doc=self.doc(node),
         )
 
-    def extends(self, node: Node) -> tuple[tuple[Extend, ...], list[Message]]:
+    def extends(self, node: Node) -> tuple[tuple[tree.Extend, ...], list[tree.Message]]:
         """The extend blocks, and the messages of the groups in them: these are declared where the block stands."""
         blocks = list(all_of(node, "extend"))
         for block in blocks:
@@ -147,39 +112,35 @@ class DeclarationReader(ValueReader):
         groups = [group for block in blocks for group in self.groups(block)]
         return tuple(self.extend(block) for block in blocks), groups
 
-    def extend(self, node: Node) -> Extend:
-        return Extend(self.path(one(node, "path")), tuple(self.field(child) for child in _fields(node)))
+    def extend(self, node: Node) -> tree.Extend:
+        return tree.Extend(self.path(one(node, "path")), tuple(self.field(child) for child in _fields(node)))
 
-    def extensions(self, node: Node, limit: int) -> tuple[Range, ...]:
+    def extensions(self, node: Node, limit: int) -> tuple[tree.Range, ...]:
         return tuple(self.range(child, limit) for block in all_of(node, "extensions") for child in all_of(block, "range"))
 
-    def reserved(self, node: Node, limit: int = LARGEST_FIELD_NUMBER) -> tuple[tuple[Range, ...], tuple[Name, ...]]:
+    def reserved(self, node: Node, limit: int = tree.LARGEST_FIELD_NUMBER) -> tuple[tuple[tree.Range, ...], tuple[tree.Name, ...]]:
         blocks = list(all_of(node, "reserved"))
         return (
             tuple(self.range(child, limit) for block in blocks for child in all_of(block, "range")),
             tuple(name for block in blocks for name in self.reserved_names(block)),
         )
 
-    def reserved_names(self, node: Node) -> Iterator[Name]:
-        """Strings in proto2 and proto3, identifiers in editions."""
-        quoted = [Name(self.text(string), self.span(string)) for string in all_of(node, "string")]
+    def reserved_names(self, node: Node) -> Iterator[tree.Name]:
+        """Strings in proto2 and proto3, identifiers in editions; either is read in both."""
+        quoted = [tree.Name(self.text(string), self.span(string)) for string in all_of(node, "string")]
         bare = [self.name(token) for token in tokens_of(node)]
-        if self.version in EDITIONS:
-            self.problems.extend(say_edition.reserved_string(name) for name in quoted)
-        else:
-            self.problems.extend(say_edition.reserved_identifier(name) for name in bare)
         yield from (*quoted, *bare)
 
-    def range(self, node: Node, limit: int) -> Range:
+    def range(self, node: Node, limit: int) -> tree.Range:
         first, *rest = node.children
         span = self.span(node)
         start = self.end(first, limit)
         if not rest:
-            return Range(start, start, span)
+            return tree.Range(start, start, span)
         word, last = rest
         if str(word) != "to":
             self.problems.append(of_file.unexpected(self.at(cast("Token", word)), str(word), {"COMMA", "SEMICOLON", "TO"}))
-        return Range(start, self.end(last, limit), span)
+        return tree.Range(start, self.end(last, limit), span)
 
     def end(self, node: Node | Token, limit: int) -> int:
         """One end of a range."""
@@ -191,20 +152,19 @@ class DeclarationReader(ValueReader):
 
     # Enums
 
-    def enum(self, node: Node) -> Enum:
-        reserved, reserved_names = self.reserved(node, LARGEST_ENUM_NUMBER)
-        return Enum(
+    def enum(self, node: Node) -> tree.Enum:
+        reserved, reserved_names = self.reserved(node, tree.LARGEST_ENUM_NUMBER)
+        return tree.Enum(
             name=self.name(tokens_of(node)[-1]),
             values=tuple(self.value(child) for child in all_of(node, "value")),
             reserved=reserved,
             reserved_names=reserved_names,
             options=self.options(node),
-            visibility=self.visibility(node),
         )
 
-    def value(self, node: Node) -> EnumValue:
+    def value(self, node: Node) -> tree.EnumValue:
         number = one(node, "signed")
-        return EnumValue(self.name(tokens_of(node)[0]), self.signed(number), self.span(number), self.settings(node))
+        return tree.EnumValue(self.name(tokens_of(node)[0]), self.signed(number), self.span(number), self.settings(node))
 
 
 def _fields(node: Node) -> list[Node]:

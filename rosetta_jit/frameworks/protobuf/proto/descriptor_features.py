@@ -1,4 +1,4 @@
-"""What descriptors say since there are editions: features, visibility, and imports for options alone.
+"""What descriptors say since there are editions: features, and imports for options alone.
 
 Older versions of protobuf's Python package know fewer of these fields; to them the others are unknown fields.
 """
@@ -7,15 +7,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.protobuf.proto.features import FEATURES, choices
+from rosetta_jit.frameworks.protobuf.proto.features import FEATURES
 from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Entry, Option, Word
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from google.protobuf.descriptor_pb2 import (
-        DescriptorProto,
-        EnumDescriptorProto,
         EnumOptions,
         FieldOptions,
         FileDescriptorProto,
@@ -24,16 +22,12 @@ if TYPE_CHECKING:
         OneofOptions,
     )
 
-    from rosetta_jit.frameworks.protobuf.proto.tree import Version, Visibility
-
     Holder = FileOptions | MessageOptions | FieldOptions | OneofOptions | EnumOptions
 
 OPTION_DEPENDENCY = 15
 """The number of `FileDescriptorProto.option_dependency`."""
 MEANT = range(1, 7)
 """Numbers of the features in a FeatureSet that change what is on the wire; those behind them are for protoc alone."""
-VISIBILITIES: dict[int, Visibility] = {1: "local", 2: "export"}
-"""google.protobuf.SymbolVisibility"""
 
 
 def features(options: Holder) -> Iterator[Option]:
@@ -49,19 +43,6 @@ def has_unknown_features(options: Holder) -> bool:
     from google.protobuf.unknown_fields import UnknownFieldSet
 
     return options.HasField("features") and any(each.field_number in MEANT for each in UnknownFieldSet(options.features))
-
-
-def unenforced(version: Version, options: FileOptions) -> Iterator[Option]:
-    """What protoc has checked and leaves out of descriptors: the style of names, and which of them are local by default."""
-    kept = {choice.path for choice in choices(tuple(features(options)))}
-    for name, word in (("enforce_naming_style", "STYLE_LEGACY"), ("default_symbol_visibility", "EXPORT_ALL")):
-        if version == "2024" and (name,) not in kept:
-            yield Option(("features", name), Word(word))
-
-
-def visibility(declaration: DescriptorProto | EnumDescriptorProto) -> Visibility | None:
-    """The word before a message or an enum."""
-    return VISIBILITIES.get(getattr(declaration, "visibility", 0))
 
 
 def option_dependencies(file: FileDescriptorProto) -> Sequence[str]:

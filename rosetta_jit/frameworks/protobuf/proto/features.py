@@ -16,7 +16,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from rosetta_jit.frameworks.protobuf.proto.tree import Edition, Field, Option, Value, Version
+    from rosetta_jit.frameworks.protobuf.proto.tree import Field, Option, Value, Version
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,17 +29,14 @@ class Features:
     utf8_validation: Literal["VERIFY", "NONE"]
     message_encoding: Literal["LENGTH_PREFIXED", "DELIMITED"]
     json_format: Literal["ALLOW", "LEGACY_BEST_EFFORT"]
-    enforce_naming_style: Literal["STYLE2024", "STYLE_LEGACY", "STYLE2026"]
-    default_symbol_visibility: Literal["EXPORT_ALL", "EXPORT_TOP_LEVEL", "LOCAL_ALL", "STRICT"]
 
 
 @dataclass(frozen=True, slots=True)
 class Feature:
-    """The choices of a feature with their numbers, the options messages that can make them, and the first edition that has it."""
+    """The choices of a feature with their numbers, and the options messages that can make them."""
 
     values: Mapping[str, int]
     targets: frozenset[str]
-    since: Edition = "2023"
 
 
 _PROTO2 = Features(
@@ -49,8 +46,6 @@ _PROTO2 = Features(
     utf8_validation="NONE",
     message_encoding="LENGTH_PREFIXED",
     json_format="LEGACY_BEST_EFFORT",
-    enforce_naming_style="STYLE_LEGACY",
-    default_symbol_visibility="EXPORT_ALL",
 )
 _PROTO3 = replace(
     _PROTO2,
@@ -61,14 +56,10 @@ _PROTO3 = replace(
     json_format="ALLOW",
 )
 _2023 = replace(_PROTO3, field_presence="EXPLICIT")
-_2024 = replace(_2023, enforce_naming_style="STYLE2024", default_symbol_visibility="EXPORT_TOP_LEVEL")
 
-DEFAULTS: Mapping[Version, Features] = {"proto2": _PROTO2, "proto3": _PROTO3, "2023": _2023, "2024": _2024}
+DEFAULTS: Mapping[Version, Features] = {"proto2": _PROTO2, "proto3": _PROTO3, "2023": _2023, "2024": _2023}
 
 _FIELDS = frozenset(("FileOptions", "FieldOptions"))
-_ALL = frozenset(
-    f"{holder}Options" for holder in ("File", "Message", "Field", "Oneof", "ExtensionRange", "Enum", "EnumValue", "Service", "Method")
-)
 
 FEATURES: Mapping[str, Feature] = {
     "field_presence": Feature({"EXPLICIT": 1, "IMPLICIT": 2, "LEGACY_REQUIRED": 3}, _FIELDS),
@@ -77,12 +68,11 @@ FEATURES: Mapping[str, Feature] = {
     "utf8_validation": Feature({"VERIFY": 2, "NONE": 3}, _FIELDS),
     "message_encoding": Feature({"LENGTH_PREFIXED": 1, "DELIMITED": 2}, _FIELDS),
     "json_format": Feature({"ALLOW": 1, "LEGACY_BEST_EFFORT": 2}, frozenset(("FileOptions", "MessageOptions", "EnumOptions"))),
-    "enforce_naming_style": Feature({"STYLE2024": 1, "STYLE_LEGACY": 2, "STYLE2026": 3}, _ALL, "2024"),
-    "default_symbol_visibility": Feature(
-        {"EXPORT_ALL": 1, "EXPORT_TOP_LEVEL": 2, "LOCAL_ALL": 3, "STRICT": 4}, frozenset(("FileOptions",)), "2024"
-    ),
 }
 """google.protobuf.FeatureSet, by the names of its fields. Its values of 0 stand for nothing and cannot be chosen."""
+
+FOR_PROTOC = ("enforce_naming_style", "default_symbol_visibility")
+"""Features that change no byte: how names are spelt, and which declarations other files may name. protoc holds files to them."""
 
 
 @dataclass(frozen=True, slots=True)

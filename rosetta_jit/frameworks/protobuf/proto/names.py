@@ -10,24 +10,10 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.frameworks.protobuf import diagnostics as say
-from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf.limits import MAX_REPORTED
+from rosetta_jit.frameworks.protobuf.proto import tree
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
 from rosetta_jit.frameworks.protobuf.proto.symbols import ALL_KINDS, TYPES, Kind, Symbols, join, package_of
-from rosetta_jit.frameworks.protobuf.proto.tree import (
-    Aggregate,
-    Enum,
-    Extend,
-    Field,
-    File,
-    MapType,
-    Message,
-    Method,
-    Name,
-    Oneof,
-    Option,
-    Service,
-)
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -40,20 +26,19 @@ FEATURE_SET = "google.protobuf.FeatureSet"
 """The message that custom features extend."""
 
 
-def absolute(file: File, symbols: Symbols, problems: list[Diagnostic]) -> File:
+def absolute(file: tree.File, symbols: Symbols, problems: list[Diagnostic]) -> tree.File:
     """The same file with every type and every custom option by its absolute name."""
-    return _Resolver(file.name, symbols.visible[file.name], symbols.visible_in_options[file.name], symbols, problems).file(file)
+    return _Resolver(symbols.visible[file.name], symbols.visible_in_options[file.name], symbols, problems).file(file)
 
 
 @dataclass(frozen=True, slots=True)
 class _Resolver:
-    file_name: str
     visible: frozenset[str]
     visible_in_options: frozenset[str]
     symbols: Symbols
     problems: list[Diagnostic]
 
-    def file(self, file: File) -> File:
+    def file(self, file: tree.File) -> tree.File:
         scope = package_of(file)
         return replace(
             file,
@@ -64,7 +49,7 @@ class _Resolver:
             options=self.options(scope, file.options),
         )
 
-    def message(self, outer: str, message: Message) -> Message:
+    def message(self, outer: str, message: tree.Message) -> tree.Message:
         scope = join(outer, message.name.text)
         return replace(
             message,
@@ -76,86 +61,84 @@ class _Resolver:
             options=self.options(outer, message.options),
         )
 
-    def member(self, scope: str, member: Field | Oneof) -> Field | Oneof:
+    def member(self, scope: str, member: tree.Field | tree.Oneof) -> tree.Field | tree.Oneof:
         match member:
-            case Field():
+            case tree.Field():
                 return self.field(scope, member)
-            case Oneof():
+            case tree.Oneof():
                 fields = tuple(self.field(scope, field) for field in member.fields)
                 return replace(member, fields=fields, options=self.options(scope, member.options))
             case _:
                 assert_never(member)
 
-    def field(self, scope: str, field: Field) -> Field:
+    def field(self, scope: str, field: tree.Field) -> tree.Field:
         return replace(field, type=self.type(scope, field.type), options=self.options(scope, field.options))
 
-    def type(self, scope: str, type_: Name | MapType) -> Name | MapType:
+    def type(self, scope: str, type_: tree.Name | tree.MapType) -> tree.Name | tree.MapType:
         match type_:
-            case MapType(key, value, span):
-                return MapType(self.reference(scope, key), self.reference(scope, value), span)
-            case Name():
+            case tree.MapType(key, value, span):
+                return tree.MapType(self.reference(scope, key), self.reference(scope, value), span)
+            case tree.Name():
                 return self.reference(scope, type_)
             case _:
                 assert_never(type_)
 
-    def reference(self, scope: str, name: Name) -> Name:
+    def reference(self, scope: str, name: tree.Name) -> tree.Name:
         return name if name.text in SCALARS else self.lookup(scope, name, TYPES)
 
-    def extend(self, scope: str, extend: Extend) -> Extend:
+    def extend(self, scope: str, extend: tree.Extend) -> tree.Extend:
         fields = tuple(self.field(scope, field) for field in extend.fields)
-        return Extend(self.lookup(scope, extend.extendee, MESSAGE), fields)
+        return tree.Extend(self.lookup(scope, extend.extendee, MESSAGE), fields)
 
-    def enum(self, outer: str, enum: Enum) -> Enum:
+    def enum(self, outer: str, enum: tree.Enum) -> tree.Enum:
         values = tuple(replace(value, options=self.options(outer, value.options)) for value in enum.values)
         return replace(enum, values=values, options=self.options(outer, enum.options))
 
-    def service(self, outer: str, service: Service) -> Service:
+    def service(self, outer: str, service: tree.Service) -> tree.Service:
         scope = join(outer, service.name.text)
         methods = tuple(self.method(scope, method) for method in service.methods)
         return replace(service, methods=methods, options=self.options(outer, service.options))
 
-    def method(self, scope: str, method: Method) -> Method:
+    def method(self, scope: str, method: tree.Method) -> tree.Method:
         types = tuple(self.lookup(scope, name, MESSAGE) for name in method.types)
         return replace(method, types=types, options=self.options(scope, method.options))
 
-    def options(self, scope: str, options: tuple[Option, ...]) -> tuple[Option, ...]:
+    def options(self, scope: str, options: tuple[tree.Option, ...]) -> tuple[tree.Option, ...]:
         return tuple(self.option(scope, option) for option in options)
 
-    def option(self, scope: str, option: Option) -> Option:
+    def option(self, scope: str, option: tree.Option) -> tree.Option:
         parts = tuple(self.part(scope, part, option.span) for part in option.parts)
         value = option.value
-        if parts == ("features",) and isinstance(value, Aggregate):
+        if parts == ("features",) and isinstance(value, tree.Aggregate):
             # In text format the name of an extension is looked up from the message that it extends.
-            value = Aggregate(tuple(replace(entry, name=self.part(FEATURE_SET, entry.name, option.span)) for entry in value.entries))
+            value = tree.Aggregate(tuple(replace(entry, name=self.part(FEATURE_SET, entry.name, option.span)) for entry in value.entries))
         return replace(option, parts=parts, value=value)
 
     def part(self, scope: str, part: str, span: Span | None) -> str:
         """A part of an option's name; an extension's is in parentheses."""
         if not part.startswith("("):
             return part
-        return f"({self.lookup(scope, Name(part[1:-1], span), EXTENSION).text})"
+        return f"({self.lookup(scope, tree.Name(part[1:-1], span), EXTENSION).text})"
 
-    def lookup(self, scope: str, name: Name, kinds: frozenset[Kind]) -> Name:
+    def lookup(self, scope: str, name: tree.Name, kinds: frozenset[Kind]) -> tree.Name:
         if not name.text:
             return name
         files = self.files(kinds)
         full = self.symbols.find(files, scope, name.text, kinds)
         if full is None:
             self.problems.append(self.unknown(files, scope, name, kinds))
-            return Name("", name.span)
+            return tree.Name("", name.span)
         symbol = self.symbols.table[full]
         if symbol.kind not in kinds:
             self.problems.append(say.wrong_kind(name, full, symbol.kind, kinds))
-            return Name("", name.span)
-        if not symbol.exported and self.file_name not in symbol.files:
-            self.problems.append(say_edition.local_name(name, full, min(symbol.files)))
-        return Name(f".{full}", name.span)
+            return tree.Name("", name.span)
+        return tree.Name(f".{full}", name.span)
 
     def files(self, kinds: frozenset[Kind]) -> frozenset[str]:
         """Where a name is looked for: extensions are named in options alone."""
         return self.visible_in_options if kinds == EXTENSION else self.visible
 
-    def unknown(self, files: frozenset[str], scope: str, name: Name, kinds: frozenset[Kind]) -> Diagnostic:
+    def unknown(self, files: frozenset[str], scope: str, name: tree.Name, kinds: frozenset[Kind]) -> Diagnostic:
         """Why a name was not found: it means something else, an inner scope hides it, its file is not imported, or it is nowhere."""
         bare = name.text.removeprefix(".")
         other = self.symbols.find(files, scope, name.text, ALL_KINDS)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.proto.constants import WrongValueError, constant, enum_number, spelled
-from rosetta_jit.frameworks.protobuf.proto.features import FEATURES
+from rosetta_jit.frameworks.protobuf.proto.features import FEATURES, FOR_PROTOC
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
 from rosetta_jit.frameworks.protobuf.proto.symbols import enums_of, extends_of, fields_of, messages_of
 from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, MapType, Oneof, Option, Word
@@ -93,7 +93,10 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
 }
 """Options by the message that holds them; alternatives are the values of an enum."""
 
-TABLES = {**OPTIONS, "FeatureSet": {name: "|".join(feature.values) for name, feature in FEATURES.items()}}
+TABLES = {
+    **OPTIONS,
+    "FeatureSet": {name: "|".join(feature.values) for name, feature in FEATURES.items()} | dict.fromkeys(FOR_PROTOC, "any"),
+}
 """The same with the message of features, which options hold."""
 
 RESOLVED = frozenset(("default", "json_name", "packed"))

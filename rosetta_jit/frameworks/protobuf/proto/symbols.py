@@ -11,10 +11,8 @@ from typing import TYPE_CHECKING, Literal, assert_never, get_args
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.limits import MAX_NAME, MAX_REPORTED
-from rosetta_jit.frameworks.protobuf.proto.features import DEFAULTS, choose
 from rosetta_jit.frameworks.protobuf.proto.problems import refuse
 from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Field, MapType, Message, Name, Oneof
-from rosetta_jit.frameworks.protobuf.proto.visibility import is_exported
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -38,7 +36,6 @@ class Symbol:
     kind: Kind
     files: frozenset[str]
     name: Name
-    exported: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,15 +160,13 @@ def _symbols(file: File) -> Iterator[tuple[str, Symbol]]:
     parts = package.split(".") if package else []
     for count in range(len(parts)):
         yield ".".join(parts[: count + 1]), Symbol("package", files, file.package or Name(""))
-    features = choose(DEFAULTS[file.version], file.options)
     for full, message in messages_of(file):
-        nested = full.rpartition(".")[0] != package
-        yield full, Symbol("message", files, message.name, is_exported(message.visibility, features, nested=nested))
+        yield full, Symbol("message", files, message.name)
         yield from _members(full, message, files)
     for full, enum in enums_of(file):
         # The values of an enum stand beside it, not in it: so it is in C++.
         scope = full.rpartition(".")[0]
-        yield full, Symbol("enum", files, enum.name, is_exported(enum.visibility, features, nested=scope != package))
+        yield full, Symbol("enum", files, enum.name)
         for value in enum.values:
             yield join(scope, value.name.text), Symbol("value", files, value.name)
     for scope, extend in extends_of(file):

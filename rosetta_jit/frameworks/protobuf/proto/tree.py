@@ -22,7 +22,6 @@ Version = Syntax | Edition
 SYNTAXES: tuple[Syntax, ...] = get_args(Syntax)
 EDITIONS: tuple[Edition, ...] = get_args(Edition)
 Label = Literal["optional", "required", "repeated"]
-Visibility = Literal["export", "local"]
 ImportKind = Literal["plain", "public", "weak", "option"]
 
 
@@ -157,7 +156,6 @@ class Enum:
     reserved: tuple[Range, ...] = ()
     reserved_names: tuple[Name, ...] = ()
     options: tuple[Option, ...] = ()
-    visibility: Visibility | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +173,6 @@ class Message:
     reserved_names: tuple[Name, ...] = ()
     options: tuple[Option, ...] = ()
     doc: str = ""
-    visibility: Visibility | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from rosetta_jit.errors import RosettaError
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.descriptors import accessors
-from rosetta_jit.runtime.attributes.places import PLACE_BYTES
+from rosetta_jit.runtime.attributes.field_table import PLACE_BYTES
 from rosetta_jit.runtime.holder.objects import shapes, unions
 from rosetta_jit.runtime.holder.record import Bit, Blob, Items, Numbers, Record, Scalar, Text
 from rosetta_jit.runtime.specs import read_word, slot_offset

@@ -1,4 +1,4 @@
-"""What rules that are written for both directions know of the other side before it is written: values as a place holds them."""
+"""What rules for both directions know of the other side before it is written: values converted to the unit and type of a place."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rosetta_jit.language.functions.texts import is_textual, name_of
 from rosetta_jit.language.scope import Broken, resolve_path
 from rosetta_jit.language.typed import Binary, Convert, Local, Nearest
 from rosetta_jit.language.units.conversion import in_unit
-from rosetta_jit.model.expr import NEAREST, Held, Path
+from rosetta_jit.model.expr import NEAREST, Coerced, Path
 from rosetta_jit.model.expr import Binary as Operation
 from rosetta_jit.model.types import Enum
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     TypeIndex = Callable[[model.Expr | Sought, Scope], Expr | None]
 
 
-def type_held(expr: model.Held, scope: Scope, type_expr: TypeExpr, type_index: TypeIndex) -> Expr | None:
+def type_coerced(expr: model.Coerced, scope: Scope, type_expr: TypeExpr, type_index: TypeIndex) -> Expr | None:
     """The typed form of a value in the unit and of the type of a place; what cannot be is reported where the place is set."""
     place = resolve_path(expr.place, scope, type_index)
     if isinstance(place, Broken):
@@ -44,7 +44,7 @@ def type_nearest(expr: model.Nearest, scope: Scope, type_expr: TypeExpr) -> Expr
     value = type_expr(expr.value, scope)
     if value is None:
         return None
-    again = Held(expr.place, expr.again, expr.span) if isinstance(expr.place, Path) else expr.again
+    again = Coerced(expr.place, expr.again, expr.span) if isinstance(expr.place, Path) else expr.again
     check = type_expr(Operation("==", expr.place, again, expr.span), replace(scope, values={NEAREST: expr.type}))
     return Nearest(value, Local(NEAREST, expr.type), check, expr.type, expr.span) if isinstance(check, Binary) else None
 

@@ -1,4 +1,4 @@
-"""Places: what compiled accessors must know of each field of a record, as a table of words.
+"""What compiled accessors must know of each field of a record, as a table of words.
 
 Before the table stand the address of a Python function that assigns to members, and that of a list of what messages of the record keep: how
 many they are, and of each its offset in the message, what it is (`Kept`), and the address of its place.
@@ -118,7 +118,7 @@ class OfSequences(Protocol):
     def iterator(self) -> type: ...
 
 
-class Places:
+class FieldTable:
     """The table of a record. It must live as long as any message that knows its ``address``."""
 
     __slots__ = ("_alive", "_words", "address")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.python.direct import numbers_of
 from rosetta_jit.generate.python.expressions import CODES, bare, expression
-from rosetta_jit.generate.python.given import Binder
+from rosetta_jit.generate.python.object_rows import Binder
 from rosetta_jit.generate.python.packed import ANY, Part, part_text, with_numbers
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
 from rosetta_jit.generate.python.varints import _varint  # pyright: ignore[reportPrivateUsage] - as generated modules name it
@@ -18,7 +18,7 @@ from rosetta_jit.model.layout import Number
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.python.given import Given, Listed
+    from rosetta_jit.generate.python.object_rows import Listed, ObjectScope
     from rosetta_jit.generate.python.statements import Function
     from rosetta_jit.generate.unit import Unit
     from rosetta_jit.kernel.ir import Expr, Place
@@ -48,7 +48,7 @@ class Around:
 class Written:
     """``pending`` are parts that no line has written yet, ``begun`` is whether any has, ``list_name`` the local that has those."""
 
-    def __init__(self, unit: Unit, function: Function, scope: Given, needed: set[tuple[int, int]]) -> None:
+    def __init__(self, unit: Unit, function: Function, scope: ObjectScope, needed: set[tuple[int, int]]) -> None:
         self.unit, self.function, self.scope = unit, function, scope
         self.positions, self.pending, self.begun, self.list_name = Positions(), list[Part](), False, "parts"
         self.around: dict[str, Around] = {}

@@ -48,7 +48,7 @@ class Maybe:
 
 
 @dataclass(slots=True)
-class Given(Scope):
+class ObjectScope(Scope):
     """What the fields of rows are in objects.
 
     ``objects`` has the expressions of fields by lane, row and offset; ``starts`` and ``counts`` are the locals of a kernel that say where
@@ -125,7 +125,7 @@ class Binder:
 
     unit: Unit
     function: Function
-    scope: Given
+    scope: ObjectScope
     needed: set[tuple[int, int]]
     row: Expr = field(default_factory=lambda: index(0))
 
