@@ -124,15 +124,17 @@ def _left_alone(tree: Tree, context: Context, span: Span) -> Rule:
     return _ignored(paths[0], span, 0) if is_ignored else Default(paths[0], span)
 
 
-def _ignored(path: Path, span: Span, depth: int) -> Rule:
+def _ignored(path: expr.Path, span: Span, depth: int) -> Rule:
     """A field that is ignored; of each element, in a loop over all of them."""
-    number = next((number for number, step in enumerate(path.steps) if isinstance(step, Each)), None)
+    number = next((number for number, step in enumerate(path.steps) if isinstance(step, expr.Each)), None)
     if number is None:
         return Ignore(path, span)
     variable = f"each{depth or ''}"
-    element = replace(path, steps=(*path.steps[:number], Index(Name(variable), path.steps[number].span), *path.steps[number + 1 :]))
+    element = replace(
+        path, steps=(*path.steps[:number], expr.Index(expr.Name(variable), path.steps[number].span), *path.steps[number + 1 :])
+    )
     array = replace(path, steps=path.steps[:number])
-    return For(variable, Literal(0, span), Len(array, span), (_ignored(element, span, depth + 1),), span)
+    return For(variable, expr.Literal(0, span), expr.Len(array, span), (_ignored(element, span, depth + 1),), span)
 
 
 def _same_names(tree: Tree, context: Context, span: Span) -> SameNames:
