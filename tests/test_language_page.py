@@ -104,7 +104,6 @@ def test_inversions(tmp_path, monkeypatch, relations, packs, messages, holders):
         'replace(.s, "a", "b")',
         'part(.s, "a", 0)',
         "slice(.s, 0, 1)",
-        "decompress(.d)",
     ],
 )
 def test_what_is_not_turned_round(value):

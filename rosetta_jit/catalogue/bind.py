@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.mapping import error, shorten, warning
-from rosetta_jit.catalogue.resolve import CALLED, nearest
+from rosetta_jit.catalogue.resolve import CALLED, nearest, written_at
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -69,7 +70,9 @@ def no_such_item(span: Span | None, number: int, count: int) -> Diagnostic:
 
 def not_a_list(span: Span | None) -> Diagnostic:
     """An index behind a name that is no list."""
-    help_ = "a field begins with a dot: `.name[i]`; lists are parameters and `[a, b, c]`"
+    written = written_at(span)
+    field = f".{written}" if re.fullmatch(r"[A-Za-z_]\w*\[\w+\]", written) else ".name[i]"
+    help_ = f"a field begins with a dot: `{field}`; lists are parameters and `[a, b, c]`"
     return error("not-indexable", "this is no list", span, "has no items", help_=help_)
 
 

@@ -24,7 +24,7 @@ def never_set(span: Span | None, side: str, path: str, declared: Span | None, *,
     place = path.replace("[]", "[i]")
     if block == "rules":
         relation, word = (f"... <-> {place}", "ignore") if side == "wire" else (f"{place} <-> ...", "default")
-        meant = f", or say that it is meant: `{word} {path}`" if "[" not in path and (kind != "array" or side == "wire") else ""
+        meant = f", or say that it is meant: `{word} {path}`" if side == "wire" or ("[" not in path and kind != "array") else ""
         hint = f"relate it to a field: `{relation}`{meant}"
     else:
         empty = f", or say that it is empty: `len({place}) = 0`" if kind == "array" else ""

@@ -18,6 +18,8 @@ def no_group(span: Span | None, called: str, known: Collection[str]) -> Diagnost
     """Several places, and a value that is no group of numbers; it may be the call of a function of several values, misspelt."""
     meant = closest(called, known) if called else None
     how = "functions of several values give one for each place: `.roll, .pitch, .yaw = euler(.q)`; so does a list: `.x, .y = [1.0, 2.0]`"
+    if called in ("degrees", "radians"):
+        how = "leave it out, and give the places their unit, `degree`: values of several numbers are converted to the units of fields"
     help_ = f"did you mean `{meant}`?" if meant else how
     return error("no-group", "several places take a value of several numbers", span, "one value", help_=help_)
 

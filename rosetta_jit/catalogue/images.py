@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 FORMS = {
     "compress": '`compress(pixels, "png", width, height, channels)`, and behind it a level or quality',
+    "decompress": '`decompress(image)`, or `decompress(image, "png", width, height, channels)`',
     "yuv_of": '`yuv_of(pixels, "nv12", width, height)`, and behind it how many bytes apart rows of RGB begin',
     "rgb_of": '`rgb_of(pixels, "bayer_rggb8", width, height)`, and behind it how many bytes apart rows begin',
 }

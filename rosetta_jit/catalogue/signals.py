@@ -20,7 +20,10 @@ def arguments(span: Span | None, function: str) -> Diagnostic:
 
 
 def no_field(span: Span | None, found: str) -> Diagnostic:
-    """A signal of what is no field of bytes."""
+    """A signal of what is no field of bytes; one that a condition asks for, of a frame that packing has yet to put together."""
+    if found == "bytes":
+        help_ = 'relate it in each block of the `when`, to the same field: `.page <-> signal(.data, "0|8@1+")`'
+        return error("no-bytes", "to pack, nothing says what the signal is that the condition asks for", span, help_=help_)
     return error("no-bytes", f"`signal` reads a field of bytes, not {found}", span, help_="name a field of bytes, or of uint8[]")
 
 

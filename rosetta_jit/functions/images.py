@@ -1,16 +1,19 @@
 """Compressed images: what they measure, and their bytes, compressed or not, in the hidden lane of what is computed.
 
 decompress (bytes)                                              the pixels, row by row, channels interleaved
+decompress (bytes, "png", width, height, channels [, level])    the same of an image of these measures, which `<->` packs as it says
 compress (pixels, "png", width, height, channels [, level])     also "png16", and "jpeg" with a quality
 image_width image_height image_channels image_depth (bytes)     of a compressed image
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.catalogue import images as words
+from rosetta_jit.functions.forms import loses, undone_by
 from rosetta_jit.kernel.ir import Advance, Binary, Compare, Extent, HostCall, Local, Place, Reserve, Used, Wire
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
@@ -21,13 +24,15 @@ from rosetta_jit.language.image_orders import COLOURS, ORDERED
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.lowering.calls import lowered
 from rosetta_jit.lowering.texts.views import View, sound
+from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Bytes, String
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rosetta_jit.kernel.ir import Expr
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.model import expr as model
 
 MEASURES = ("image_width", "image_height", "image_channels", "image_depth")
 DEFAULTS = {"png": 1, "png16": 1, "jpeg": 90}
@@ -62,7 +67,7 @@ LANE = "texts"
 
 def _type_of_image(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> typed.Expr | None:
     """A call of any of these functions: its first argument is bytes that lie in a field, or that another of these functions makes."""
-    wanted = (5, 6) if call.function == "compress" else (1,)
+    wanted = {"compress": (5, 6), "decompress": (1, 5, 6)}.get(call.function, (1,))
     if len(arguments) not in wanted:
         scope.problems.append(words.arguments(call.span, call.function, len(arguments)))
         return None
@@ -70,8 +75,8 @@ def _type_of_image(call: model.Call, arguments: list[typed.Expr], scope: Scope) 
     if not makes_bytes(first):
         scope.problems.append(words.no_bytes(first.span, call.function, describe(first.type)))
         return None
-    if call.function == "compress":
-        return _type_compressed(call, arguments, scope)
+    if len(arguments) > 1:
+        return _type_measured(call, arguments, scope)
     return typed.Call(call.function, (first,), Bytes() if call.function == "decompress" else INT64, call.span)
 
 
@@ -81,8 +86,9 @@ def makes_bytes(value: typed.Expr) -> bool:
     return is_there and is_bytes(value.type)
 
 
-def _type_compressed(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> typed.Expr | None:
-    pixels, format_, *numbers = arguments
+def _type_measured(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> typed.Expr | None:
+    """A call with the format and the measures of the image."""
+    image, format_, *numbers = arguments
     named = format_.value if isinstance(format_, typed.Const) else None
     if not isinstance(named, str) or named not in DEFAULTS:
         scope.problems.append(words.unknown_format(format_.span, named if isinstance(named, str) else None, FORMATS))
@@ -91,7 +97,7 @@ def _type_compressed(call: model.Call, arguments: list[typed.Expr], scope: Scope
     if known is None:
         return None
     given = known if len(known) == 4 else [*known, typed.Const(DEFAULTS[named], INT64)]
-    return typed.Call("compress", (pixels, typed.Const(named, String()), *given), Bytes(), call.span)
+    return typed.Call(call.function, (image, typed.Const(named, String()), *given), Bytes(), call.span)
 
 
 def typed_integers(numbers: list[typed.Expr], scope: Scope) -> list[typed.Expr] | None:
@@ -130,8 +136,9 @@ def bytes_of(value: typed.Expr, values: Evaluation) -> Extent:
             if isinstance(address, Wire):
                 values.writer.require(size, values.where, at=address.at)  # known to be there: said again where the proof may have lost it
             return Extent(address, size)
-        case typed.Call("decompress", (image,)):
+        case typed.Call("decompress", (image, *measures)):
             source = bytes_of(image, values)
+            _check_measures(source, measures, values)
             size = _asked(MEASURE, (index(SIZE),), (source,), values)
             return _filled(DECOMPRESS, (), source, size, values)
         case typed.Call("compress", (pixels, typed.Const(str(format_)), *given)):
@@ -144,6 +151,18 @@ def bytes_of(value: typed.Expr, values: Evaluation) -> Extent:
             return Extent(made.address, values.writer.let("size", made.size))
         case _:
             raise AssertionError(value)
+
+
+def _check_measures(source: Extent, measures: list[typed.Expr], values: Evaluation) -> None:
+    """That an image is as the mapping says, if it says anything: a format, and its width, height and channels."""
+    match measures:
+        case [typed.Const(str(format_)), width, height, channels, _]:
+            wanted = *map(values.of, (width, height, channels)), index(16 if format_ == "png16" else 8)
+        case _:
+            return
+    for number, (name, value) in enumerate(zip(("width", "height", "number of channels", "depth"), wanted, strict=True)):
+        found = _asked(MEASURE, (index(number),), (source,), values)
+        values.writer.expect(Compare("eq", found, value), "image", values.where, f"an image of another {name}", line=values.line)
 
 
 def _filled(function: str, numbers: tuple[Expr, ...], source: Extent, size: Local, values: Evaluation) -> Extent:
@@ -170,7 +189,43 @@ def _asked(function: str, numbers: tuple[Expr, ...], inputs: tuple[Extent, ...],
     return found
 
 
+def _undone(other: str) -> Callable[[model.Call, model.Expr], tuple[model.Expr, model.Expr] | None]:
+    """What is compressed or decompressed is what the other function makes of the value, with the same format and measures."""
+
+    def solved(call: model.Call, value: model.Expr) -> tuple[model.Expr, model.Expr] | None:
+        first, *measures = call.arguments
+        return (first, model.Call(other, (value, *measures), call.span)) if measures else None
+
+    return solved
+
+
+def _pixels_again(call: typed.Call) -> typed.Expr | None:
+    """The pixels that were compressed with the same format and measures, but by JPEG."""
+    match call.arguments:
+        case typed.Call("compress", (pixels, *told)), *asked if told == asked and told[0] != typed.Const("jpeg", String()):
+            return pixels
+        case _:
+            return None
+
+
+def _measure_again(call: typed.Call) -> typed.Expr | None:
+    """What an image was said to measure that was compressed."""
+    match call.arguments:
+        case (typed.Call("compress", (_, _, *measures)),):
+            return measures[MEASURES.index(call.function)]
+        case _:
+            return None
+
+
 PIXELS = Row("images", "`decompress(b)`", ("bytes of a PNG or JPEG image", "its pixels, as bytes"))
+MEASURED = Row(
+    "images",
+    '`decompress(b, "png", w, h, c)`',
+    (
+        "the same, and what `compress` takes behind the pixels",
+        "the pixels of an image that is so wide, high and deep; else an error of kind `image`",
+    ),
+)
 IMAGE = Row(
     "images",
     '`compress(p, "png", w, h, c)`, `"png16"`, `"jpeg"`',
@@ -179,10 +234,13 @@ IMAGE = Row(
 SIZES = Row("images", "`image_width(b)`, `image_height(b)`, `image_channels(b)`", ("bytes of an image", "int64"))
 DEPTH = Row("images", "`image_depth(b)`", ("bytes of an image", "int64: bits of a channel, 8 or 16"))
 
+JPEG, ANEW = "JPEG changes pixels a little", "what is compressed anew has other bytes"
+OF_PIXELS = replace(undone_by(compress=loses(ANEW)), of_several=JPEG)
+OF_IMAGES = replace(undone_by(decompress=loses(JPEG)), of_several=ANEW)
 of_images = partial(Function, operation="image compression", kept=False)
 FUNCTIONS = (
-    of_images("decompress", _type_of_image, _lower_image, SEVERAL, NOT_FOLLOWED, (PIXELS,)),
-    of_images("compress", _type_of_image, _lower_image, SEVERAL, NOT_FOLLOWED, (IMAGE,)),
-    *(of_images(name, _type_of_image, _lower_measure, SEVERAL, NOT_FOLLOWED, (SIZES,)) for name in MEASURES[:3]),
+    of_images("decompress", _type_of_image, _lower_image, _undone("compress"), OF_PIXELS, (PIXELS, MEASURED), undoes=_pixels_again),
+    of_images("compress", _type_of_image, _lower_image, _undone("decompress"), OF_IMAGES, (IMAGE,)),
+    *(of_images(name, _type_of_image, _lower_measure, SEVERAL, NOT_FOLLOWED, (SIZES,), undoes=_measure_again) for name in MEASURES[:3]),
     of_images("image_depth", _type_of_image, _lower_measure, SEVERAL, NOT_FOLLOWED, (DEPTH,)),
 )

@@ -119,3 +119,27 @@ def test_required_bytes_have_their_default_whatever_they_are(backend):
     decode = rj.Decoder("m.mapping", schema=files, encoding="yarp3", backend=backend)
     write = rj.Encoder.of("w", schema=files, imports=["w.bottle-schema"], encoding="yarp3")
     assert decode(write(write.holder_type.from_dict({"x": 1}))).d == b"\xff\x00a\x80"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_field_of_each_element_is_left_out(backend):
+    files = {
+        "w/Point.msg": "float64 x\nfloat64 y\nstring[] tags\n",
+        "w/Line.msg": "Point[] points\n",
+        "w/Xs.msg": "float64[] x\n",
+        "m.mapping": """import "w/Line.msg"
+import "w/Xs.msg"
+data-holder: w/Xs
+wire-schema: w/Line
+rules:
+  .x[] <-> .points[].x
+  ignore .points[].y
+  ignore .points[].tags
+""",
+    }
+    decode, encode = (each("m.mapping", schema=files, encoding="ros1", backend=backend) for each in (rj.Decoder, rj.Encoder))
+    assert not decode.mapping.warnings
+    read = rj.Decoder.of("w/Line", schema=files, imports=["w/Line.msg"], encoding="ros1", backend=backend)
+    message = encode(encode.holder_type.from_dict({"x": [1.5, 2.5]}))
+    assert read(message).to_dict() == {"points": [{"x": 1.5, "y": 0.0, "tags": []}, {"x": 2.5, "y": 0.0, "tags": []}]}
+    assert decode(message).to_dict() == {"x": [1.5, 2.5]}

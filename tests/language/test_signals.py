@@ -116,3 +116,40 @@ def test_laws_of_signals():
     laws = programs("interpreter", RULES.replace('  .counter <-> signal(.data, "19|1@0+")\n', "  default .counter\n"))[0].mapping.laws
     assert laws is not None
     assert [loss.place for loss in laws.messages.losses] == [".data"]
+
+
+TURNS = """import "can/msg/Frame.msg"
+import "can/msg/Page.msg"
+data-holder: can/msg/Page
+wire-schema: can/msg/Frame
+rules:
+  ignore .id
+  when signal(.data, "0|8@1+") == 1
+    .page <-> signal(.data, "0|8@1+")
+    .speed <-> signal(.data, "8|16@1+") * 0.01
+    default .heat
+  else when signal(.data, "0|8@1+") == 2
+    .page <-> signal(.data, "0|8@1+")
+    .heat <-> signal(.data, "8|8@1-") * 0.5
+    default .speed
+  else
+    reject "no such page"
+  end end
+"""
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_signal_says_which_others_a_frame_has(backend):
+    files = {**FILES, "can/msg/Page.msg": "uint8 page\nfloat64 speed\nfloat64 heat\n", "m.mapping": TURNS}
+    decode, encode = (each("m.mapping", schema=files, encoding="ros1", backend=backend) for each in (rj.Decoder, rj.Encoder))
+    for page, data in (
+        ({"page": 1, "speed": 100.0, "heat": 0.0}, "0110270000000000"),
+        ({"page": 2, "speed": 0.0, "heat": -1.5}, "02fd000000000000"),
+    ):
+        message = encode(encode.holder_type.from_dict(page))
+        assert message.hex() == "00000000" + data
+        assert decode(message).to_dict() == page
+    with pytest.raises(rj.EncodeError, match="no such page"):
+        encode(encode.holder_type.from_dict({"page": 3}))
+    with pytest.raises(rj.DecodeError, match="no such page"):
+        decode(bytes.fromhex("00000000" + "03fd000000000000"))

@@ -272,3 +272,21 @@ def test_a_required_text_that_was_never_set_is_refused(rule, backend):
         encode(encode.holder_type())
     assert (error.value.kind, error.value.path) == ("missing", ".t")
     assert "the required `s` is not there" in str(error.value)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_number_of_parts_is_that_of_an_element(backend):
+    """Elements of which the bottle says how far apart they are: a list of integers, or integers each with a code."""
+    files = {
+        "w.bottle-schema": '"w" (("s" :string) ("n" (:list :int)))',
+        "h.proto": 'syntax = "proto3"; message H { int64 n = 1; }',
+        "m.mapping": 'import "w.bottle-schema"\nimport "h.proto"\ndata-holder: H\nwire-schema: w\n'
+        'unpack-rules:\n  .n = .n[parts(.s, "/") - 1]\n',
+    }
+    write = rj.Encoder.of("w", schema=files, imports=["w.bottle-schema"], encoding="yarp3", backend="interpreter")
+    decode = rj.Decoder("m.mapping", schema=files, encoding="yarp3", backend=backend)
+    message = write(write.holder_type.from_dict({"s": "a/b/c", "n": [5, 6, 7]}))
+    assert decode(message).n == 7
+    with pytest.raises(rj.DecodeError) as error:
+        decode(write(write.holder_type.from_dict({"s": "a/b/c", "n": [5, 6]})))
+    assert (error.value.kind, error.value.path) == ("index", ".n[2]")

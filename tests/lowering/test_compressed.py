@@ -232,3 +232,85 @@ def test_ros_and_rst(backend):
     write = rj.Encoder.of("sensor_msgs/CompressedImage", framework="ros1", backend="interpreter")
     with pytest.raises(rj.DecodeError, match="transparency"):
         decode(write(write.holder_type.from_dict({"format": "png", "data": saved(picture("RGBA"))})))
+
+
+BOTH_WAYS = """import "raw.proto"
+import "packed.bottle-schema"
+data-holder: p.{}
+wire-schema: {}
+rules:
+{}"""
+MEASURED = """  .width <-> uint32(image_width(.data))
+  .height <-> uint32(image_height(.data))
+  .channels <-> uint32(image_channels(.data))
+  .depth <-> 8
+  .data <-> decompress(.data, "png", image_width(.data), image_height(.data), image_channels(.data))
+  ignore .name
+"""
+WIRED = """  .name <-> .name
+  .data <-> compress(.data, "{}", 13, 7, 3)
+  ignore .width
+  ignore .height
+"""
+
+
+def relation(holder, wire_type, rules, backend="llvm"):
+    files = {**FILES, "raw.bottle-schema": '"raw" (("name" :string) ("width" :int) ("height" :int) ("data" :blob))'}
+    head = 'import "raw.bottle-schema"\n' if wire_type == "raw" else ""
+    files["m.mapping"] = head + BOTH_WAYS.format(holder, wire_type, rules)
+    return [each("m.mapping", schema=files, encoding="yarp3", backend=backend) for each in (rj.Decoder, rj.Encoder)]
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("mode", ["L", "RGB", "RGBA"])
+def test_an_image_that_says_its_measures_is_a_relation(mode, backend):
+    decode, encode = relation("Raw", "packed", MEASURED, backend)
+    assert str(decode.mapping.laws.holders) == "exact inverse"
+    assert [loss.why for loss in decode.mapping.laws.messages.losses if loss.place == ".data"] == [
+        "what is compressed anew has other bytes"
+    ]
+    image = picture(mode)
+    raw = decode(wire(saved(image)))
+    assert (raw.width, raw.height, raw.channels, raw.data) == (*image.size, len(image.getbands()), image.tobytes())
+    again = encode(raw)
+    assert Image.open(io.BytesIO(unwired(again).data)).tobytes() == image.tobytes()
+    assert decode(again) == raw
+    wrong = encode.holder_type.from_dict({**raw.to_dict(), "width": 12})
+    with pytest.raises(rj.EncodeError, match="not as many"):
+        encode(wrong)
+
+
+def test_pixels_whose_measures_stand_beside_them_are_a_relation():
+    rules = """  .width <-> uint32(.width)
+  .height <-> uint32(.height)
+  .channels <-> 3
+  .depth <-> 8
+  .data <-> permuted(decompress(.data, "png", .width, .height, 3), [2, 1, 0])
+  ignore .name
+"""
+    decode, encode = relation("Raw", "raw", rules)
+    image = picture("RGB")
+    held = {"width": 13, "height": 7, "channels": 3, "depth": 8, "data": image.tobytes()}
+    message = encode(encode.holder_type.from_dict(held))
+    assert decode(message).to_dict() == held
+    narrower = message.replace(struct.pack("<i", 13), struct.pack("<i", 12), 1)
+    with pytest.raises(rj.DecodeError, match="another width") as error:
+        decode(narrower)
+    assert (error.value.kind, error.value.path) == ("image", ".data")
+
+
+@pytest.mark.parametrize(("format_", "law"), [("png", "exact inverse"), ("jpeg", "JPEG changes pixels a little")])
+def test_what_is_compressed_to_unpack_is_decompressed_to_pack(format_, law):
+    decode, encode = relation("Packed", "raw", WIRED.format(format_))
+    assert (law in {loss.why for loss in decode.mapping.laws.messages.losses if loss.place == ".data"}) == (format_ == "jpeg")
+    pixels = np.full((7, 13, 3), (200, 100, 50), np.uint8).tobytes()
+    held = decode.holder_type.from_dict({"name": "shot", "data": compressed(pixels, format_)})
+    message = encode(held)
+    assert pixels in message or format_ == "jpeg"
+    found = Image.open(io.BytesIO(decode(message).data))
+    assert found.format == format_.upper()
+    assert np.allclose(np.frombuffer(found.tobytes(), np.uint8), np.frombuffer(pixels, np.uint8), atol=3)
+
+
+def compressed(pixels, format_):
+    return saved(Image.frombytes("RGB", (13, 7), pixels), format_.upper())

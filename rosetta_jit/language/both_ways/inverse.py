@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     TypeOf = Callable[[Expr], Type | None]
     """The type of an expression, that of each element where it has a `[]`; None where it has none, which is reported elsewhere."""
 
+MEASURED = ("compress", "decompress")
+"""Functions that ask the sizes of an image, as orders of arrays ask theirs."""
+
 CONVERSIONS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "float32", "float64", "bool")
 
 
@@ -144,7 +147,7 @@ def _fields(expr: Expr) -> Iterator[Field]:
         if side_of(expr) == "wire":
             yield expr
         return
-    if isinstance(expr, Call) and expr.function in ARGUMENTS:
+    if isinstance(expr, Call) and (expr.function in ARGUMENTS or expr.function in MEASURED):
         yield from _fields(expr.arguments[0]) if expr.arguments else ()  # the others are no fields to solve for
         return
     below: list[Expr] = []
@@ -198,8 +201,14 @@ def _undone(call: Call, value: Expr, function: Function, type_of: TypeOf) -> tup
         case undo:
             found = undo(call, value)
     if found is None or any(fields_in(each) for each in call.arguments if each is not found[0]):
-        raise NoInverseError(call, f"`{call.function}` {SEVERAL}")
+        raise NoInverseError(call, f"`{call.function}` {_UNMEASURED[found is None] if call.function in MEASURED else SEVERAL}")
     return found
+
+
+_UNMEASURED = (
+    "asks for measures that no relation says",
+    'does not say how to pack it, as `decompress(b, "png", width, height, channels)` does',
+)
 
 
 def undone_group(call: Call, value: Expr, function: GroupFunction, *, alone: bool) -> list[tuple[Expr, Expr]]:

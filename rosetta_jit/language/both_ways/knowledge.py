@@ -70,12 +70,14 @@ class Knowledge:
     beside: dict[int, Beside] = field(default_factory=dict[int, "Beside"])
     flags: dict[Key, Expr] = field(default_factory=dict["Key", "Expr"])
     """What of the holder says whether a field of the wire is there."""
+    signals: dict[Call, Expr] = field(default_factory=dict["Call", "Expr"])
+    """What signals must be that conditions ask for."""
 
     def inside(self) -> Knowledge:
         """The same, for a block that may know more."""
         shapes = {shape: list(keys) for shape, keys in self.shapes.items()}
         known = dict(self.setters), dict(self.values), shapes, dict(self.sizes)
-        return Knowledge(self.type_of, *known, self.budget, self.beside, dict(self.flags))
+        return Knowledge(self.type_of, *known, self.budget, self.beside, dict(self.flags), dict(self.signals))
 
     def learn(self, place: Field, value: Expr, loops: Loops) -> None:
         """That a field has a value, unless that is known."""
@@ -137,6 +139,8 @@ class Knowledge:
             asked = expr.arguments[0]
             flag = self.flag(asked, loops) if isinstance(asked, Path) else None
             return expr if flag is None else flag
+        if isinstance(expr, Call) and expr in self.signals and not loops:
+            return self.signals[expr]
         if isinstance(expr, Path | Len) and path_of(expr).side == "wire":
             value = self.value(expr, loops)
             if value is not None:

@@ -6,15 +6,16 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.both_ways.array_relations import equal_lengths
+from rosetta_jit.language.both_ways.image_relations import images_of
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solved
 from rosetta_jit.language.both_ways.inverse_parts import below, part, plain, put_together, rest_of, taken_part
 from rosetta_jit.language.both_ways.knowledge import Beside, Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.presence import flag_of, is_kept
-from rosetta_jit.language.both_ways.signal_relations import frames_of
+from rosetta_jit.language.both_ways.signal_relations import frames_of, told_in_all
 from rosetta_jit.language.both_ways.text_parts import numbers_of_texts
 from rosetta_jit.language.function import Affine, written
 from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
-from rosetta_jit.model.mapping import Arranged, For, Relation
+from rosetta_jit.model.mapping import Arranged, For, Relation, When
 from rosetta_jit.model.walk import Field, fields_of, parts, path_of, rebuilt
 
 if TYPE_CHECKING:
@@ -33,8 +34,11 @@ def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops, is_assigned: 
     for rule in rules:
         if (flag := flag_of(rule)) is not None and not is_assigned(flag[1]) and is_kept(flag, rules):
             known.learn_flag(*flag, loops)
+        if isinstance(rule, When) and not loops:
+            known.signals |= told_in_all(rule, known.type_of)
     relations = [each for each in _relations(rules, loops) if not _is_left(each[0], is_assigned)]
     done = _pairs(known, relations) | _texts(known, relations, is_assigned) | _frames(known, relations, is_assigned)
+    done |= _images(known, relations, is_assigned)
     done |= {id(rule) for rule, around in sorted(relations, key=_loss) if id(rule) not in done and _solve(known, rule, around)}
     later = [each for each in relations if id(each[0]) not in done]
     for _ in range(2):
@@ -180,6 +184,23 @@ def _frames(known: Knowledge, relations: list[tuple[Relation, Loops]], is_assign
         known.learn(Len(path_of(solution.place)), Literal(frame.size(known.type_of), first.span), loops)
         known.beside.update({id(rule): Beside(rule, "holder", ()) for rule, _ in others})
         done |= {id(rule) for rule, _ in frame.relations}
+    return done
+
+
+def _images(known: Knowledge, relations: list[tuple[Relation, Loops]], is_assigned: Callable[[Field], bool]) -> set[int]:
+    """A relation that decompresses an image sets it, with those to its measures; gives the relations for which that is so."""
+    done: set[int] = set()
+    for image in images_of(relations):
+        first, loops = image.pixels
+        if any(map(is_assigned, fields_in(first.value))):
+            continue
+        try:
+            solution = image.solved(known.type_of)
+        except NoInverseError:
+            continue
+        _say(known, first, solution.place, solution.value, loops)
+        known.beside.update({id(rule): Beside(rule, "holder", ()) for rule, _ in image.measures})
+        done |= {id(rule) for rule, _ in (image.pixels, *image.measures)}
     return done
 
 

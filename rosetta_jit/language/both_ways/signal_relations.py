@@ -11,18 +11,21 @@ from rosetta_jit.language.both_ways.inverse import NoInverseError, Solution, fie
 from rosetta_jit.language.both_ways.inverse_parts import until
 from rosetta_jit.language.signal_bits import MOST_BITS, signal_of
 from rosetta_jit.model.expr import Call, Literal, Nearest
+from rosetta_jit.model.mapping import Reject, Relation, When
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float
 from rosetta_jit.model.walk import fields_of, parts
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.knowledge import Loops
     from rosetta_jit.language.signal_bits import Signal
     from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Relation
+    from rosetta_jit.model.mapping import Rule
 
-Related = tuple["Relation", "Loops"]
+Related = tuple[Relation, "Loops"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +79,32 @@ def frames_of(relations: list[Related]) -> list[Frame]:
         assert call is not None
         frames.append(Frame(call.arguments[0], tuple(related)))
     return frames
+
+
+def told_in_all(rule: When[Rule, Expr], type_of: TypeOf) -> dict[Call, Expr]:
+    """What the signals of a condition must be, of which each block has the same relation; one that only refuses needs none."""
+    found: dict[Call, Expr] = {}
+    asked = {part for part in parts(rule.condition) if isinstance(part, Call) and part.function == "signal"}
+    blocks = [block for block in _blocks(rule) if not (block and all(isinstance(each, Reject) for each in block))]
+    for call in asked:
+        relations = [{each for each in block if isinstance(each, Relation) and signal_in(each) == call} for block in blocks]
+        shared = set[Relation]().union(*relations)
+        if len(shared) == 1 and all(relations):
+            (relation,) = shared
+            signal = signal_in(relation)
+            assert signal is not None
+            found[call] = until(relation.value, relation.place, signal, type_of)
+    return found
+
+
+def _blocks(rule: When[Rule, Expr]) -> Iterator[tuple[Rule, ...]]:
+    """The blocks of a `when`, and of those that stand alone in its other one."""
+    yield rule.then
+    match rule.otherwise:
+        case (When() as other,):
+            yield from _blocks(other)
+        case block:
+            yield block
 
 
 def signal_in(rule: Relation) -> Call | None:

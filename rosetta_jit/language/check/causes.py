@@ -29,6 +29,12 @@ UNUSED = frozenset(("parameter-unused",))
 OF_CALLS = frozenset(("arguments", "signal"))
 """Mistakes in what a function is given, which leave open what undoes it."""
 
+OF_GROUPS = frozenset(("no-group",))
+"""Mistakes that leave open what several places are set to."""
+
+OF_CONDITIONS = frozenset(("undetermined-field", "alike-blocks"))
+"""Mistakes of packing about what a condition reads."""
+
 CLASHES = frozenset(("type-clash",))
 """Mistakes after which another field is probably meant."""
 
@@ -49,7 +55,8 @@ def relations_of(rules: tuple[Rule, ...]) -> list[Span]:
 
 def unclear(problems: Iterable[Diagnostic], relations: list[Span]) -> bool:
     """Whether a relation names what there is not, or what does not fit: then it is open which field it packs."""
-    return any(_relation(each, relations) is not None for each in problems if each.code in OF_NAMES | CLASHES)
+    named = (each for each in problems if each.code in OF_NAMES | CLASHES | OF_GROUPS)
+    return any(each.code in OF_GROUPS or _relation(each, relations) is not None for each in named)
 
 
 def causes(problems: list[Diagnostic], relations: list[Span]) -> list[Diagnostic]:
@@ -62,10 +69,13 @@ def causes(problems: list[Diagnostic], relations: list[Span]) -> list[Diagnostic
     clashes = unclear(problems, relations)
     undeclared = {_quoted(each) for each in problems if each.code in UNDECLARED}
     misnamed = {_written(each) for each in problems if each.code in OF_NAMES}
+    names = [each.span for each in problems if each.code in OF_NAMES and each.span is not None]
     found: list[Diagnostic] = []
     wrong: set[int] = set()
     for each in _once(problems, relations):
         if (each.code == "unknown-name" and _quoted(each) in undeclared) or (each.code in UNUSED and _quoted(each) in misnamed):
+            continue
+        if each.code in OF_CONDITIONS and any(_is_within(name, each.span) for name in names):
             continue
         relation = _relation(each, relations)
         if relation is not None and each.severity == "error":
@@ -94,6 +104,10 @@ def _once(problems: list[Diagnostic], relations: list[Span]) -> Iterator[Diagnos
         if key is None or key not in said:
             yield replace(each, help=words.TURNED) if of_sides else each
         said.add(key)
+
+
+def _is_within(span: Span, around: Span | None) -> bool:
+    return around is not None and span.source is around.source and around.start <= span.start and span.end <= around.end
 
 
 def _written(problem: Diagnostic) -> str:

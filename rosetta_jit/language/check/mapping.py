@@ -157,7 +157,7 @@ def _read(mapping: Mapping, imports: Imports, parameters: Dictionary[str, object
 def _wrong(texts: _Texts, resolved: Resolved) -> list[Diagnostic]:
     """What is wrong with the texts, with the rules, and with each direction as a whole."""
     relations, mapping = relations_of(texts.written.rules or ()), texts.mapping
-    packs = not _errors(texts.underived) and not unclear(resolved.problems, relations)
+    packs = not _errors(texts.underived) and not unclear([*texts.problems, *resolved.problems], relations)
     problems = causes([*texts.problems, *resolved.problems], relations)
     problems += _directions(mapping, resolved, _blocks(texts.written), packs=packs)
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in wrong_factors(block.rules)]

@@ -221,7 +221,7 @@ class Runner:
         put = Putting(self.target, element, variable, values)
         with self.forgetting():
             made.fill(put)
-        put.check()
+            put.check(made.fill)
 
     def assign_parts(self, place: typed.Place, call: typed.Call, values: Values) -> None:
         """The parts of a text, each as an element. What is between separators is whole characters."""
