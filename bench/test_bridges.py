@@ -1,4 +1,4 @@
-"""What a bridge saves: one call from bytes to bytes, against a decoder's call and an encoder's."""
+"""What a bridge saves: one call from bytes to bytes, against a decoder's call and an encoder's. What one that runs adds, and carries."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
+from bench.bridge_load.latency import latencies
+from bench.bridge_load.throughput import images, shared, topics
 from bench.contest import Contender
+from bench.figures import Spread
 
 CHAPTER, SHORT = "Bridges", "an iCub's torso, YARP to RST"
 OURS, TWO, MOVE = "rosetta_jit, a bridge", "rosetta_jit, decode and encode", "memmove"
@@ -75,3 +78,46 @@ def test_one_call(effort, compare, record):
     ]
     outcome = compare(CHAPTER, f"{SHORT}, one call", contenders)
     record(f"bridge, {SHORT}, one call", outcome.ratio(OURS, "len()"), 3.6, "x len()", f"{outcome.took(OURS).median:.0f} ns")
+
+
+def test_many(effort, compare, record):
+    """Batches, from one buffer to another."""
+    message, decode, encode, bridge = torso()
+    count = 1000
+    offsets = np.arange(count + 1) * len(message)
+    messages = message * count
+    one, two = bridge.many(messages, offsets), encode.many(decode.many(messages, offsets))
+    assert bytes(one[0]) == bytes(two[0])
+    contenders = [
+        Contender(OURS, "ours", "bytes, anew", effort.call(bridge.many, messages, offsets, messages=count)),
+        Contender(TWO, "limit", "bytes, anew", effort.call(lambda: encode.many(decode.many(messages, offsets)), messages=count)),
+    ]
+    outcome = compare(CHAPTER, f"{SHORT}, 1000 at once", contenders)
+    record(f"bridge.many, {SHORT}", outcome.ratio(OURS, TWO), AT_MOST, "x decode and encode", f"{outcome.took(OURS).median:.0f} ns")
+
+
+def test_latency(effort, record):
+    """Rounds of messages, the 99th percentile of each, and what it is above that of the same bytes copied meanwhile."""
+    rounds, count = (3, 300) if effort.quick else (9, 1000)
+    found, is_first = latencies(rounds * count)
+    added = [float(np.subtract(*np.percentile(each, 99, axis=0))) for each in np.split(found, rounds)]
+    said = f"median {np.subtract(*np.median(found, axis=0)):.0f} us" + ("" if is_first else ", other programs had their turns")
+    record("a running bridge, latency added (p99)", Spread.of(added), 50, "us over a copy from socket to socket", said)
+
+
+def test_topics(effort, record):
+    found = topics(seconds=2.0 if effort.quick else 10.0)
+    assert (found["lost"], found["not_taken"]) == (0, 0)
+    said = f"{found['carried_per_s']:.0f} a second of 100 topics at 1 kHz; a core at 10"
+    record("a running bridge, 200 bytes, YARP 4 to 3", Spread.of([found["cpu_us_a_message"]]), 10, "us of a core a message", said)
+
+
+@pytest.mark.parametrize("way", [images, shared], ids=["TCP", "shared memory"])
+def test_images(way, effort, record, request):
+    if way is shared:
+        pytest.importorskip("iceoryx2")
+    found = way(seconds=1.0 if effort.quick else 5.0)
+    assert found["lost"] == 0
+    said = f"{found['gigabytes_per_s']:.2f} GB/s; a GB/s and core at 1"
+    what = f"a running bridge, images of 1 MB, {request.node.callspec.id}"
+    record(what, Spread.of([found["cpu_us_an_image"] / 1000]), 1, "ms of a core an image", said)

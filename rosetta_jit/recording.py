@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 MAX_MESSAGE_BYTES = 256 * 1024 * 1024
 """A compressed recording of a few KB may promise, and hold, a message of 4 GiB."""
 
+AT_ONCE = 1 << 20
+"""Bytes of a message for which memory is taken before they are read."""
+
 _HEAD = struct.Struct("<dI")
 
 
@@ -100,6 +103,18 @@ def _open(path: Path, mode: str) -> BinaryIO:
     return cast("BinaryIO", lzma.open(path, mode) if path.suffix == ".xz" else path.open(mode))
 
 
+def _read(file: BinaryIO, size: int) -> bytes:
+    """So many bytes, or those that there are: a file takes memory for what is asked for, not for what it has."""
+    data = file.read(min(size, AT_ONCE))
+    if len(data) in (size, 0):
+        return data
+    pieces, left = [data], size - len(data)
+    while left and (piece := file.read(min(left, AT_ONCE))):
+        pieces.append(piece)
+        left -= len(piece)
+    return b"".join(pieces)
+
+
 def _messages(file: BinaryIO, name: str) -> Iterator[Message]:
     index = 0
     while head := file.read(_HEAD.size):
@@ -108,7 +123,7 @@ def _messages(file: BinaryIO, name: str) -> Iterator[Message]:
         time_s, size = cast("tuple[float, int]", _HEAD.unpack(head))
         if size > MAX_MESSAGE_BYTES:
             raise RecordingError((words.too_long(name, index, size, MAX_MESSAGE_BYTES),))
-        data = file.read(size)
+        data = _read(file, size)
         if len(data) < size:
             raise RecordingError((words.cut(name, index),))
         yield Message(time_s, data)

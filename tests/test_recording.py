@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import tracemalloc
 
 import pytest
 
@@ -39,6 +40,18 @@ def test_every_truncation_gives_whole_messages_or_an_error(tmp_path, name):
         assert messages == MESSAGES[: len(messages)]
         whole += 1
     assert whole <= len(MESSAGES)
+
+
+def test_a_length_takes_no_memory(tmp_path):
+    path = tmp_path / "a.rec"
+    path.write_bytes(struct.pack("<dI", 0.0, MAX_MESSAGE_BYTES) + bytes(3 << 20))
+    tracemalloc.start()
+    with pytest.raises(RecordingError, match="cut"):
+        list(read_messages(path))
+    assert tracemalloc.get_traced_memory()[1] < 16 << 20
+    tracemalloc.stop()
+    path.write_bytes(struct.pack("<dI", 0.0, 3 << 20) + bytes(3 << 20))
+    assert [len(each.data) for each in read_messages(path)] == [3 << 20]
 
 
 def test_a_length_is_not_believed(tmp_path):

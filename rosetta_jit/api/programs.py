@@ -18,6 +18,7 @@ from rosetta_jit.runtime.callable import callable_class, public_class
 from rosetta_jit.runtime.decoder import DecoderBase
 from rosetta_jit.runtime.encoder import EncoderBase
 from rosetta_jit.runtime.holder import holder_class_of
+from rosetta_jit.runtime.looks.described import DescribedProgram
 from rosetta_jit.runtime.program import Loaded
 from rosetta_jit.runtime.registers import Kept
 from rosetta_jit.startup.cached import cached_property
@@ -301,4 +302,5 @@ def _of_request(program: Any, request: Request, beside: Any = None) -> Any:
 
 
 if not TYPE_CHECKING:
+    Decoder.__doc__, Encoder.__doc__ = DescribedProgram(Decoder.__doc__), DescribedProgram(Encoder.__doc__)
     Decoder, Encoder = callable_class(Decoder), callable_class(Encoder)

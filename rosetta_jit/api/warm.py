@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import sys
+import threading
 import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import replace
@@ -74,7 +76,7 @@ def warm(programs: Iterable[Request], jobs: int | None = None) -> Iterator[tuple
 
     That is nothing where the mapping has no rules for the direction, and several programs where the encoding stands for several dialects,
     of which a writer must choose one. Many programs are compiled in processes of their own, because LLVM works for one thread of a process
-    at a time; the first one here, and with it, into the cache, what all of them need, and all accessors of messages.
+    at a time; the first one here, and with it, into the cache, what all of them need. All accessors of messages are compiled, too.
 
     Raises
     ------
@@ -83,13 +85,21 @@ def warm(programs: Iterable[Request], jobs: int | None = None) -> Iterator[tuple
     """
     wanted = tuple(programs)
     processes = min(jobs or os.cpu_count() or 1, len(wanted) // LEAST)
-    alone = wanted[:1] if processes > 1 else wanted
-    yield from map(_made, alone)
-    make_ready()
-    if processes > 1:
-        with ProcessPoolExecutor(processes, get_context("spawn")) as pool:
-            for done in as_completed([pool.submit(_made, each) for each in wanted[1:]]):
-                yield done.result()
+    if processes < 2:
+        yield from map(_made, wanted)
+        make_ready()
+        return
+    yield _made(wanted[0])
+    with ProcessPoolExecutor(processes, get_context(_start_method())) as pool:
+        accessors = pool.submit(make_ready)
+        for done in as_completed([pool.submit(_made, each) for each in wanted[1:]]):
+            yield done.result()
+        accessors.result()
+
+
+def _start_method() -> str:
+    """How processes begin: as copies of this one, which has imported the compiler, where no other thread can hold a lock meanwhile."""
+    return "fork" if sys.platform == "linux" and threading.active_count() == 1 else "spawn"
 
 
 def _members(name: str) -> Iterable[str]:

@@ -66,6 +66,7 @@ class LiveRoute:
     def __init__(self, route: Route, translate: Translator, say: Say) -> None:
         self.route = route
         self.translate = translate
+        self._program = None if route.rate is not None else translate.program
         self.counts = RouteCounts()
         self.problem = "not open yet"
         self._say = say
@@ -109,8 +110,8 @@ class LiveRoute:
 
     @property
     def waiting(self) -> int:
-        """Messages that wait for the target."""
-        return len(self._waiting) + self._held
+        """Messages that wait for the target; none once it is closed: they are counted as dropped."""
+        return 0 if self._given_up else len(self._waiting) + self._held
 
     def deliver(self, message: Message, wire: str = "") -> None:
         """Take a message from the source, or from that of one of several wires; send what it becomes, or let that wait."""
@@ -118,7 +119,7 @@ class LiveRoute:
         counts.taken += 1
         counts.bytes_in += len(message.data)
         try:
-            data = self.translate(message.data, wire, self._is_due)
+            data = self.translate(message.data, wire, self._is_due) if self._program is None else self._program(message.data)
         except MessageError as error:
             self._failed(error)
             return

@@ -24,7 +24,15 @@ def always() -> bool:
 
 
 class Translator(Protocol):
-    """What turns the messages of a route into others. Threads may share it."""
+    """What turns the messages of a route into others. Threads may share it.
+
+    Attributes
+    ----------
+    program
+        What does the same to a message where the route has no rate, in one call of compiled code; None where more is to be done than that.
+    """
+
+    program: Callable[[Any], bytes] | None
 
     def __call__(self, message: Any, wire: str = "", is_due: Callable[[], bool] = always) -> bytes | memoryview | None:
         """What goes on behind a message of a wire; None where nothing does.
@@ -57,6 +65,8 @@ class Translator(Protocol):
 class Unchanged:
     """Bytes pass as they are."""
 
+    program: Callable[[Any], bytes] | None = None
+
     def __call__(self, message: Any, wire: str = "", is_due: Callable[[], bool] = always) -> bytes | memoryview | None:
         """The message."""
         del wire
@@ -82,6 +92,7 @@ class Bridged:
     def __init__(self, bridge: Bridge) -> None:
         self._bridge = bridge
         self._turn = threading.Lock() if any(bridge.state.values()) else None
+        self.program: Callable[[Any], bytes] | None = bridge if self._turn is None else None
 
     def __call__(self, message: Any, wire: str = "", is_due: Callable[[], bool] = always) -> bytes | memoryview | None:
         """What the message becomes."""
@@ -122,6 +133,8 @@ class Joined:
     on
         The wire behind whose messages the data-holder goes on; empty for any of them.
     """
+
+    program: Callable[[Any], bytes] | None = None
 
     def __init__(self, decoders: Decoders, encode: Encoder, on: str) -> None:
         self._decoders, self._encode, self._on = decoders, encode, on

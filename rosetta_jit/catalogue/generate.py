@@ -90,3 +90,16 @@ def wires_around(holder: str, span: Span | None = None) -> Diagnostic:
     """A class that reads messages of one type around decoders of several wires."""
     text = f"a class for `--holder {holder}` reads messages of one type, and the mapping has several wires"
     return Diagnostic("error", "not-generated", text, span, help="choose another `--holder`, as own")
+
+
+def one_way_around(holder: str, lacking: str) -> Diagnostic:
+    """A class that reads and writes around a codec that does one of both."""
+    text = f"a class for `--holder {holder}` reads and writes messages, and `{lacking}` is not among the directions"
+    return Diagnostic("error", "not-generated", text, help="choose `--directions decode,encode`, or another `--holder`, as own")
+
+
+def needless(option: str, emit: str) -> Diagnostic:
+    """An option of the command line that changes nothing of what is made."""
+    return Diagnostic(
+        "error", "needless-option", f"`{option}` says nothing about `--emit {emit}`", help="leave it out, or choose the other `--emit`"
+    )

@@ -170,6 +170,16 @@ def several_types(name: str, topic: str, types: Iterable[str]) -> Diagnostic:
     )
 
 
+def several_definitions(name: str, topic: str, type_: str) -> Diagnostic:
+    """A topic with messages of one type that the log defines in several ways."""
+    return Diagnostic(
+        "error",
+        "log-types",
+        f"{name}: `{topic}` has messages of `{type_}` by several definitions, which are no columns of one table",
+        help="`log.messages()` and `rosetta-jit cat` decode each message by its own",
+    )
+
+
 def wire_without_topic(name: str, wire: str) -> Diagnostic:
     """A wire of a mapping whose messages nobody has named a topic for."""
     return Diagnostic(

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping_or_type, add_parameters, add_wire, options_of
-from rosetta_jit.cli.inputs import add_topic, messages_of, program_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping_or_type, add_parameters, add_wire
+from rosetta_jit.cli.inputs import add_topic, decoders_of
 from rosetta_jit.errors import DecodeError
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator
 
     from rosetta_jit.runtime.holder import Holder
 
@@ -33,11 +33,8 @@ def add(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Messages that cannot be decoded are reported and skipped; then the exit code is 1."""
-    import rosetta_jit
-
-    decode = program_of(rosetta_jit.Decoder, arguments, **options_of(arguments))
     failures: list[str] = []
-    holders = _holders(decode, cast("list[str]", arguments.files), arguments.topic, failures)
+    holders = _holders(arguments, failures)
     if arguments.npz:
         from rosetta_jit.cli.columns import write_columns
 
@@ -48,10 +45,10 @@ def run(arguments: argparse.Namespace) -> int:
     return int(bool(failures))
 
 
-def _holders(decode: Callable[[bytes], Holder], files: Sequence[str], topic: str | None, failures: list[str]) -> Iterator[Holder]:
+def _holders(arguments: argparse.Namespace, failures: list[str]) -> Iterator[Holder]:
     """The decoder's own holder, filled anew for each message."""
-    for file in files:
-        for index, message in enumerate(messages_of(file, topic)):
+    for file, decode, messages in decoders_of(arguments):
+        for index, message in enumerate(messages):
             try:
                 yield decode(message.data)
             except DecodeError as error:

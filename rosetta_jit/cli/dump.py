@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping_or_type, add_parameters, add_wire, options_of
-from rosetta_jit.cli.inputs import program_of
+from rosetta_jit.cli.inputs import add_topic, channel_of, program_of
 from rosetta_jit.pipeline.stages import STAGES
 
 if TYPE_CHECKING:
@@ -16,6 +16,10 @@ def add(commands: Commands) -> None:
     """Declare the arguments."""
     command = add_command(commands, "dump", "Print what a mapping became at one stage of compilation.", run)
     add_mapping_or_type(command)
+    command.add_argument(
+        "log", metavar="LOG", nargs="?", help="for the messages of a log: by its definitions, in its encoding; - is standard input"
+    )
+    add_topic(command)
     command.add_argument("--stage", choices=[stage.name for stage in STAGES], default="kernel", help="default: kernel")
     command.add_argument("--direction", choices=("decode", "encode"), default="decode", help="default: decode")
     add_encoding(command)
@@ -28,6 +32,10 @@ def run(arguments: argparse.Namespace) -> int:
     import rosetta_jit
 
     program = rosetta_jit.Encoder if arguments.direction == "encode" else rosetta_jit.Decoder
-    made = program_of(program, arguments, **options_of(arguments))
+    if arguments.log:
+        with rosetta_jit.open(arguments.log) as log:
+            made = channel_of(log, arguments).program(program)
+    else:
+        made = program_of(program, arguments, **options_of(arguments))
     print(made.stage(arguments.stage))
     return 0

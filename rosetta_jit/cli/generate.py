@@ -69,6 +69,7 @@ def _directions(text: str) -> tuple[str, ...]:
 
 def run(arguments: argparse.Namespace) -> int:
     """All files are made before any is written, and none gets its name before all are whole; one line says what each is."""
+    _check(arguments)
     texts = _object(arguments) if arguments.emit == "object" else _source(arguments)
     folder = Path(cast("str", arguments.output))
     with ExitStack() as files:
@@ -80,6 +81,17 @@ def run(arguments: argparse.Namespace) -> int:
     for name in texts:
         print(f"wrote {folder / name}")
     return 0
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    """Refuse options that what is made knows nothing of, rather than to leave them out in silence."""
+    from rosetta_jit.catalogue.generate import needless
+    from rosetta_jit.errors import SchemaError
+
+    of_source = {"--holder": arguments.holder, "--include": arguments.include, "--arrays": arguments.arrays == "numpy"}
+    given = of_source if arguments.emit == "object" else {"--target": arguments.target, "--cpu": arguments.cpu}
+    if wrong := tuple(needless(option, arguments.emit) for option, value in given.items() if value):
+        raise SchemaError(wrong)
 
 
 def _source(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:
@@ -100,7 +112,7 @@ def _object(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:
     if arguments.language != "c":
         raise SchemaError((no_object(arguments.language),))
     name, triple = arguments.name or _name(arguments.subject), arguments.target or binding.get_default_triple()
-    return object_of(_request(arguments), arguments.directions, name, triple, arguments.cpu)
+    return object_of(_request(arguments), arguments.directions, name, triple, arguments.cpu, freestanding=arguments.freestanding)
 
 
 def _request(arguments: argparse.Namespace) -> Request:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
+from rosetta_jit.cli.arguments import options_of
 from rosetta_jit.recording import Message, is_recording, read_messages
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator
 
+    from rosetta_jit.api.options import Options
+    from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.log import Log
 
 
@@ -21,25 +24,53 @@ def add_topic(command: argparse.ArgumentParser) -> None:
 
 def messages_of(file: str, topic: str | None) -> Iterator[Message]:
     """The messages of a log (of one topic), of a recording, or the one message that any other file is; `-` is standard input."""
-    if file != "-" and (is_recording(Path(file)) or not Path(file).exists()):
+    if _is_recorded(file):
         yield from read_messages(Path(file))
         return
-    found = _opened(file)
-    match found:
+    match _opened(file):
         case None:
             yield from read_messages(Path(file))
-        case Message():
-            yield found
-        case _:
-            yield from _of_topic(found, topic)
+        case Message() as message:
+            yield message
+        case log:
+            yield from _of_topic(log, topic)
+
+
+def _is_recorded(file: str) -> bool:
+    """Whether a file is a recording, or no file at all, which reading says."""
+    return file != "-" and (is_recording(Path(file)) or not Path(file).exists())
 
 
 def _of_topic(log: Log, topic: str | None) -> Iterator[Message]:
+    with log:
+        for each in log.messages([_one_topic(log, topic)], raw=True):
+            yield Message(each.time / 1e9, each.message)
+
+
+def _one_topic(log: Log, topic: str | None) -> str:
     from rosetta_jit.cli.logs import one_topic
 
-    with log:
-        for each in log.messages([one_topic(log, None if topic is None else [topic])], raw=True):
-            yield Message(each.time / 1e9, each.message)
+    return one_topic(log, None if topic is None else [topic])
+
+
+def channel_of(log: Log, arguments: argparse.Namespace) -> Channel:
+    """The messages of a topic, which the mapping or the type decodes that the user names: as the log defines it, in its encoding."""
+    options = {name: value for name, value in options_of(arguments).items() if value}
+    return log.channel(_one_topic(log, arguments.topic), arguments.mapping, **cast("Options", options))
+
+
+def decoders_of(arguments: argparse.Namespace) -> Iterator[tuple[str, Any, Iterator[Message]]]:
+    """The files that the user names: of each its name, what decodes its messages, and these."""
+    import rosetta_jit
+
+    plain: Any = None
+    for file in cast("list[str]", arguments.files):
+        found = None if _is_recorded(file) else _opened(file)
+        if found is not None and not isinstance(found, Message):
+            yield file, channel_of(found, arguments).decoder, _of_topic(found, arguments.topic)
+            continue
+        plain = plain or program_of(rosetta_jit.Decoder, arguments, **options_of(arguments))
+        yield file, plain, read_messages(Path(file)) if found is None else iter([found])
 
 
 def _opened(file: str) -> Log | Message | None:

@@ -200,12 +200,14 @@ def _rules(build: AheadOfTime) -> Iterator[str]:
         yield f"    {number}: {source.text.splitlines()[number - 1].strip()}"
 
 
-def object_of(request: Request, roles: tuple[Role, ...], name: str, triple: str, cpu: str = "") -> dict[str, str | bytes]:
+def object_of(
+    request: Request, roles: tuple[Role, ...], name: str, triple: str, cpu: str = "", *, freestanding: bool = False
+) -> dict[str, str | bytes]:
     """An object file of LLVM's for a machine, and the header for C; parameters as of `generated`."""
     from rosetta_jit.generate.c.objects import files_for
 
     with within_stack():
-        return files_for(unit_of(request, roles, name), triple, cpu)
+        return files_for(unit_of(request, roles, name, Wishes(freestanding)), triple, cpu)
 
 
 def generated(request: Request, language: str, roles: tuple[Role, ...], name: str, wishes: Wishes = NO_WISHES) -> dict[str, str]:

@@ -54,10 +54,10 @@ from rosetta_jit.kernel.ir import (
     While,
     Wire,
 )
-from rosetta_jit.kernel.shape import blocks_of, expressions_of, operands, statements, subexpressions
+from rosetta_jit.kernel.shape import blocks_of, expressions_of, operands, parts_of, statements, subexpressions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from rosetta_jit.kernel.ir import Address, Block, Effect, Expr, Kernel, Stmt
 
@@ -67,6 +67,8 @@ NO_NAMES: Mapping[str, str] = MappingProxyType({})
 def with_operands(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
     """An expression with each of its operands changed, in order."""
     old = operands(expr)
+    if not old:
+        return expr
     new = [change(operand) for operand in old]
     return expr if all(map(is_, new, old)) else _rebuilt(expr, new)
 
@@ -217,9 +219,14 @@ def locals_in(expr: Expr) -> set[str]:
     return {part.name for part in subexpressions(expr) if isinstance(part, Local)}
 
 
+def names_in(stmts: Iterable[Stmt]) -> set[str]:
+    """Names of the locals that statements read themselves, not in the blocks inside."""
+    return {part.name for part in parts_of(stmts) if isinstance(part, Local)}
+
+
 def names_read(block: Block) -> set[str]:
     """Names of the locals that a block reads, at any depth."""
-    return {name for stmt, _ in statements(block) for expr in expressions_of(stmt) for name in locals_in(expr)}
+    return names_in(stmt for stmt, _ in statements(block))
 
 
 def reads_memory(expr: Expr) -> bool:

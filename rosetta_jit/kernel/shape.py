@@ -12,7 +12,6 @@ from rosetta_jit.kernel.ir import (
     Binary,
     Bits,
     Call,
-    Capacity,
     Compare,
     Const,
     Convert,
@@ -29,10 +28,8 @@ from rosetta_jit.kernel.ir import (
     IsText,
     Let,
     Load,
-    Local,
     Lookup,
     Nearest,
-    Nest,
     Place,
     Register,
     Require,
@@ -75,26 +72,28 @@ VAST = 12_000
 
 
 def blocks_of(stmt: Stmt) -> tuple[Block, ...]:
-    """The blocks inside a statement."""
-    match stmt:
-        case For(_, _, body) | While(_, body, _, _):
-            return (body,)
-        case If(_, then, otherwise):
-            return (then, otherwise)
-        case Switch(_, cases, default):
-            return (*(block for _, block in cases), default)
-        case _:
-            return ()
+    """The blocks inside a statement. A table is asked, as for all that every walk over kernels asks."""
+    found = _BLOCKS.get(type(stmt))
+    return () if found is None else found(stmt)
+
+
+_BLOCKS: dict[type[Stmt], Callable[[Any], tuple[Block, ...]]] = {
+    **dict.fromkeys((For, While), lambda stmt: (stmt.body,)),
+    If: attrgetter("then", "otherwise"),
+    Switch: lambda stmt: (*(block for _, block in stmt.cases), stmt.default),
+}
 
 
 def statements(block: Block) -> Iterator[tuple[Stmt, int]]:
     """Every statement of a block, of the blocks inside, and so on, each with its depth."""
     stack: list[Iterator[Stmt]] = [iter(block)]
+    nested = _BLOCKS
     while stack:
+        depth = len(stack)
         for stmt in stack[-1]:
-            yield stmt, len(stack)
-            if isinstance(stmt, Nest):
-                stack.append(chain.from_iterable(blocks_of(stmt)))
+            yield stmt, depth
+            if type(stmt) in nested:
+                stack.append(chain.from_iterable(nested[type(stmt)](stmt)))
                 break
         else:
             stack.pop()
@@ -115,7 +114,7 @@ def are_straight_and_compute(kernels: Iterable[Kernel]) -> bool:
     every = [each for kernel in kernels for each in _usual_statements(kernel)]
     if any(isinstance(each, For | While) for each in every):
         return False
-    parts = [part for each in every for expr in expressions_of(each) for part in subexpressions(expr)]
+    parts = parts_of(every)
     has_floats = any(isinstance(part, Const | Convert) and part.type in ("f32", "f64") for part in parts)
     return has_floats and not any(isinstance(part, IsText | Nearest | Digits | Scale) for part in parts)
 
@@ -155,51 +154,38 @@ def is_short(kernel: Kernel) -> bool:
 
 def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
     """The expressions that stand in a statement itself."""
-    match stmt:
-        case Require(at, size, failure):
-            return (at, size, failure.at, *failure.indices)
-        case Expect(condition, failure):
-            return (condition, failure.at, *failure.indices)
-        case Let(_, value) | Var(_, value) | Assign(_, value):
-            return (value,)
-        case Store(at, value, _):
-            return (at, value)
-        case SetField(place, value):
-            return (place.row, value)
-        case Reserve(_, count) | Advance(_, count) | For(_, count, _):
-            return (count,)
-        case Copy(target, source, size):
-            return (_start(target), _start(source), size)
-        case Fill(target, size, _):
-            return (_start(target), size)
-        case While(condition, _, invariant, measure):
-            return (condition, *invariant, measure)
-        case If(condition, _, _):
-            return (condition,)
-        case Switch(value, _, _):
-            return (value,)
-        case Return(position, registers):
-            return (position, *(value for _, value in registers))
-        case Call(_, arguments, _, _, indices):
-            return (*arguments, *indices)
-        case HostCall(_, arguments, _, failure):
-            spans = (part for extent in extents_of(stmt) for part in (_start(extent.address), extent.size))
-            return (*arguments, *spans, failure.at, *failure.indices)
-        case _:
-            assert_never(stmt)
+    return _EXPRESSIONS[type(stmt)](stmt)
+
+
+def _host_expressions(call: HostCall) -> tuple[Expr, ...]:
+    spans = (part for extent in extents_of(call) for part in (_start(extent.address), extent.size))
+    return (*call.arguments, *spans, call.failure.at, *call.failure.indices)
+
+
+_EXPRESSIONS: dict[type[Stmt], Callable[[Any], tuple[Expr, ...]]] = {
+    Require: lambda stmt: (stmt.at, stmt.size, stmt.failure.at, *stmt.failure.indices),
+    Expect: lambda stmt: (stmt.condition, stmt.failure.at, *stmt.failure.indices),
+    **dict.fromkeys((Let, Var, Assign, Switch), lambda stmt: (stmt.value,)),
+    Store: attrgetter("at", "value"),
+    SetField: attrgetter("place.row", "value"),
+    **dict.fromkeys((Reserve, Advance, For), lambda stmt: (stmt.count,)),
+    Copy: lambda stmt: (_start(stmt.target), _start(stmt.source), stmt.size),
+    Fill: lambda stmt: (_start(stmt.target), stmt.size),
+    While: lambda stmt: (stmt.condition, *stmt.invariant, stmt.measure),
+    If: lambda stmt: (stmt.condition,),
+    Return: lambda stmt: (stmt.position, *(value for _, value in stmt.registers)),
+    Call: lambda stmt: (*stmt.arguments, *stmt.indices),
+    HostCall: _host_expressions,
+}
 
 
 def operands(expr: Expr) -> tuple[Expr, ...]:
-    """The expressions that stand in an expression itself. A table is asked, since no other function is called so often."""
-    return _OPERANDS[type(expr)](expr)
-
-
-def _none(expr: Expr) -> tuple[Expr, ...]:  # noqa: ARG001 - as for those that have some
-    return ()
+    """The expressions that stand in an expression itself."""
+    found = _OPERANDS.get(type(expr))
+    return () if found is None else found(expr)
 
 
 _OPERANDS: dict[type[Expr], Callable[[Any], tuple[Expr, ...]]] = {
-    **dict.fromkeys((Const, Local, Used, Capacity, HostValue, Register), _none),
     **dict.fromkeys((Binary, Compare, Fits), attrgetter("left", "right")),
     **dict.fromkeys((Unary, Convert, Bits), lambda expr: (expr.operand,)),
     **dict.fromkeys((Digits, Scale), lambda expr: (expr.value,)),
@@ -224,15 +210,17 @@ def our_functions(kernels: Iterable[Kernel]) -> list[str]:
 
 def asks_host(kernels: Iterable[Kernel]) -> bool:
     """Whether kernels ask the host for the time, or for the number of a message."""
-    stmts = (stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body))
-    return any(isinstance(part, HostValue) for stmt in stmts for expr in expressions_of(stmt) for part in subexpressions(expr))
+    return any(isinstance(part, HostValue) for kernel in kernels for part in parts_of(_statements_of(kernel)))
 
 
 def registers_read(kernel: Kernel) -> set[int]:
     """The registers whose values a kernel asks for."""
-    stmts = (stmt for body in kernel.bodies for stmt, _ in statements(body))
-    parts = (part for stmt in stmts for expr in expressions_of(stmt) for part in subexpressions(expr))
-    return {part.number for part in parts if isinstance(part, Register)}
+    return {part.number for part in parts_of(_statements_of(kernel)) if isinstance(part, Register)} if kernel.registers else set()
+
+
+def _statements_of(kernel: Kernel) -> Iterator[Stmt]:
+    """The statements of all bodies."""
+    return (stmt for body in kernel.bodies for stmt, _ in statements(body))
 
 
 def extents_of(call: HostCall) -> tuple[Extent, ...]:
@@ -242,23 +230,35 @@ def extents_of(call: HostCall) -> tuple[Extent, ...]:
 
 def subexpressions(expr: Expr) -> list[Expr]:
     """An expression and all inside it."""
-    parts = [expr]
+    return _with_parts([expr])
+
+
+def parts_of(stmts: Iterable[Stmt]) -> list[Expr]:
+    """All expressions of some statements, and all inside them."""
+    return _with_parts([expr for stmt in stmts for expr in _EXPRESSIONS[type(stmt)](stmt)])
+
+
+def _with_parts(parts: list[Expr]) -> list[Expr]:
+    """Expressions and, behind them, all inside them."""
+    inside = _OPERANDS
     for part in parts:  # which grows
-        parts += _OPERANDS[type(part)](part)
+        if type(part) in inside:
+            parts += inside[type(part)](part)
     return parts
 
 
 def bound_names(stmt: Stmt) -> tuple[str, ...]:
     """The names that a statement binds."""
-    match stmt:
-        case Let(name, _) | Var(name, _) | For(name, _, _):
-            return (name,)
-        case Call(_, _, results, _, _):
-            return tuple(result.name for result in results)
-        case HostCall():
-            return (stmt.result.name,)
-        case _:
-            return ()
+    found = _BOUND.get(type(stmt))
+    return () if found is None else found(stmt)
+
+
+_BOUND: dict[type[Stmt], Callable[[Any], tuple[str, ...]]] = {
+    **dict.fromkeys((Let, Var), lambda stmt: (stmt.name,)),
+    For: lambda stmt: (stmt.variable,),
+    Call: lambda stmt: tuple([result.name for result in stmt.results]),
+    HostCall: lambda stmt: (stmt.result.name,),
+}
 
 
 def shape_error(kernel: Kernel) -> str | None:
@@ -283,9 +283,8 @@ def shape_error(kernel: Kernel) -> str | None:
 
 
 def _registers_error(count: int, every: list[Stmt]) -> str | None:
-    parts = (part for stmt in every for expr in expressions_of(stmt) for part in subexpressions(expr))
     changed = [[number for number, _ in stmt.registers] for stmt in every if isinstance(stmt, Return)]
-    named = {part.number for part in parts if isinstance(part, Register)} | {number for numbers in changed for number in numbers}
+    named = {part.number for part in parts_of(every) if isinstance(part, Register)} | {number for numbers in changed for number in numbers}
     unknown = [number for number in named if not 0 <= number < count]
     if unknown:
         return f"no register {unknown[0]}"
@@ -353,11 +352,11 @@ def _failing_error(named: tuple[int, ...], indices: tuple[Expr, ...], sites: int
 
 
 def _too_deep(expr: Expr) -> bool:
-    level: tuple[Expr, ...] = (expr,)
+    level = operands(expr)
     for _ in range(MAX_EXPRESSION):
-        level = tuple(chain.from_iterable(map(operands, level)))
         if not level:
             return False
+        level = tuple(chain.from_iterable(map(operands, level)))
     return True
 
 

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-from queue import Empty, Full, Queue
-from threading import Event, Thread
-from typing import TYPE_CHECKING, TypeVar
+from collections import deque
+from threading import Condition, Thread
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterator
+    from collections.abc import Callable, Generator, Iterator
 
 Item = TypeVar("Item")
-POLL_S = 0.1
-"""How long the thread sleeps before it looks whether anybody still wants what it has."""
+
+WAITING_BYTES = 6 << 20
+"""The most that waits: a table is made of about as many bytes, and while that lasts nobody asks for more."""
 
 
 @dataclass(frozen=True, slots=True)
-class Failed:
+class _Failed:
     """What the iterator raised."""
 
     error: BaseException
@@ -28,45 +28,65 @@ class _End:
     """There is no more."""
 
 
-def ahead(items: Iterator[Item]) -> Generator[Item]:
-    """The same items, of which one is made while another one is used. What the iterator raises is raised here.
+class _Waiting(Generic[Item]):
+    """Items between the thread that makes them and the one that uses them: of at most `WAITING_BYTES` together, or a single one."""
 
-    Three are alive at once: the one that is used, one that waits, and the one that is made.
+    def __init__(self) -> None:
+        self._items = deque[tuple[Item | _Failed | _End, int]]()
+        self._changed, self._bytes, self._is_wanted = Condition(), 0, True
+
+    def put(self, item: Item | _Failed | _End, size: int) -> bool:
+        """Let an item wait when there is room for it; whether anybody still wants more."""
+        with self._changed:
+            self._changed.wait_for(lambda: not self._items or self._bytes + size <= WAITING_BYTES or not self._is_wanted)
+            self._items.append((item, size))
+            self._bytes += size
+            self._changed.notify_all()
+            return self._is_wanted
+
+    def get(self) -> Item | _Failed | _End:
+        """The item that waits longest."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._items)
+            item, size = self._items.popleft()
+            self._bytes -= size
+            self._changed.notify_all()
+            return item
+
+    def leave(self) -> None:
+        """Want no more."""
+        with self._changed:
+            self._is_wanted = False
+            self._changed.notify_all()
+
+
+def ahead(items: Iterator[Item], size: Callable[[Item], int]) -> Generator[Item]:
+    """The same items, which are made while others are used. What the iterator raises is raised here.
+
+    ``size`` says how many bytes an item has.
     """
-    waiting: Queue[Item | Failed | _End] = Queue(maxsize=1)
-    unwanted = Event()
-
-    def put(item: Item | Failed | _End) -> None:
-        while not unwanted.is_set():
-            try:
-                return waiting.put(item, timeout=POLL_S)
-            except Full:
-                continue
-        return None
+    waiting = _Waiting[Item]()
 
     def make() -> None:
         try:
             for item in items:
-                put(item)
-                if unwanted.is_set():
+                if not waiting.put(item, size(item)):
                     return
-            put(_End())
+            waiting.put(_End(), 0)
         except BaseException as error:  # noqa: BLE001 - it is raised where the items are used
-            put(Failed(error))
+            waiting.put(_Failed(error), 0)
 
     thread = Thread(target=make, name="rosetta_jit reads ahead", daemon=True)
     thread.start()
     try:
         while True:
             match waiting.get():
-                case Failed(error):
+                case _Failed(error):
                     raise error
                 case _End():
                     return
                 case item:
                     yield item
     finally:
-        unwanted.set()
-        with suppress(Empty):
-            waiting.get_nowait()
+        waiting.leave()
         thread.join()

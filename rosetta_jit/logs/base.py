@@ -160,7 +160,7 @@ class Reader(Protocol):
         ...
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
-        """The messages. The bytes of a block are good until the second one behind it is asked for: one block is read ahead."""
+        """The messages. Several blocks are in use at a time, because they are read ahead (`rosetta_jit.logs.ahead`)."""
         ...
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.api.bridges import Bridge
     from rosetta_jit.api.options import Options
-    from rosetta_jit.api.programs import Decoder
+    from rosetta_jit.api.programs import Decoder, Encoder
     from rosetta_jit.logs.base import Block, Connection
     from rosetta_jit.logs.file import LogFile
     from rosetta_jit.logs.moments import Moment
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.walking import Rows
     from rosetta_jit.runtime.batch import Batch
 
+    Program = TypeVar("Program", bound=Decoder | Encoder)
 
 MOST_OF_EMPTY = 8
 """Bytes that a message without fields takes at most: in CDR the header, one byte, and three that fill up the last four."""
@@ -91,7 +92,13 @@ class Channel:
 
     @cached_property
     def decoder(self) -> Decoder:
-        """What decodes the messages.
+        """What decodes the messages; raises as `program` does."""
+        from rosetta_jit.api.programs import Decoder
+
+        return self.program(Decoder)
+
+    def program(self, kind: type[Program]) -> Program:
+        """A decoder of the messages, or an encoder of more of them.
 
         Raises
         ------
@@ -103,7 +110,8 @@ class Channel:
         connection = self.connections[0]
         if connection.schema_encoding and not connection.schema.strip() and self._has_content():
             connection = replace(connection, schema_encoding="", schema=b"")
-        return _decoder(self._log, connection, self._target, self._options)
+        name, chosen = _type_and_options(self._log, connection, self._target, self._options)
+        return kind(name, **chosen) if name == self._target and name.endswith(".mapping") else kind.of(name, **chosen)
 
     def _has_content(self) -> bool:
         """Whether the first message is longer than one without fields: then an empty definition is none."""
@@ -115,13 +123,13 @@ class Channel:
     ) -> Iterator[Part]:
         """The messages, decoded some megabytes at a time into one batch that is filled again and again. State begins anew."""
         self.decoder.reset()
-        yield from Collector(self.decoder, on_error, expected=self.count).parts(ahead(self._blocks(start, end, pieces)))
+        blocks = ahead(self._blocks(start, end, pieces), lambda each: each.data.size)
+        yield from Collector(self.decoder, on_error, expected=self.count).parts(blocks)
 
     def decoded(self, block: Block, rows: Rows, on_error: OnError = "raise") -> Batch:
         """Messages of a block, in a batch of their own; an error says of which topic and time the message is."""
-        data = block.data.copy() if self.decoder.borrows_ else block.data  # whose memory is used again
         with self._named(rows):
-            return self.decoder.many(data.data, np.stack([rows.begins, rows.ends]), on_error=on_error)
+            return self.decoder.many(block.data.data, np.stack([rows.begins, rows.ends]), on_error=on_error)
 
     def bridge_to(self, type_: str, encode: Options) -> Bridge:
         """What turns the messages into those of another type, which has the same fields (`rosetta_jit.api.bridges.Bridge.of`)."""
@@ -266,13 +274,6 @@ class Channel:
 
 def _channel_of(log: LogFile, numbers: frozenset[int], target: str | None, options: Options) -> Channel:
     return Channel(log, tuple(each for each in log.connections if each.number in numbers), target, options)
-
-
-def _decoder(log: LogFile, connection: Connection, target: str | None, options: Options) -> Decoder:
-    from rosetta_jit.api.programs import Decoder
-
-    name, chosen = _type_and_options(log, connection, target, options)
-    return Decoder(name, **chosen) if name == target and name.endswith(".mapping") else Decoder.of(name, **chosen)
 
 
 def _type_and_options(log: LogFile, connection: Connection, target: str | None, options: Options) -> tuple[str, dict[str, Any]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bz2
+from sys import getrefcount
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,16 +25,12 @@ STEP = 1 << 16
 MOST_OF_LZ4 = 256
 """Bytes that one byte of LZ4 stands for, and one more than can be: it counts at most 255 bytes of a copy."""
 
-AT_ONCE = 3
-"""Chunks that are in memory at once: one that is decoded, one that waits, one that is decompressed (`rosetta_jit.logs.ahead`)."""
-
 
 class Scratch:
-    """Memory that is used for one chunk after another, of those that are read at the same time."""
+    """Memory that is used for one chunk after another: fresh memory would take as long as reading into it."""
 
     def __init__(self) -> None:
-        self._contents = [np.empty(0, np.uint8) for _ in range(AT_ONCE)]
-        self._records = [np.empty(0, np.uint8) for _ in range(AT_ONCE)]
+        self._contents, self._records = list["Bytes"](), list["Bytes"]()
         self._zstd: Any = None
 
     def zstd(self, zstandard: Any) -> Any:
@@ -42,19 +39,30 @@ class Scratch:
         return self._zstd
 
     def room(self, size: int) -> Bytes:
-        """So many bytes for the content of a chunk; what was there three chunks before is gone."""
-        return _turned(self._contents, size)
+        """So many bytes for the content of a chunk."""
+        return _unused(self._contents, size)
 
     def record(self, size: int) -> Bytes:
         """The same for a chunk as it is in the file, which is its content where it is not compressed."""
-        return _turned(self._records, size)
+        return _unused(self._records, size)
 
 
-def _turned(memory: list[Bytes], size: int) -> Bytes:
-    """The oldest memory, large enough."""
-    oldest = memory.pop(0)
-    memory.append(oldest if oldest.size >= size else np.empty(size, np.uint8))
+def _unused(memory: list[Bytes], size: int) -> Bytes:
+    """The first of some memory that is large enough, and which no array and no view shows; else memory anew. What is too small goes."""
+    unused = _references([np.empty(0, np.uint8)], 0)
+    for number in range(len(memory)):
+        if _references(memory, number) == unused:
+            if memory[number].size >= size:
+                return memory[number][:size]
+            del memory[number]
+            break
+    memory.append(np.empty(size, np.uint8))
     return memory[-1][:size]
+
+
+def _references(memory: list[Bytes], number: int) -> int:
+    """How many objects refer to an array of a list: the list, every view of the array, and the call that counts."""
+    return getrefcount(memory[number])
 
 
 def decompressed(name: str, compression: str, body: memoryview, size: int, scratch: Scratch) -> tuple[Bytes, str]:

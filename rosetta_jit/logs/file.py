@@ -79,7 +79,7 @@ class LogFile:
         return tuple(self._reader.pieces)
 
     def blocks(self, wanted: Wanted | None = None) -> Iterator[Block]:
-        """The messages as bytes, many at a time, in the order in which they lie; a block is good until the next is asked for."""
+        """The messages as bytes, many at a time, in the order in which they lie."""
         wanted = wanted or Wanted()
         if wanted.pieces is not None and not wanted.pieces:
             return

@@ -98,7 +98,10 @@ class Log(LogFile):
             raise LogError((words.unknown_topic(self.name, topic, self.topics),))
         named = [each for each in found if target is not None and each.type == target] or found
         if len({_type_key(each) for each in named}) > 1:
-            raise LogError((words.several_types(self.name, topic, sorted({each.type for each in found})),))
+            types = sorted({each.type for each in named})
+            if len(types) == 1:
+                raise LogError((words.several_definitions(self.name, topic, types[0]),))
+            raise LogError((words.several_types(self.name, topic, types),))
         return Channel(self, tuple(named), target, cast("Options", {**self._options, **options}))
 
     def messages(

@@ -95,7 +95,10 @@ def _file(name: str) -> BinaryIO:
         fsspec: Any = import_module("fsspec")
     except ImportError:
         raise LogError((words.needs(name, "fsspec", "logs"),)) from None
-    return cast("BinaryIO", fsspec.open(name, "rb").open())
+    try:
+        return cast("BinaryIO", fsspec.open(name, "rb").open())
+    except ImportError as error:  # each kind of address has a package of its own
+        raise OSError(0, str(error)) from None
 
 
 def _spooled(stream: BinaryIO) -> BinaryIO:

@@ -32,6 +32,7 @@ from rosetta_jit.model.types import Ref, Schema, Struct
 from rosetta_jit.pipeline.checked_mapping import CheckedMapping
 from rosetta_jit.pipeline.declared import declared_types, files_of, of_a_size, readers_of, report
 from rosetta_jit.pipeline.kept import kept_of
+from rosetta_jit.pipeline.recent import recently
 from rosetta_jit.pipeline.request import ByteOrder, Request
 from rosetta_jit.pipeline.stages import shown
 from rosetta_jit.pipeline.types import Types
@@ -72,6 +73,9 @@ class Build:
     @cached_property
     def checked(self) -> Checked:
         """The mapping, with the parameters of the request."""
+        return recently(self.request, self.sources, self._checked)
+
+    def _checked(self) -> Checked:
         source = self.sources.search.open(self.request.mapping or "")
         self.sources.reading.record(source.name, None, source)
         readers, parameters = readers_of(self.request), json.loads(self.request.parameters)
@@ -80,9 +84,12 @@ class Build:
     @cached_property
     def types(self) -> Types:
         request = self.request
-        types = _mapped_types(self) if request.mapping is not None else of_a_size(request, declared_types(request, self.sources))
+        types = _mapped_types(self) if request.mapping is not None else of_a_size(request, self._declared())
         check_given(request, types.functions)
         return types
+
+    def _declared(self) -> Types:
+        return recently(self.request, self.sources, lambda: declared_types(self.request, self.sources))
 
     @cached_property
     def encoding(self) -> Encoding:
@@ -268,17 +275,9 @@ class Build:
         return shown(cast("Made", self), stage)  # its properties are made once
 
     def files(self) -> dict[str, str | None]:
-        """The files that were read, by digest, and those that would have been read instead if they existed."""
-        in_memory = self.sources.given
-        found: dict[str, str | None] = {}
-        for lookup in self.sources.reading.lookups:
-            if lookup.found not in in_memory:
-                found |= dict.fromkeys(self.sources.search.preferred(lookup), None)
-        for lookup in self.sources.reading.lookups:
-            if lookup.found not in in_memory:
-                found[lookup.found] = lookup.digest
+        """The digests of all files that the program depends on."""
         offered = files_of_offered() if self.request.mapping is not None else ()
-        return found | {path: digest_file(path) for path in offered}
+        return self.sources.digests() | {path: digest_file(path) for path in offered}
 
 
 @contextmanager

@@ -18,6 +18,7 @@ from rosetta_jit.model.serial import from_plain
 from rosetta_jit.model.types import Schema, Struct, same_name
 from rosetta_jit.pipeline.similar_types import similar_types
 from rosetta_jit.pipeline.types import Types
+from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -33,6 +34,16 @@ class Files:
     given: dict[str, str]
     search: SearchPath
     reading: Reading
+
+    def digests(self) -> dict[str, str | None]:
+        """Those that were read, by digest, and those that would have been read instead if they existed."""
+        lookups = [each for each in self.reading.lookups if each.found not in self.given]
+        preferred = (path for lookup in lookups for path in self.search.preferred(lookup))
+        return dict.fromkeys(preferred) | {lookup.found: lookup.digest for lookup in lookups if lookup.found is not None}
+
+    def are_unchanged(self) -> bool:
+        """Whether the same would be read again."""
+        return all(digest_file(path) == digest for path, digest in self.digests().items())
 
 
 def files_of(request: Request) -> Files:

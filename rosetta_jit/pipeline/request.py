@@ -94,7 +94,7 @@ class Request:
         """The request as plain data, with the surroundings that relative names depend on."""
         functions = [[each.name, each.identity.digest] for each in self.functions]
         plain: dict[str, Any] = {name: getattr(self, name) for name in self.__match_args__}
-        return {**plain, "functions": functions, "cwd": _here(), "path": environment.get("ROSETTA_JIT_PATH", "")}
+        return {**plain, "functions": functions, "cwd": here(), "path": environment.get("ROSETTA_JIT_PATH", "")}
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +130,7 @@ def ends(request: Request) -> str:
     return what if request.encoding is None else f"{what}, {request.encoding}"
 
 
-def _here() -> str:
+def here() -> str:
     """The folder that relative names start from; empty where it was removed."""
     try:
         return os.getcwd()  # noqa: PTH109 - Path.cwd() imports no less and says no more

@@ -185,5 +185,5 @@ def _chosen(native: bool | None) -> bool:
     return is_native() if native is None else native
 
 
-def _names(base: type) -> dict[str, str | None]:
-    return {"__module__": base.__module__, "__qualname__": base.__qualname__, "__doc__": base.__doc__}
+def _names(base: type) -> dict[str, Any]:
+    return {"__module__": base.__module__, "__qualname__": base.__qualname__, "__doc__": vars(base).get("__doc__")}

@@ -321,6 +321,8 @@ def _target(buffer: object = None, offset: object = 0) -> Target | None:
     found = run.writable(buffer)
     if not isinstance(offset, int):
         raise TypeError(f"an offset is an int, not {type(offset).__name__}")
+    if offset < 0:
+        raise BufferError(f"offset {offset} lies before the buffer: offsets count from its begin")
     return found, offset
 
 

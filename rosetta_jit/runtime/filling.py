@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from rosetta_jit.errors import DecodeError
-from rosetta_jit.kernel.state import CAPACITY, CLEAN, USED, VALID, lane_word
+from rosetta_jit.kernel.state import CAPACITY, CLEAN, LANE_WORDS, USED, VALID, lane_word
 from rosetta_jit.runtime import run
+from rosetta_jit.runtime.memory import pointer_to
 from rosetta_jit.runtime.program import one_by_one
 
 if TYPE_CHECKING:
@@ -49,8 +50,9 @@ class Filling:
         if batch.handed_ is not None:
             batch.handed_.renew(lanes)
         lanes.begin_filling()
-        for lane in range(len(lanes.buffers)):
-            lanes.words[lane_word(lane, USED)] = 0
+        words = lanes.words
+        for used in range(lane_word(0, USED), lane_word(len(lanes.plan.strides), USED), LANE_WORDS):
+            words[used] = 0
         lanes.rows = 0
 
     def add(self, data: NDArray[np.uint8], spans: MessageSpans, count: int) -> None:
@@ -112,7 +114,7 @@ class Filling:
     def _many(self, data: NDArray[np.uint8], spans: MessageSpans, first: int, lanes: Lanes) -> int:
         """Decode from one message on; the first that could not be."""
         if self._compiled is not None:
-            return self._compiled(data.ctypes.data, data.size, *spans.addresses, first, self.count, lanes.address)
+            return self._compiled(pointer_to(data), data.size, *spans.addresses, first, self.count, lanes.address)
         return one_by_one(self._loaded.kernel, data, spans, first, self.count, lanes)
 
     def _error(self, result: int, data: NDArray[np.uint8], spans: MessageSpans, done: int) -> Exception:
@@ -122,12 +124,15 @@ class Filling:
         return DecodeError(error.kind, f"[{done}]{error.path}", error.detail, error.offset)
 
 
+_ROWS_CAPACITY, _ROWS_USED = lane_word(0, CAPACITY), lane_word(0, USED)
+
+
 def _make_rows(lanes: Lanes, count: int) -> None:
     """So many rows for messages that are going to be decoded."""
-    missing = count - lanes.words[lane_word(0, CAPACITY)]
+    missing = count - lanes.words[_ROWS_CAPACITY]
     if missing > 0:
         lanes.grow(0, missing)
-    lanes.words[lane_word(0, USED)] = lanes.rows = count
+    lanes.words[_ROWS_USED] = lanes.rows = count
 
 
 MOST_GUESSED = 16

@@ -144,18 +144,20 @@ class Lanes:
 
     def __enter__(self) -> Self:
         """Take the lanes. The lock makes this one step; the epoch tells compiled entries, one of which may itself be interrupted by us."""
-        if not self.lock.acquire(blocking=False):
+        if not self.lock.acquire(False):
             raise in_use()
-        epoch = self.words[EPOCH]
+        words = self.words
+        epoch = words[EPOCH]
         if epoch < 0:
             self.lock.release()
             raise in_use()
-        self.words[EPOCH] = ~epoch
+        words[EPOCH] = ~epoch
         return self
 
     def __exit__(self, *_: object) -> None:
         """Give the lanes back, with the next epoch: the negative of ``~epoch`` is ``epoch + 1``."""
-        self.words[EPOCH] = -self.words[EPOCH]
+        words = self.words
+        words[EPOCH] = -words[EPOCH]
         self.is_filled = True
         self.lock.release()
 

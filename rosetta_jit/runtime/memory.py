@@ -31,6 +31,14 @@ def address_of(memory: NDArray[Any]) -> int:
     return ctypes.addressof(ctypes.c_char.from_buffer(cast("Any", memory)))
 
 
+def pointer_to(memory: NDArray[np.uint8]) -> int | bytes:
+    """Where bytes lie, as ctypes takes it for a ``c_void_p``: it takes a bytes object itself, much sooner than numpy says an address."""
+    base = cast("Any", memory.base)
+    if type(base) is memoryview and type(base.obj) is bytes and len(base.obj) == memory.size:
+        return base.obj
+    return memory.ctypes.data
+
+
 def aligned_bytes(size: int) -> NDArray[np.uint8]:
     """Bytes that begin at a multiple of `ALIGNMENT`, or of a page, if they are many.
 

@@ -21,10 +21,13 @@ class MessageSpans:
     ----------
     begins, ends : ndarray of int64, shape (n,)
         Contiguous in memory, because compiled code reads them. They are not checked against any buffer.
+    apart : int
+        How many bytes ``ends`` lies behind ``begins``, where both are of one array; 0 where that is not known.
     """
 
     begins: NDArray[np.int64]
     ends: NDArray[np.int64]
+    apart: int = 0
 
     @classmethod
     def of(cls, offsets: NDArray[np.int64]) -> Self:
@@ -37,9 +40,9 @@ class MessageSpans:
         """
         found = np.ascontiguousarray(offsets)
         if found.dtype == np.int64 and found.ndim == 1 and found.size:
-            return cls(found[:-1], found[1:])
+            return cls(found[:-1], found[1:], 8)
         if found.dtype == np.int64 and found.ndim == 2 and len(found) == 2:
-            return cls(found[0], found[1])
+            return cls(found[0], found[1], found.strides[0])
         raise ValueError(
             "offsets are an int64 array of one dimension, one longer than there are messages, or of two rows: begins and ends of messages"
         )
@@ -50,7 +53,8 @@ class MessageSpans:
     @property
     def addresses(self) -> tuple[int, int]:
         """Where compiled code finds begins and ends."""
-        return _address_of(self.begins), _address_of(self.ends)
+        begins = _address_of(self.begins)
+        return begins, begins + self.apart if self.apart else _address_of(self.ends)
 
     def span(self, number: int) -> tuple[int, int]:
         """The first byte of a message, and the one behind its last."""

@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.plan import Plan
     from rosetta_jit.runtime.registers import Registers
 
+_NOTHING_LENT = nullcontext[None]()
+
 MANY = ctypes.CFUNCTYPE(
     *(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p),
     *(ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p),
@@ -142,11 +144,11 @@ class ProgramBase:
 
     def _keeping(self, lanes: Lanes) -> AbstractContextManager[None]:
         """Around kernels that run on some lanes: what the program keeps from message to message is theirs alone. InUse where it is not."""
-        return nullcontext() if self._registers is None else self._registers.lent(lanes)
+        return _NOTHING_LENT if self._registers is None else self._registers.lent(lanes)
 
     def _as_before(self) -> AbstractContextManager[None]:
         """Around one message: where it fails, the program keeps what it kept before."""
-        return nullcontext() if self._registers is None else self._registers.as_before()
+        return _NOTHING_LENT if self._registers is None else self._registers.as_before()
 
     def _refuse_state(self) -> None:
         """Where users' own compiled code would run the kernel: nothing tells there which call has the state."""

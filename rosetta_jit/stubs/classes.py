@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import inspect
 import re
+from itertools import accumulate, repeat
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.model.words import escaped, field_words
@@ -102,6 +103,7 @@ def _constructor(family: HolderFamily, fields: dict[str, list[str]]) -> Iterator
     if inspect.Parameter.VAR_KEYWORD not in kinds or "__init__" in family.manners.members(family):
         return
     names = [name for name in fields if is_attribute(name) and name != "self"]
-    star = "*values: typing.Any" if inspect.Parameter.VAR_POSITIONAL in kinds else "*"
+    others = next(other for other in accumulate(repeat("_"), initial="values") if other not in names)
+    star = f"*{others}: typing.Any" if inspect.Parameter.VAR_POSITIONAL in kinds else "*"
     given = "".join(f", {name}: typing.Any = ..." for name in names)
     yield f"def __init__(self, {star}{given}) -> None: ..." if names or star != "*" else "def __init__(self) -> None: ..."

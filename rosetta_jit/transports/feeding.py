@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
+    from collections.abc import Callable, Generator
 
     Machine = Generator["int | Until", memoryview, None]
 
@@ -74,6 +74,19 @@ class Feed:
             self._want = next(machine)
         except StopIteration:
             self.done = True
+
+    def receive(self, read_into: Callable[[memoryview], int]) -> bool:
+        """Hand on what a function reads into the memory that it gets; False where that is nothing, as at the end of a stream.
+
+        Raises
+        ------
+        ProtocolError
+            The peer is wrong.
+        """
+        count = read_into(self.room())
+        if count and not self.done:  # what comes after the end is dropped
+            self.filled(count)
+        return count > 0
 
     def room(self) -> memoryview:
         """Where the next bytes are to be put; `filled` says how many."""

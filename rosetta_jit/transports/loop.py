@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 READ = select.EPOLLIN
 WRITE = select.EPOLLOUT
 
+EVENTS = 64
+"""That are taken at a time; memory for them is made each time."""
+
 
 class Timer:
     """Something that is called later, unless it is cancelled."""
@@ -127,7 +130,7 @@ class Loop:
     def _run(self) -> None:
         poll, watched = self._epoll.poll, self._watched
         while True:
-            for number, events in poll(self._pause()):
+            for number, events in poll(self._pause(), EVENTS):
                 ready = watched.get(number)
                 if ready is not None:
                     try:

@@ -189,28 +189,20 @@ class Stream:
             loop().watch(self.socket.fileno(), events, self._ready)
 
     def _ready(self, events: int) -> None:
-        if events == READ:
-            self._read()
-            return
-        if events & WRITE:
-            self._write()
-        if events & ~WRITE and not self.closed:
-            self._read()
-
-    def _read(self) -> None:
+        """Called for each message: what it takes, each message takes longer."""
+        if events != READ:
+            if events & WRITE:
+                self._write()
+            if not events & ~WRITE or self.closed:
+                return
         feed = self._feed
         assert feed is not None
         try:
-            room = feed.room()
-            if feed.size != self._held:
-                self._hold(feed.size)
-            count = self.socket.recv_into(room)
-            if not count:
+            if not feed.receive(self.socket.recv_into):
                 self.end()
                 return
-            if feed.done:  # what comes after the end
-                return
-            feed.filled(count)
+            if feed.size != self._held and not self.closed:
+                self._hold(feed.size)
         except BlockingIOError:
             return
         except ProtocolError as error:

@@ -399,6 +399,8 @@ def test_messages_of_batches_are_encoded_where_they_lie(encode, decode):
         assert buffer[5:] == messages[3]
         with pytest.raises(BufferError, match="are left behind offset"):
             encode(batch[3], buffer, 6)
+        with pytest.raises(BufferError, match="offset -1 lies before"):
+            encode(batch[3], buffer, -1)
     row = batch[0]
     with pytest.raises(rj.DecodeError):
         borrowing.many([messages[0][:-1]], into=batch)

@@ -17,7 +17,8 @@ FILES = {
     "a/msg/Pair.msg": "float32 x\nfloat32 y\n",
     "a/msg/Mixed.msg": "float32 x\nuint32 y\n",
     "a/msg/Odd.msg": "uint32 x\nuint16 y\n",
-    "a/msg/All.msg": "uint16[] words\nfloat32[] singles\nfloat64[] doubles\nPair[] pairs\nMixed[] mixed\nOdd[] odd\n"
+    "a/msg/All.msg": "float64 one\nfloat64 two\nfloat64 three\nfloat32 four\nfloat32 five\nint64 six\n"
+    "uint16[] words\nfloat32[] singles\nfloat64[] doubles\nPair[] pairs\nMixed[] mixed\nOdd[] odd\n"
     "string[] texts\nuint8[] bytes\n",
 }
 NUMBERS = {"words": "H", "singles": "f", "doubles": "d"}
@@ -33,6 +34,8 @@ def message(order, counts):
         data.extend(bytes(-(len(data) - 4) % size))
         data.extend(struct.pack(order + form, value))
 
+    for form, value in zip("dddffq", (1.5, -2.5, 3.5, 4.5, -5.5, -6), strict=True):
+        pack(form, value)
     for forms, count in zip((*NUMBERS.values(), *STRUCTS.values()), counts, strict=False):
         pack("I", count)
         for number in range(count):
@@ -74,12 +77,12 @@ def test_what_is_broken_is_told_in_the_same_words(decoders):
         assert told[0] == told[1]
 
 
-def test_arrays_of_one_kind_of_number_are_swapped_by_what_is_compiled_once():
+def test_numbers_of_one_kind_in_a_row_are_swapped_by_what_is_compiled_once():
     request = Request("decode", type="a/msg/All", files=tuple(FILES.items()), encoding="cdr", framework="ros2")
     (kernel,) = Build(request).kernels
     main, rare = texts_of(kernel)
-    assert [rare.count(f'call void @"rosetta_swap{width}"') for width in (2, 4, 8)] == [1, 3, 1]
-    assert "bswap" in rare  # the members of Odd, whose rows have padding
+    assert [rare.count(f'call void @"rosetta_swap{width}"') for width in (2, 4, 8)] == [1, 3, 2]
+    assert "bswap" in rare  # two fields of four bytes, one of eight, and the members of Odd, whose rows have padding
     assert "rosetta_swap" not in main
     assert main.count("define") == rare.count("define") == 1
 

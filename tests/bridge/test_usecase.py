@@ -39,6 +39,6 @@ def test_on_ports_of_ours(tmp_path, monkeypatch):
 def test_on_the_real_yarp(tmp_path, monkeypatch):
     build = usecase.built(Path(tmp_path / "simulator"))
     if build is None:
-        pytest.skip("no CMake, or no YARP where YARP_DIR says")
+        pytest.skip("no CMake, or no YARP that it can build with where YARP_DIR says")
     monkeypatch.setattr(usecase, "POSES", POSES)
     check(*usecase.play(2.0, build), tmp_path)

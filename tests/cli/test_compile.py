@@ -11,6 +11,8 @@ from rosetta_jit.api.programs import Decoder, Encoder
 from rosetta_jit.api.warm import programs_of, warm
 from rosetta_jit.cli import main
 from rosetta_jit.errors import CacheWarning
+from rosetta_jit.runtime.attributes.code import ALL
+from rosetta_jit.runtime.cache.texts import known
 
 KEY_VALUE = "ros1/key_value.mapping"
 BOOL = "std_msgs/msg/Bool"
@@ -48,6 +50,7 @@ def test_many_are_compiled_in_several_processes(tmp_path, monkeypatch, capsys):
     assert "7 ready, 1 wrong" in out
     assert "no file declares a message `std_msgs/msg/Nothing`" in err
     kept = {path.name for path in tmp_path.rglob("*") if path.is_file()}
+    assert known(ALL) is not None  # all accessors of messages
     assert all(Decoder.of(name) for name in types[:-1])
     assert {path.name for path in tmp_path.rglob("*") if path.is_file()} == kept
 

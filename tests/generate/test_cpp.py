@@ -142,10 +142,22 @@ def test_classes_without_such_fields_are_refused():
         generated(request, "cpp", BOTH, "image", Wishes(holder="ros1"))
 
 
-def test_an_unknown_holder_is_said(capsys, tmp_path):
-    asked = ["generate", "sensor_msgs/JointState", "--encoding", "ros1", "--language", "cpp", "--holder", "dds", "-o", str(tmp_path)]
+REFUSED = {
+    "--language cpp --holder dds": "error[unknown-holder]",
+    "--holder protobuf": "error[unknown-holder]",
+    "--language cpp --holder yarp --directions decode": "`encode` is not among the directions",
+    "--language cpp --holder yarp --directions encode": "`decode` is not among the directions",
+    "--emit object --holder own": "`--holder` says nothing about `--emit object`",
+    "--target armv7-linux-gnueabihf": "`--target` says nothing about `--emit source`",
+}
+
+
+@pytest.mark.parametrize("options", REFUSED)
+def test_options_that_cannot_be_met_are_refused(options, capsys, tmp_path):
+    asked = ["generate", "sensor_msgs/JointState", "--encoding", "ros1", *options.split(), "-o", str(tmp_path)]
     assert main(asked) == 1
-    assert "error[unknown-holder]" in capsys.readouterr().err
+    assert REFUSED[options] in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
 
 
 def test_the_mapping_that_decodes_alone_has_no_encoder():

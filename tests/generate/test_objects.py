@@ -55,6 +55,12 @@ def test_a_small_machine_needs_little(tmp_path):
     assert 0 < int(text) <= 3072
 
 
+def test_the_header_of_an_object_can_do_without_a_c_library():
+    for freestanding, wanted in ((True, set()), (False, {"string.h"})):
+        text = object_of(TORSO, BOTH, "torso", "thumbv7em-none-eabihf", "cortex-m7", freestanding=freestanding)["torso.h"]
+        assert set(re.findall(r"#include <(.*)>", text)) - {"stdbool.h", "stddef.h", "stdint.h", "float.h"} == wanted
+
+
 @pytest.mark.parametrize(
     ("arguments", "kind"),
     [

@@ -31,6 +31,7 @@ from rosetta_jit.kernel.ir import (
     Reserve,
     Return,
     Routine,
+    Select,
     SetField,
     Store,
     Used,
@@ -156,6 +157,19 @@ PASSED = {
             For("i", i64("n"), (need(THERE, 8, 4, i64("i")), SetField(Place(1, ELEMENT), Load("i64", THERE, ">")))),
             Return(BEGIN),
         )
+    ),
+    "choices that are made, and comparisons with what is known": kernel(
+        (
+            ROW_EXISTS,
+            need(BEGIN, 16),
+            Let("low", Load("i64", BEGIN)),
+            Let("high", Load("i64", add(BEGIN, 8))),
+            expect(Compare("eq", compare("lt", i64("low"), i64("high")), Const("bool", value=False)), 2),
+            expect(Compare("eq", compare("lt", i64("low"), 7), Const("bool", value=True)), 2),
+            SetField(Place(0, ROW), Select(Const("bool", value=True), i64("low"), i64("high"))),
+            Return(BEGIN),
+        ),
+        strides=(8,),
     ),
     "comparisons of what grows": each_round(
         expect(compare("lt", THERE, 1 << 40), 4, THERE, i64("i")),

@@ -162,6 +162,11 @@ def test_decode_takes_logs_types_and_standard_input(command, folder, monkeypatch
     assert command("decode", "std_msgs/String", "-", "--encoding", "ros1").out == 'data: "hi"\n'
     assert "kernel" in command("dump", "std_msgs/String", "--encoding", "ros1").out
     assert "several topics" in command("decode", "std_msgs/String", "a.bag", "--encoding", "ros1", code=1).err
+    assert command("decode", "t/Point", "a.bag", "--topic", "/a").out.startswith('x: 0.0\nname: "p0"\n')  # as the log defines it
+    assert "struct t/Point" in command("dump", "t/Point", "a.bag", "--topic", "/a", "--stage", "model").out
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(Path("a.bag").read_bytes())))
+    assert "'t/Point': encode" in command("dump", "t/Point", "-", "--topic", "/a", "--direction", "encode").out
+    assert "no log that is known" in command("dump", "t/Point", __file__, code=1).err
 
 
 def test_a_name_that_does_not_say_what_to_write(folder, tmp_path, capsys):

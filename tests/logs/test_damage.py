@@ -197,7 +197,7 @@ def test_two_types_of_one_topic(tmp_path):
     with path.open("wb") as file:
         writer = Writer(file)
         writer.start()
-        for name, text in (("t/msg/A", b"int32 x"), ("t/msg/B", b"int16 y")):
+        for name, text in (("t/msg/A", b"int32 x"), ("t/msg/B", b"int16 y"), ("t/msg/A", b"float32 x")):
             channel = writer.register_channel("/x", "cdr", writer.register_schema(name, "ros2msg", text))
             writer.add_message(channel, log_time=1, publish_time=1, data=b"\0\1\0\0\7\0\0\0"[: 8 if "A" in name else 6])
         writer.finish()
@@ -205,7 +205,9 @@ def test_two_types_of_one_topic(tmp_path):
     with pytest.raises(LogError, match="several types: `t/msg/A`, `t/msg/B`"):
         log["/x"]
     assert log["/x", "t/msg/B"]["y"].tolist() == [7]
-    assert len(list(log.messages())) == 2
+    with pytest.raises(LogError, match="of `t/msg/A` by several definitions"):
+        log["/x", "t/msg/A"]
+    assert [str(each.message) for each in log.messages()] == ["t.msg.A(x=7)", "t.msg.B(y=7)", "t.msg.A(x=9.80908925027372e-45)"]
 
 
 @pytest.mark.parametrize("data", [b"", b"no log", b"#ROSBAG V3.0\n", b"\x89MCAP0\r\n"])

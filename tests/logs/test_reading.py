@@ -167,7 +167,7 @@ def test_parts_of_many_blocks(folder):
 
 
 def test_bytes_that_are_lent(folder):
-    """A batch borrows from one block, whose memory is used again: messages keep a copy of their bytes."""
+    """A batch borrows from one block, whose memory is not used again as long as a message shows it."""
     from mcap.writer import Writer
 
     path = folder / "lent.mcap"
@@ -246,6 +246,17 @@ def test_a_url(log):
     assert rj.open("memory://drive/whole.mcap")["/a"].to_arrow().num_rows == COUNT
     with pytest.raises(LogError, match="log-unreadable"):
         rj.open("memory://drive/nothing.mcap")
+
+
+def test_an_address_whose_package_is_missing(monkeypatch):
+    import fsspec
+
+    def missing(*_, **__):
+        raise ImportError("install aiohttp")
+
+    monkeypatch.setattr(fsspec, "open", missing)
+    with pytest.raises(LogError, match="cannot be read: install aiohttp"):
+        rj.open("https://host/a.mcap")
 
 
 @pytest.mark.parametrize("size", [1, 40])

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
 import pytest
 
 from rosetta_jit.kernel.state import VALID
@@ -62,6 +63,7 @@ def test_dlpack():
     for column in (batch.small, batch.fixed):
         shown = np.from_dlpack(column)
         assert np.shares_memory(shown, column if isinstance(column, np.ndarray) else column.values)
+        assert pa.Tensor.from_dlpack(column).to_numpy().tolist() == shown.tolist()
     assert np.from_dlpack(batch.fixed).tolist() == [[0, 0, 0], [4, 5, 6], [0, 0, 0]]
     assert batch.fixed.__dlpack_device__() == (1, 0)
 

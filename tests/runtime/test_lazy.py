@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from rosetta_jit.runtime.attributes.code import FILES, SYMBOLS, Accessors, library, text, whole
+from rosetta_jit.runtime.attributes.code import FILES, SYMBOLS, Accessors, text, whole
 from rosetta_jit.runtime.attributes.groups import GROUPS, part_of
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.code import native
@@ -81,7 +81,7 @@ def test_systems_without_stubs_have_all_accessors_at_once():
 
 def test_code_is_found_in_the_cache_without_a_stub_in_between():
     """Here the suite's cache; a process of its own has none (below)."""
-    made, group = library(), next(group for group in GROUPS if group.symbols == ("get_kept",))
+    made, group = Accessors(), next(group for group in GROUPS if group.symbols == ("get_kept",))
     made.make(group)
     assert Accessors()["get_kept"] != Accessors()._stubs["get_kept"]
     assert made["get_kept"] == Accessors()["get_kept"]

@@ -30,7 +30,7 @@ message M {
 USE = """
 from typing import assert_type
 import numpy as np
-import imu, robot
+import imu, robot, status
 from robot import decoder, encoder
 m = decoder(b"")
 assert_type(m.inners[0].a, float)
@@ -51,6 +51,7 @@ i = imu.decoder(b"")
 assert_type(i.header.stamp.to_sec(), float)
 assert_type(i.orientation_covariance.dtype, np.dtype[np.float64])
 i.orientation_covariance = [0.5] * 9
+assert_type(status.DiagnosticStatus(values=[]).values[0].key, str)
 """
 WRONG = ["m.n = 'x'", "m.nothing", "m.inners[0].a.real_part", "m.inner = m.inner", "decoder(3)", "encoder(i)"]
 
@@ -72,6 +73,7 @@ def test_a_type_checker_knows_what_a_decoder_gives(tmp_path, written):
     (tmp_path / "t.proto").write_text(SCHEMA)
     written("robot.pyi", "t.M", "--import", "t.proto")
     written("imu.pyi", "sensor_msgs/Imu", "--encoding", "ros1")
+    written("status.pyi", "diagnostic_msgs/DiagnosticStatus", "--encoding", "ros1")  # which has a field `values`
     (tmp_path / "use.py").write_text(USE + "\n".join(WRONG))
     (tmp_path / "pyrightconfig.json").write_text(json.dumps({"typeCheckingMode": "standard", "pythonVersion": "3.11"}))
     checker = [sys.executable, "-m", "basedpyright", "--pythonpath", sys.executable, "--outputjson", "-p", str(tmp_path)]

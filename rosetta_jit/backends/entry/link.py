@@ -244,8 +244,7 @@ def _surroundings(modules: Sequence[binding.ModuleRef], kernels: Sequence[Kernel
     if around:
         yield _entries(*around)
     wanted = {each.name for module in modules for each in module.functions if each.is_declaration} & set(support.SIGNATURES)
-    if wanted:
-        yield _support(*sorted(wanted))
+    yield from map(_support, sorted(wanted))
 
 
 @cache
@@ -254,8 +253,8 @@ def _entries(*texts: str) -> bytes:
 
 
 @cache
-def _support(*names: str) -> bytes:
-    return kept("support", " ".join(names), lambda: object_of([definitions.text(names)], names))
+def _support(name: str) -> bytes:
+    return kept("support", name, lambda: object_of([definitions.text((name,))], (name,)))
 
 
 def _emitted(kernel: Kernel, name: str, aside: list[str] | None) -> str:
@@ -299,5 +298,6 @@ def _large_template() -> str:
     return "large_linux.ll" if sys.platform == "linux" else "large.ll"
 
 
+@cache
 def _template(file: str) -> str:
     return Path(__file__).with_name(file).read_text("utf-8")

@@ -12,9 +12,7 @@ from typing import TYPE_CHECKING
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
-from rosetta_jit.backends.llvm.alike import Series
 from rosetta_jit.backends.llvm.frame import F32, F64, I32, I64, Variable, forgotten
-from rosetta_jit.backends.llvm.series import print_series
 from rosetta_jit.kernel.ir import Expect, If
 from rosetta_jit.kernel.rewrite import locals_in
 
@@ -33,13 +31,10 @@ def body(frame: Frame, statements: Block) -> None:
     """Print a body's statements."""
     asked: Counter[str] = Counter()
     many = sum(isinstance(each, Expect | If) for each in statements) > OFTEN
-    for statement in frame.alike.parts(statements):
-        if isinstance(statement, Series):
-            print_series(frame, statement, llvm_stmt.block)
-            continue
-        llvm_stmt.block(frame, (statement,))
-        if many and isinstance(statement, Expect | If):
-            asked.update(locals_in(statement.condition))
+    for part in llvm_stmt.parts(frame, statements):
+        llvm_stmt.print_part(frame, part)
+        if many and isinstance(part, Expect | If):
+            asked.update(locals_in(part.condition))
             for name in [name for name, times in asked.items() if times >= OFTEN]:
                 _renew(frame, name)
                 del asked[name]

@@ -151,7 +151,12 @@ def wire_pointer(frame: Frame, at: Expr) -> ir.Value:
     base, offset = _parts(at)
     if base == BEGIN:
         return _moved(frame, frame.message(), offset)
-    return _moved(frame, frame.builder.gep(frame.parameters.buffer, [expression(frame, base)], source_etype=I8), offset)
+    place = expression(frame, base)
+
+    def start() -> ir.Value:
+        return frame.builder.gep(frame.parameters.buffer, [place], source_etype=I8)
+
+    return _moved(frame, frame.based(("message", place), start), offset)
 
 
 def place_pointer(frame: Frame, place: Place) -> ir.Value:
@@ -159,8 +164,12 @@ def place_pointer(frame: Frame, place: Place) -> ir.Value:
     builder, stride = frame.builder, frame.strides[place.lane]
     base, rows = _parts(place.row)
     row = expression(frame, base)
-    start = row if stride == 1 else builder.mul(row, constant(stride), flags=("nsw",))
-    address = builder.gep(frame.address(place.lane), [start], source_etype=I8)
+
+    def start() -> ir.Value:
+        distance = row if stride == 1 else builder.mul(row, constant(stride), flags=("nsw",))
+        return builder.gep(frame.address(place.lane), [distance], source_etype=I8)
+
+    address = frame.based((place.lane, row), start)
     offset = None if frame.given is None else frame.given.offsets.get((place.lane, place.offset))
     if offset is None:
         return _moved(frame, address, rows * stride + place.offset)
@@ -209,6 +218,8 @@ def store(frame: Frame, address: ir.Value, value: ir.Value, type_: Scalar, *, al
 
 
 def _constant(type_: Scalar, value: float) -> ir.Value:
+    if type_ == "i64":
+        return constant(int(value))
     if not is_float(type_):
         return ir.Constant(LLVM_TYPES[type_], int(value))
     if type_ == "f32" and value == value:  # noqa: PLR0124 - NaN, whose bits need no rounding

@@ -8,6 +8,7 @@ so many registers, and LLVM would spend minutes on finding that out.
 from __future__ import annotations
 
 from dataclasses import field
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from llvmlite import ir
@@ -71,8 +72,9 @@ def is_signed(scalar: Scalar) -> bool:
     return scalar in ("i8", "i16", "i32", "i64")
 
 
+@lru_cache(maxsize=1024)
 def constant(value: int) -> ir.Constant:
-    """An int64 constant."""
+    """An int64 constant. One object prints its text once."""
     return ir.Constant(I64, value)
 
 
@@ -129,6 +131,7 @@ class Frame:
     A routine that is printed where it is called has a frame with locals of its own, which knows its ``caller``. ``is_rare`` says that LLVM
     will take no time for the body's speed. ``indices`` are the locals that grow with the rounds of a loop. Of a body with series (`alike`),
     ``rows`` is an array of the used lengths of the holder's lanes, and ``given`` has the numbers of the stretch that is being printed.
+    ``bases`` are addresses of rows and places in the message, by the block that has computed them.
     """
 
     module: ir.Module
@@ -150,12 +153,20 @@ class Frame:
     locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
     used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
     indices: set[str] = field(default_factory=set[str])
+    bases: dict[tuple[object, ...], ir.Value] = field(default_factory=dict[tuple[object, ...], ir.Value])
 
     def message(self) -> ir.Value:
         """Where the message begins."""
         if MESSAGE not in self.loaded:
             self.loaded[MESSAGE] = self.entry.gep(self.parameters.buffer, [self.parameters.begin], source_etype=I8, name="message")
         return self.loaded[MESSAGE]
+
+    def based(self, what: tuple[object, ir.Value], made: Callable[[], ir.Value]) -> ir.Value:
+        """An address that depends on a value: made once in a block for a value of which there is but one."""
+        key = (self.builder.block, self.given is None, *what)
+        if key not in self.bases:
+            self.bases[key] = made()
+        return self.bases[key]
 
     def address(self, lane: int) -> ir.Value:
         """Where the lane's rows start."""

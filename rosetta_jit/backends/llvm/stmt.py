@@ -28,7 +28,7 @@ from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Variable, con
 from rosetta_jit.backends.llvm.host import host_called
 from rosetta_jit.backends.llvm.rounds import print_switch, rounds_of
 from rosetta_jit.backends.llvm.series import print_cases, print_series
-from rosetta_jit.backends.llvm.swap import swapped
+from rosetta_jit.backends.llvm.swap import Run, print_run, swapped, with_runs
 from rosetta_jit.kernel.ir import (
     Advance,
     Assign,
@@ -61,6 +61,8 @@ from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rosetta_jit.backends.llvm.frame import Frame
 
 MANY_CASES = 64
@@ -70,13 +72,26 @@ GOLDEN = 0x9E3779B1
 
 def block(frame: Frame, statements: Block) -> None:
     """Print statements until one ends the block; what follows a Return is never reached."""
-    for part in frame.alike.parts(statements):
-        if frame.builder.block.is_terminated:
-            return
-        if isinstance(part, Series):
-            print_series(frame, part, block)
-        else:
-            _statement(frame, part)
+    for part in parts(frame, statements):
+        print_part(frame, part)
+
+
+def parts(frame: Frame, statements: Block) -> Sequence[Stmt | Series | Run]:
+    """What a block is printed as."""
+    found = frame.alike.parts(statements)
+    return with_runs(found) if frame.is_rare else found
+
+
+def print_part(frame: Frame, part: Stmt | Series | Run) -> None:
+    """Print a part of a block, unless one before it has ended it."""
+    if frame.builder.block.is_terminated:
+        return
+    if isinstance(part, Series):
+        print_series(frame, part, block)
+    elif isinstance(part, Run):
+        print_run(frame, part)
+    else:
+        _statement(frame, part)
 
 
 def _statement(frame: Frame, statement: Stmt) -> None:

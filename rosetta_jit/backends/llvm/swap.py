@@ -1,5 +1,6 @@
-"""Arrays of numbers of the other byte order: a loop that swaps their bytes becomes a call of a function that is compiled once a machine.
+"""Numbers of the other byte order: what swaps their bytes, one after another, becomes a call of a function that is compiled once a machine.
 
+    set lane[row].0 = load f64> [at]; set lane[row].8 = load f64> [at + 8]; set lane[row].16 = load f64> [at + 16]; …
     for i < count: { let item = at + i * stride; set lane[start + i].0 = load > [item]; set lane[start + i].8 = load > [item + 8]; … }
 
 `rosetta_swap8(target, source, count)` copies numbers of eight bytes, each in reverse order of its bytes; `rosetta_swap4` and
@@ -16,12 +17,64 @@ from rosetta_jit.backends.llvm.expr import expression, place_pointer, wire_point
 from rosetta_jit.backends.llvm.frame import I64, constant
 from rosetta_jit.backends.llvm.support import declared
 from rosetta_jit.kernel.ir import WIDTH, Binary, Const, For, Let, Load, Local, Place, SetField
+from rosetta_jit.kernel.terms import split
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rosetta_jit.backends.llvm.alike import Series
     from rosetta_jit.backends.llvm.frame import Frame
     from rosetta_jit.kernel.ir import Expr, Stmt
+
+
+SEVERAL = 3
+"""Fields from which on a call is shorter than what it stands for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Fields of a row that lie one behind another, in the message as in the holder: so many numbers, each of ``width`` bytes."""
+
+    place: Place
+    at: Expr
+    width: int
+    count: int
+
+
+def with_runs(parts: Sequence[Stmt | Series]) -> Sequence[Stmt | Series | Run]:
+    """The parts of a block, with runs of fields in their places."""
+    found, behind = list["Stmt | Series | Run"](), 0
+    while behind < len(parts):
+        run = _run(parts, behind)
+        found.append(parts[behind] if run is None else run)
+        behind += 1 if run is None else run.count
+    return found
+
+
+def _run(parts: Sequence[object], begin: int) -> Run | None:
+    """The run that begins at a part of a block."""
+    match parts[begin]:
+        case SetField(Place(lane, row, offset) as place, Load(type_, at, ">")) if (width := WIDTH[type_]) > 1:
+            pass
+        case _:
+            return None
+    (base, start), count = split(at), 1
+    while begin + count < len(parts):
+        match parts[begin + count]:
+            case SetField(Place(number, same, field), Load(like, where, ">")) if (number, same, WIDTH[like]) == (lane, row, width):
+                if field != offset + count * width or split(where) != (base, start + count * width):
+                    break
+            case _:
+                break
+        count += 1
+    return Run(place, at, width, count) if count >= SEVERAL else None
+
+
+def print_run(frame: Frame, run: Run) -> None:
+    """A call for all of its fields."""
+    target, source = place_pointer(frame, run.place), wire_pointer(frame, run.at)
+    frame.builder.call(declared(frame.module, f"rosetta_swap{run.width}"), [target, source, constant(run.count)])
 
 
 def swapped(frame: Frame, loop: For) -> bool:

@@ -12,13 +12,15 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from rosetta_jit.runtime.holder import coerce, values
+from rosetta_jit.runtime.holder import coerce, holder_class, values
 from rosetta_jit.runtime.holder.merge import append_numbers
 from rosetta_jit.runtime.holder.message import Message, View, place, writable
 from rosetta_jit.runtime.holder.record import Items, Numbers, Record
 from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence
 
 if TYPE_CHECKING:
+    from rosetta_jit.runtime.holder import Holder
+    from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.record import Entry
 
 
@@ -212,6 +214,12 @@ class MapField(Dictionary):
         value = self[key]
         del self[key]
         return value
+
+    def GetEntryClass(self) -> type[Holder]:  # noqa: N802  as protobuf names it
+        """The class of messages with a ``key`` and a ``value``, as the pairs are in bytes and in protobuf's text format."""
+        family = cast("HolderFamily", self.message.access_.family)
+        field = cast("Any", self.message).DESCRIPTOR.fields_by_name[self.entry.name]
+        return holder_class(field.message_type.struct, family.schema, family.manners)
 
     def MergeFrom(self, other: Mapping[Any, Any]) -> None:  # noqa: N802  as protobuf names it
         """Take over the pairs of another map."""

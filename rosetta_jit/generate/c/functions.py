@@ -8,6 +8,7 @@ Each takes those of the shared parameters that it needs.
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer, counted_lanes
@@ -17,7 +18,7 @@ from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.statements import Callable, Function, leaves, moved, print_block, reached, read_names
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.words import C_TYPES
-from rosetta_jit.kernel.ir import Advance
+from rosetta_jit.kernel.ir import Advance, Call, For, While
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 
 SHARED = ("holder", "given_row", "bytes", "end", "failure")
 """The parameters that all functions of a kernel may have, in order."""
+MOST_PLACES = 100
+"""In how many places a compiler of C++ puts a routine in place of a call."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,10 +67,11 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Ori
     def scope() -> Scope:
         return Scope(Namespace(words), lanes, support, hidden)
 
+    short = _short(kernel) if lanes.dialect == "c++" else frozenset[str]()
     for routine in kernel.routines:
-        routines[routine.name] = _routine(
-            writer, role, kernel.direction, routine, Function(scope(), routine.sites, routines, is_routine=True)
-        )
+        function = Function(scope(), routine.sites, routines, is_routine=True)
+        inline = "ROSETTA_JIT_INLINE " if routine.name in short else ""
+        routines[routine.name] = _routine(writer, role, kernel.direction, routine, function, inline)
     numbers = {0: 0}
     attempts = tuple(
         _attempt(writer, role, kernel, number, Function(scope(), kernel.sites, routines, numbers=numbers, origins=origins, role=role))
@@ -107,7 +111,14 @@ def _used_at_start(kernel: Kernel, lanes: Lanes, lane: int) -> str:
     return "0" if is_empty else f"holder->{lanes.rows(lane)}.used"
 
 
-def _routine(writer: Writer, role: str, direction: Direction, routine: Routine, function: Function) -> Callable:
+def _short(kernel: Kernel) -> frozenset[str]:
+    """The routines that are better printed where they are called: they have no loop, and the bodies call them, in few places."""
+    called = Counter(stmt.routine for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, Call))
+    looped = {each.name for each in kernel.routines for stmt, _ in statements(each.body) if isinstance(stmt, For | While)}
+    return frozenset(name for name, places in called.items() if name not in looped and places <= MOST_PLACES)
+
+
+def _routine(writer: Writer, role: str, direction: Direction, routine: Routine, function: Function, inline: str) -> Callable:
     scope = function.scope
     own = {each.name: scope.locals.identifier(each.name) for each in routine.parameters}
     function.read = read_names(routine.body, (each.name for each in routine.results))
@@ -122,7 +133,7 @@ def _routine(writer: Writer, role: str, direction: Direction, routine: Routine, 
     found = [f"{C_TYPES[each.type]} *found_{scope.locals.identifier(each.name)}" for each in routine.results]
     name = f"{role}_{routine.name}"
     declared = ", ".join((*_declared(shared, direction, scope.lanes), *given, *found)) or "void"
-    _head(writer, f"static {'int64_t' if fails else 'void'} {name}({declared})", scope, direction)
+    _head(writer, f"{inline}static {'int64_t' if fails else 'void'} {name}({declared})", scope, direction)
     writer.lines += [f"    (void){identifier};" for parameter, identifier in own.items() if parameter not in function.read]
     writer.lines += [*function.writer.lines, "}"]
     return Callable(name, shared, fails)
@@ -151,8 +162,10 @@ def _tables(writer: Writer, scope: Scope) -> None:
 
 
 def _declared(parameters: tuple[str, ...], direction: Direction, lanes: Lanes) -> list[str]:
+    reads = direction != "decode"
+    holder = "_source" if reads and lanes.dialect == "c++" else "_holder"
     kinds = {
-        "holder": f"{'' if direction == 'decode' or lanes.dialect == 'c++' else 'const '}{lanes.prefix}_holder *holder",
+        "holder": f"{'const ' if reads and lanes.dialect == 'c' else ''}{lanes.prefix}{holder} *holder",
         "given_row": f"const {lanes.type(0)} &given_row",
         "bytes": f"{'' if direction == 'encode' else 'const '}unsigned char *restrict bytes",
         "end": "int64_t end",

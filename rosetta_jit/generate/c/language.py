@@ -6,6 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace
+from rosetta_jit.catalogue import generate as words
+from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.accessors import words_of
 from rosetta_jit.generate.c.functions import print_kernel
 from rosetta_jit.generate.c.header import header
@@ -53,6 +55,8 @@ class Parts:
 
 def files(unit: Unit) -> dict[str, str]:
     """The texts of the files by their names."""
+    if unit.holder not in ("", "own"):
+        raise SchemaError((words.unknown_holder(unit.holder, (("own", "structs over lanes"),)),))
     return as_c(unit, lambda kernel, lanes, role: print_kernel(kernel, lanes, role, unit.origins.get(role, ())))
 
 

@@ -34,6 +34,8 @@ def files(unit: Unit) -> dict[str, str]:
         raise SchemaError((words.unknown_holder(unit.holder, tuple((each.name, each.summary) for each in MANNERS)),))
     if manners.around and any(map(wire_of, unit.kernels)):
         raise SchemaError((words.wires_around(manners.name),))
+    if manners.around and (lacking := [each for each in ("encode", "borrow") if each not in unit.kernels]):
+        raise SchemaError((words.one_way_around(manners.name, "decode" if lacking[0] == "borrow" else "encode"),))
     if "borrow" in unit.kernels:
         unit = replace(unit, kernels={**unit.kernels, "borrow": without_clearing(unit.kernels["borrow"], unit.layout)})
     parts = parts_of(unit, lambda kernel, lanes, role: _printed(unit, manners, kernel, lanes, role), dialect="c++")

@@ -70,115 +70,73 @@ rosetta_jit::error unplaced(rosetta_jit::error found)
     return found;
 }
 
-${inline}void gather(const ::$name::holder &source, ${name}_holder *holder, $row &row)
+${inline}void gather(const ::$name::holder &source, ${name}_source *holder, $row &row)
 {
+    static_cast<void>(holder);
 $clear
-    holder->most = rosetta_jit::detail::most_rows(std::size_t{1} << 39);
 $reset
 $bind
     collect(source, *holder, row);
 }
 
-int64_t measured(${name}_holder *holder, const $row &given_row, struct failure *failure_of_size)
+/* The bytes of the message. Where parts of it have lengths, these are left in the scratch memory. */
+rosetta_jit::result<std::size_t> measured(${name}_source *holder, const $row &given_row, const ${name}_holder &memory)
 {
-    struct failure &failure = *failure_of_size;
+    struct failure failure = {0, 0, {0, 0, 0, 0}};
     const int64_t end = INT64_MAX;
     static_cast<void>(end);
     static_cast<void>(holder);
     static_cast<void>(given_row);
-    static_cast<void>(failure);
-    return $size;
-}
-/* == sized == */
-rosetta_jit::result<std::size_t> codec::try_size(const ::$name::holder &source)
-{
-    ${name}_holder *const holder = $memory.get();
-    struct failure failure = {0, 0, {0, 0, 0, 0}};
-    holder->now = now;
-    holder->number = number;
-$kept
-    gather(source, holder, holder->message);
-    const int64_t size = measured(holder, holder->message, &failure);
+    const int64_t size = $size;
     if (size < 0) {
-        return unplaced(report(size_sites, failure, 0, *holder));
+        return unplaced(report(size_sites, failure, 0, memory));
     }
     return static_cast<std::size_t>(size);
 }
 
-/* == straight == */
-} // namespace
-
-$sizedrosetta_jit::result<std::size_t> codec::try_encode(const ::$name::holder &source, void *target, std::size_t capacity)
+${inline}rosetta_jit::result<std::size_t> written(${name}_source *holder, const $row &given_row, const ${name}_holder &memory, void *target, std::size_t capacity)
 {
-    ${name}_holder *const holder = $memory.get();
     unsigned char *const bytes = static_cast<unsigned char *>(target);
     const int64_t end = reach(capacity);
     struct failure failure = {0, 0, {0, 0, 0, 0}};
-    $row given_row;
-    static_cast<void>(bytes);
-    static_cast<void>(end);
-    holder->now = now;
-    holder->number = number;
-$kept
-    gather(source, holder, given_row);
-    const int64_t result = $run;
-    if (result < 0) {
-        return unplaced(report(encode_sites, failure, 0, *holder));
-    }
-    return static_cast<std::size_t>(result);
-}
-
-rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::$name::holder &source, std::string &bytes)
-{
-    const auto size = try_size(source);
-    if (!size) {
-        return size.error();
-    }
-    bytes.resize(*size);
-    const auto found = try_encode(source, &bytes[0], *size);
-    if (!found) {
-        return found.error();
-    }
-    bytes.resize(*found);
-    return rosetta_jit::done{};
-}
-/* == gathered == */
-
-rosetta_jit::result<std::size_t> written(${name}_holder *holder, unsigned char *bytes, int64_t end)
-{
-    struct failure failure = {0, 0, {0, 0, 0, 0}};
-    const auto &given_row = holder->message;
+    static_cast<void>(holder);
     static_cast<void>(given_row);
     static_cast<void>(bytes);
     static_cast<void>(end);
     const int64_t result = $run;
     if (result < 0) {
-        return unplaced(report(encode_sites, failure, 0, *holder));
+        return unplaced(report(encode_sites, failure, 0, memory));
     }
     return static_cast<std::size_t>(result);
 }
-
 } // namespace
 
-$sizedrosetta_jit::result<std::size_t> codec::try_encode(const ::$name::holder &source, void *bytes, std::size_t capacity)
+rosetta_jit::result<std::size_t> codec::try_size(const ::$name::holder &source)
 {
-    ${name}_holder *const holder = $memory.get();
-    holder->now = now;
-    holder->number = number;
-$kept
-    gather(source, holder, holder->message);
+    ${name}_source given(*$memory, *this);
+    gather(source, &given, $memory->message);
+    return measured(&given, $memory->message, *$memory);
+}
+
+rosetta_jit::result<std::size_t> codec::try_encode(const ::$name::holder &source, void *bytes, std::size_t capacity)
+{
+    ${name}_source given(*$memory, *this);
+$local
+    gather(source, &given, row);
 $measure
-    return written(holder, static_cast<unsigned char *>(bytes), reach(capacity));
+    return written(&given, row, *$memory, bytes, capacity);
 }
 
 rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::$name::holder &source, std::string &bytes)
 {
-    const auto size = try_size(source);
+    ${name}_source given(*$memory, *this);
+    gather(source, &given, $memory->message);
+    const auto size = measured(&given, $memory->message, *$memory);
     if (!size) {
         return size.error();
     }
     bytes.resize(*size);
-    const auto found = written($memory.get(), reinterpret_cast<unsigned char *>(&bytes[0]), static_cast<int64_t>(*size));
+    const auto found = $again;
     if (!found) {
         return found.error();
     }
@@ -186,14 +144,10 @@ rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::$name::holder &
     return rosetta_jit::done{};
 }
 /* == measure == */
-    {
-        struct failure failure = {0, 0, {0, 0, 0, 0}};
-        const int64_t size = measured(holder, holder->message, &failure); /* which leaves the lengths of the message's parts in the scratch memory */
-        if (size < 0) {
-            return unplaced(report(size_sites, failure, 0, *holder));
-        }
-        if (size > reach(capacity)) {
-            failure.site = $no_room;
-            return unplaced(report(encode_sites, failure, 0, *holder));
-        }
+    auto size = measured(&given, row, *$memory);
+    if (!size) {
+        return size;
+    }
+    if (*size > capacity) {
+        return unplaced(report(encode_sites, {$no_room, 0, {0, 0, 0, 0}}, 0, *$memory));
     }

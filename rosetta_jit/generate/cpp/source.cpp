@@ -47,7 +47,7 @@ const char *const lanes[] = {
 };
 
 /* The error of a failure. `available` is how many bytes there are behind its offset. */
-rosetta_jit::error report(const site *sites, const struct failure &failure, int64_t available, const ${name}_holder &holder)
+ROSETTA_JIT_COLD rosetta_jit::error report(const site *sites, const struct failure &failure, int64_t available, const ${name}_holder &holder)
 {
     static_cast<void>(holder);
     const site &where = sites[failure.site];

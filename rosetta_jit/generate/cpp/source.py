@@ -34,6 +34,8 @@ RESET = (
     "    /* Forgets all messages: state is what the mapping says that it is at first. */",
     "    void reset() { kept = state(); }",
 )
+SELDOM = re.compile(r"^static int64_t (?:fail|fail_here|full)\(", re.MULTILINE)
+"""The functions that are called where something is wrong."""
 SAID = """    if (where.scratch >= 0) { /* the mapping has put this text together */
         const std::size_t first = rosetta_jit::detail::indices_in(where.path);
         found.detail.assign(reinterpret_cast<const char *>(holder.scratch[where.scratch].bytes) + failure.indices[first],
@@ -178,8 +180,8 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
         includes=_includes(called),
         structs="\n\n".join(_struct(unit, parts, each) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
-        holder=_holder(unit, parts, containers),
-        support=support(without_unused(called, printed)),
+        holder=_holder(unit, parts, containers) + (_source(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
+        support=SELDOM.sub(r"ROSETTA_JIT_COLD \g<0>", support(without_unused(called, printed))),
         kernels="\n\n".join(kernels),
         walks=between,
         lanes=",\n    ".join(
@@ -270,7 +272,7 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
         head = f"template <class Target>\nvoid {function}({given})"
         target, unused = "target", ("from", "bytes", "row", "target")
     else:
-        head = f"template <class Source>\nvoid collect{name}(const Source &source, {unit.name}_holder &to, {row} &row)"
+        head = f"template <class Source>\nvoid collect{name}(const Source &source, {unit.name}_source &to, {row} &row)"
         target, unused = "source", ("source", "to", "row")
     walk.writer.lines, walk.writer.depth, walk.depth, walk.in_rows = [], 1, 0, 1 if lane else 0
     walk.share = unit.shares.get(role, WHOLE)
@@ -313,21 +315,54 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], walk: W
 def _encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, str], directs: list[Direct], walk: Walk) -> str:
     """The encoder; ``walk`` has printed what takes an object apart."""
     lanes, encode = parts.lanes, parts.printed["encode"]
-    is_straight = is_local(walk, encode.hidden)
-    begun = (f"    holder->{lanes.rows(lane)}.{'address' if lane in walk.addressed else 'reset'}();" for lane in range(1, lanes.own))
-    rest = known["straight" if is_straight else "gathered"].replace("$sized", known["sized"])
-    return Template(known["encode"] + rest).substitute(
+    is_straight, memory, row = is_local(walk, encode.hidden), "written_" if _writes_apart(unit) else "memory_", lanes.type(0)
+    begun = (f"    holder->{lanes.rows(lane)}.reset();" for lane in _copied(parts, directs, walk))
+    measure = Template(known["measure"]).substitute(no_room=str(len(encode.sites)), memory=memory) if encode.hidden else ""
+    return Template(known["encode"]).substitute(
         words,
-        row=lanes.type(0),
+        row=row,
         inline="ROSETTA_JIT_INLINE " if is_straight else "",
-        memory="written_" if _writes_apart(unit) else "memory_",
+        memory=memory,
+        again="try_encode(source, &bytes[0], *size)" if is_straight else f"written(&given, {memory}->message, *{memory}, &bytes[0], *size)",
+        local=f"    {row} row;" if is_straight else f"    {row} &row = {memory}->message;",
         clear="" if _is_collected(unit) else "    row = {};",
         reset="\n".join(begun),
         bind="\n".join(_read(lanes.rows(each.lane), each) for each in directs),
         size=run(parts.printed["size"].attempts[0], "failure"),
         run=run(encode.attempts[0], "failure"),
-        measure=Template(known["measure"]).substitute(no_room=str(len(encode.sites))) if encode.hidden else "",
+        measure=measure,
     )
+
+
+def _copied(parts: Parts, directs: list[Direct], walk: Walk) -> list[int]:
+    """The lanes whose rows an encoder puts together in the codec's memory."""
+    shown = {each.lane for each in directs} | walk.addressed
+    return [lane for lane in range(1, parts.lanes.own) if lane not in shown]
+
+
+def _source(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -> str:
+    """What kernels that write work on: a local of the encoder, so that a compiler need not put it into memory."""
+    lanes, copied = parts.lanes, _copied(parts, directs, walk)
+    members = [(f"rosetta_jit::detail::lane<{lanes.type(lane)}> &", lanes.rows(lane)) for lane in copied]
+    members += [("rosetta_jit::detail::scratch *", "scratch")] if parts.hidden else []
+    given = [f"{name}(memory.{name})" for _, name in members]
+    members += [("int64_t ", "most"), ("int64_t ", "now"), ("int64_t ", "number")]
+    given += ["most(rosetta_jit::detail::most_rows(std::size_t{1} << 39))", "now(owner.now)", "number(owner.number)"]
+    if unit.state:
+        members.append(("codec::state *", "state"))
+        given.append("state(&owner.kept)")
+    shown = [lane for lane in range(1, lanes.own) if lane not in copied]
+    lines = [
+        "/* What a message is written from: elements where an object has them, and those that are put together in the codec's memory. */",
+        f"struct {unit.name}_source {{",
+        *(f"    {type_}{name};" for type_, name in members),
+        *(f"    rosetta_jit::detail::shown<{lanes.type(lane)}> {lanes.rows(lane)} = {{}};" for lane in shown),
+        "",
+        f"    {unit.name}_source({unit.name}_holder &memory, codec &owner) : {', '.join(given)} {{ static_cast<void>(memory); }}",
+        "};",
+        "",
+    ]
+    return "\n".join(lines)
 
 
 def _of_wire(unit: Unit, parts: Parts, known: dict[str, str], role: Role) -> str:

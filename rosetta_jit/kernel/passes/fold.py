@@ -7,7 +7,7 @@ What is folded must not lose the bits of a NaN nor an obligation that would have
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Fits, L
 from rosetta_jit.kernel.terms import add, type_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rosetta_jit.kernel.arithmetic import Value
     from rosetta_jit.kernel.ir import Comparison, Scalar
 
@@ -29,23 +31,50 @@ TRUE, FALSE = Const("bool", value=True), Const("bool", value=False)
 
 def folded(expr: Expr) -> Expr:
     """An expression, its operands being folded already, in its simplest form."""
+    fold = _FOLDS.get(type(expr))
+    return expr if fold is None else fold(expr)
+
+
+def _unary(expr: Unary) -> Expr:
     match expr:
+        case Unary(_, Const()):
+            return _computed(expr)
         case Unary("not", Unary("not", operand)):
             return operand
         case Unary("not", Compare(op, left, right)) if op in ("eq", "ne") or type_of(left) not in FLOATS:
             return Compare(OPPOSITE[op], left, right)
-        case (
-            Unary(_, Const()) | Convert(_, Const()) | Binary(_, Const(), Const()) | Compare(_, Const(), Const()) | Fits(_, Const(), Const())
-        ):
+        case _:
+            return expr
+
+
+def _compare(expr: Compare) -> Expr:
+    match expr:
+        case Compare(_, Const(), Const()):
             return _computed(expr)
-        case Binary():
-            return _binary(expr)
         case Compare(op, Local(type_, a), Local(_, b)) if a == b and type_ not in FLOATS:
             return TRUE if op in {"eq", "le", "ge"} else FALSE
         case Compare("eq", left, Const("bool", value)):
             return left if value else folded(Unary("not", left))
-        case Convert(type_, operand) if type_of(operand) == type_:
-            return operand
+        case _:
+            return expr
+
+
+def _fits_in(expr: Fits) -> Expr:
+    match expr:
+        case Fits(_, Const(), Const()):
+            return _computed(expr)
+        case _:
+            return expr
+
+
+def _convert(expr: Convert) -> Expr:
+    if isinstance(expr.operand, Const):
+        return _computed(expr)
+    return expr.operand if type_of(expr.operand) == expr.type else expr
+
+
+def _select(expr: Select) -> Expr:
+    match expr:
         case Select(Const(_, value), then, otherwise):
             return then if value else otherwise
         case _:
@@ -83,9 +112,13 @@ def _value(expr: Expr) -> Value:
 
 
 def _binary(expr: Binary) -> Expr:
+    left, right = expr.left, expr.right
+    if not isinstance(right, Const):
+        swaps = isinstance(left, Const) and expr.op in COMMUTATIVE and left.type not in FLOATS
+        return _binary(Binary(expr.op, right, left)) if swaps else expr
+    if isinstance(left, Const):
+        return _computed(expr)
     match expr:
-        case Binary(op, Const(type_) as left, right) if op in COMMUTATIVE and type_ not in FLOATS and not isinstance(right, Const):
-            return _binary(Binary(op, right, left))
         case Binary("sub", left, Const("i64", value)) if value != limits("i64")[0]:
             return add(left, -int(value))
         case Binary("add", Local(), Const("i64", value)) if value:
@@ -126,3 +159,14 @@ def _with_constant(expr: Expr, op: str, left: Expr, type_: Scalar, value: int) -
 def _fits(value: int) -> bool:
     low, high = limits("i64")
     return low <= value <= high
+
+
+_FOLDS: dict[type[Expr], Callable[[Any], Expr]] = {
+    Unary: _unary,
+    Binary: _binary,
+    Compare: _compare,
+    Fits: _fits_in,
+    Convert: _convert,
+    Select: _select,
+}
+"""What has a simpler form, and how to find it."""

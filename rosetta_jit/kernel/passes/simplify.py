@@ -30,8 +30,8 @@ from rosetta_jit.kernel.ir import (
     While,
 )
 from rosetta_jit.kernel.passes.fold import FALSE, TRUE, folded
-from rosetta_jit.kernel.rewrite import ends, locals_in, names_read, with_blocks, with_bodies, with_expressions, with_operands
-from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
+from rosetta_jit.kernel.rewrite import ends, names_in, names_read, with_blocks, with_bodies, with_expressions, with_operands
+from rosetta_jit.kernel.shape import statements, subexpressions
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, index, split, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -193,6 +193,6 @@ def _used(block: Block, read: set[str], live: set[str]) -> Block:
                 continue
             case _:
                 kept = with_blocks(stmt, lambda inner: _used(inner, read, live))
-        live.update(name for expr in expressions_of(kept) for name in locals_in(expr))
+        live.update(names_in((kept,)))
         result.append(kept)
     return tuple(reversed(result))

@@ -32,12 +32,12 @@ ENVIRONMENT_VARIABLE = "ROSETTA_JIT_PATH"
 
 @dataclass(frozen=True, slots=True)
 class Lookup:
-    """One file that was asked for: by which name, by whom, where it was, and the SHA-256 of its text."""
+    """One file that was asked for: by which name, by whom, where it was (None where there was none), and the SHA-256 of its text."""
 
     asked: str
     importer: str | None
-    found: str
-    digest: str
+    found: str | None
+    digest: str | None
 
 
 @dataclass(slots=True)
@@ -47,6 +47,11 @@ class Reading:
     lookups: list[Lookup] = field(default_factory=list[Lookup])
     size_bytes: int = 0
 
+    def take(self, other: Reading) -> None:
+        """Everything that another one has recorded."""
+        self.lookups += other.lookups
+        self.size_bytes += other.size_bytes
+
     def record(self, asked: str, importer: Source | None, found: Source) -> None:
         data = found.text.encode()
         self.size_bytes += len(data)
@@ -54,6 +59,9 @@ class Reading:
             raise SchemaError((words.texts_too_large(found.name, MAX_TEXT_BYTES),))
         digest = sha256(data).hexdigest()
         self.lookups.append(Lookup(asked, importer.name if importer else None, found.name, digest))
+
+    def record_missing(self, asked: str, importer: Source | None) -> None:
+        self.lookups.append(Lookup(asked, importer.name if importer else None, None, None))
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,11 +123,13 @@ class SearchPath:
         return same or [each for each in found if PurePosixPath(each).parent == around]
 
     def preferred(self, lookup: Lookup) -> tuple[str, ...]:
-        """The paths at which a file would have been found before the one that was."""
+        """The paths at which a file would have been found before the one that was, or at all."""
         if lookup.importer is None:
             return ()
         beside = () if lookup.importer in dict(self.files) else (Path(lookup.importer).parent,)
         candidates = [str(folder / lookup.asked) for folder in (*beside, *self.folders)]
+        if lookup.found is None:
+            return tuple(candidates)
         return tuple(candidates[: candidates.index(lookup.found)]) if lookup.found in candidates else ()
 
     def named(self, name: str) -> Source | None:
@@ -160,7 +170,9 @@ class SearchPath:
 
         def load(name: str) -> Source | None:
             found = self.find(name, importer)
-            if found is not None:
+            if found is None:
+                reading.record_missing(name, importer)
+            else:
                 reading.record(name, importer, found)
             return found
 

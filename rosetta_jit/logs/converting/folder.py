@@ -139,7 +139,7 @@ class FolderConversion:
         names, room = folder_names(each.topic for each in self.channels), min(LARGE_BYTES, WAITING_BYTES // max(len(self.channels), 1))
         streams = [_Stream(each, names[each.topic], self._collector(each, progress, rejected, room)) for each in self.channels]
         done = 0
-        for piece, within, block in ahead(self._blocks(progress)):
+        for piece, within, block in ahead(self._blocks(progress), lambda each: each[2].data.size):
             for stream in streams:
                 rows = block.rows.of_channels(stream.channel.numbers)
                 self._add(stream, stream.collector.put(block, rows), progress, parts, rejected)

@@ -29,7 +29,7 @@ def write_log(log: Log, routes: Sequence[Route], writer: Writer, wanted: Wanted,
     for route in routes:
         for origins, connection in route.connections:
             numbers |= dict.fromkeys(origins, writer.connect(connection))
-    for block in ahead(log.blocks(wanted)):
+    for block in ahead(log.blocks(wanted), lambda each: each.data.size):
         rows, found = block.rows, dict[int, bytes]()
         for route in routes:
             found |= route.messages(block)

@@ -269,7 +269,7 @@ def _read_element(message: Message, entry: Entry) -> None:
             value = writer.let("value", writer.load(scalar_name(scalar), where, order))
             _append(message, lane, value)
         case Varint() as varint:
-            value = _varint_value(message, varint, fields.layout.lanes[lane].element, where)
+            value = _varint_value(message, varint, fields.layout.lanes[lane].element, where, read_element)
             with writer.nested() as known:
                 _append(message, lane, value)
             _if_allowed(message, entry, value, known, begin)

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 SEVEN_BITS = Const("u64", 0x7F)
 ONE, ZERO = Const("u64", 1), Const("u64", 0)
+ONE_BYTE, TWO_BYTES = Const("u64", 1 << 7), Const("u64", 1 << 14)
+"""What varints of one byte, and of two, stay below."""
 VARINT_BYTES = 10
 """Of a varint."""
 GUESSED = 5
@@ -31,7 +33,7 @@ def read_varint(writer: Writer, where: Where) -> Local:
 
 
 def read_element(writer: Writer, where: Where) -> Local:
-    """The same of many, one behind the other: two bytes are as common as one there, and cost no call either."""
+    """The same of many, one behind the other: two bytes are as common as one there, and never cost a call."""
     value, writer.position = writer.call("read_element", _read_element, (writer.position,), where)
     return value
 
@@ -80,30 +82,40 @@ def _short(writer: Writer, most: int, what: str, too_large: Kind, too_long: Kind
 
 
 def _read(writer: Writer) -> Contract:
-    """One byte is the common case, which costs no call: what reads more is a routine of its own."""
-    return _first_byte(writer, lambda _, at: writer.call("read_long_varint", _read_long, (at,), MESSAGE))
+    """One byte is the common case, which costs no call; nor do two, unless very many varints are read: each length has a routine."""
+    return _first_byte(writer, lambda _, at: writer.call("read_two_bytes", _read_two, (at,), MESSAGE))
+
+
+def _read_two(writer: Writer) -> Contract:
+    """A varint of two bytes, or of more."""
+    at = writer.parameter("at", "i64")
+    writer.position = at
+    first = writer.let("byte", writer.load("u8", MESSAGE))
+    value, after = _second(writer, first, lambda: writer.call("read_long_varint", _read_long, (at,), MESSAGE))
+    return Contract((at,), (value, after), writer.within(at), writer.behind(at, after))
 
 
 def _read_element(writer: Writer) -> Contract:
-    return _two_bytes(writer, lambda at: writer.call("read_long_varint", _read_long, (at,), MESSAGE))
+    return _in_place(writer, lambda at: writer.call("read_long_varint", _read_long, (at,), MESSAGE))
 
 
 def _read_tag(writer: Writer) -> Contract:
-    return _two_bytes(writer, lambda at: writer.call("read_long_tag", _read_long_tag, (at,), MESSAGE))
+    return _in_place(writer, lambda at: writer.call("read_long_tag", _read_long_tag, (at,), MESSAGE))
 
 
-def _two_bytes(writer: Writer, further: Callable[[Local], tuple[Local, ...]]) -> Contract:
-    """A byte alone or two of them, or what begins at a place."""
+def _in_place(writer: Writer, further: Callable[[Local], tuple[Local, ...]]) -> Contract:
+    """A byte alone or two of them, without a call, or what begins at a place."""
+    return _first_byte(writer, lambda first, at: _second(writer, first, lambda: further(at)))
 
-    def second(first: Local, at: Local) -> tuple[Local, ...]:
-        byte = writer.let("byte", writer.load("u8", MESSAGE))
-        low = Binary("and", Convert("u64", first), SEVEN_BITS)
-        value = writer.var("varint", Binary("or", low, Binary("shl", Convert("u64", byte), Const("u64", 7))))
-        after = writer.var("next", writer.position)
-        _if_more(writer, byte, lambda: further(at), value, after)
-        return value, after
 
-    return _first_byte(writer, second)
+def _second(writer: Writer, first: Local, further: Callable[[], tuple[Local, ...]]) -> tuple[Local, Local]:
+    """The next byte behind a first one, or what is longer: the value, and the place behind it."""
+    byte = writer.let("byte", writer.load("u8", MESSAGE))
+    low = Binary("and", Convert("u64", first), SEVEN_BITS)
+    value = writer.var("varint", Binary("or", low, Binary("shl", Convert("u64", byte), Const("u64", 7))))
+    after = writer.var("next", writer.position)
+    _if_more(writer, byte, further, value, after)
+    return value, after
 
 
 def _first_byte(writer: Writer, further: Callable[[Local, Local], tuple[Local, ...]]) -> Contract:
@@ -233,7 +245,7 @@ def size_of_varint(writer: Writer, value: Expr, where: Where) -> Local:
 
 
 def _write(writer: Writer) -> Contract:
-    """One byte is the common case, here as in reading."""
+    """One byte is the common case, here as in reading, and two are the next."""
     at, value = writer.parameter("at", "i64"), writer.parameter("value", "u64")
     after = writer.var("next", at)
     with writer.nested() as one:
@@ -241,9 +253,25 @@ def _write(writer: Writer) -> Contract:
         writer.store(Convert("u8", value), MESSAGE)
         writer.assign(after, writer.position)
     with writer.nested() as several:
+        (behind,) = writer.call("write_two_bytes", _write_two, (at, value), MESSAGE)
+        writer.assign(after, behind)
+    writer.emit(If(Compare("lt", value, ONE_BYTE), block(one), block(several)))
+    return Contract((at, value), (after,), writer.within(at), writer.behind(at, after))
+
+
+def _write_two(writer: Writer) -> Contract:
+    """A varint of two bytes, or of more."""
+    at, value = writer.parameter("at", "i64"), writer.parameter("value", "u64")
+    after = writer.var("next", at)
+    with writer.nested() as two:
+        writer.position = at
+        writer.store(Convert("u8", Binary("or", value, Const("u64", 128))), MESSAGE)
+        writer.store(Convert("u8", Binary("shr", value, Const("u64", 7))), MESSAGE)
+        writer.assign(after, writer.position)
+    with writer.nested() as more:
         (behind,) = writer.call("write_long_varint", _write_long, (at, value), MESSAGE)
         writer.assign(after, behind)
-    writer.emit(If(Compare("lt", value, Const("u64", 128)), block(one), block(several)))
+    writer.emit(If(Compare("lt", value, TWO_BYTES), block(two), block(more)))
     return Contract((at, value), (after,), writer.within(at), writer.behind(at, after))
 
 
@@ -268,7 +296,7 @@ def _write_guessed(writer: Writer, at: Local, rest: Local, after: Local, written
             _write_guessed(writer, at, rest, after, written)
         else:
             _write_rest(writer, at, rest, after, written)
-    writer.emit(If(Compare("lt", rest, Const("u64", 128)), block(last), block(more)))
+    writer.emit(If(Compare("lt", rest, ONE_BYTE), block(last), block(more)))
 
 
 def _write_rest(writer: Writer, at: Local, value: Local, after: Local, written: int) -> None:
@@ -294,11 +322,11 @@ def _write_rest(writer: Writer, at: Local, value: Local, after: Local, written: 
 
 def _size(writer: Writer) -> Contract:
     value = writer.parameter("value", "u64")
-    size = writer.var("size", index(1))
+    size = writer.var("size", Select(Compare("lt", value, ONE_BYTE), index(1), index(2)))
     with writer.nested() as several:
         (long,) = writer.call("long_varint_size", _long_size, (value,), MESSAGE)
         writer.assign(size, long)
-    writer.emit(If(Compare("ge", value, Const("u64", 128)), block(several)))
+    writer.emit(If(Compare("ge", value, TWO_BYTES), block(several)))
     return Contract((value,), (size,), (), _bounds(size))
 
 

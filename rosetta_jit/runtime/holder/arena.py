@@ -63,6 +63,8 @@ def _waste_in(lanes: Lanes, node: Node, start: int, rows: int, *, whole: bool = 
     if not rows:
         return
     match node:
+        case Items(element=Text() as text) if whole and rows == lanes.used(text.span.lane):
+            lanes.give_back(text.lane, 0)  # none but these rows refer to it
         case Items(element=Text() as text) if whole and _is_last(lanes, text, start, rows):
             lanes.give_back(text.lane, int(lanes.row_words(text.span.lane, start, rows)[:, text.span.index].min()))
         case Items(element=element):

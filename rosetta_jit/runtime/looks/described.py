@@ -1,8 +1,8 @@
-"""What `help` and `inspect` say of a holder class: its fields with types, shapes and units; put together when somebody asks for it."""
+"""What `help` and `inspect` say of holder classes and programs: fields with types, shapes and units; made when somebody asks for it."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
     import inspect
@@ -57,3 +57,22 @@ class Described:
         family = self._family
         fields = [f"{escaped(name)}: {field_words(entry.field, family.schema)}" for name, entry in family.tree.root.entries.items()]
         return "\n".join((f"A holder of `{escaped(family.struct.name)}`.", *([""] if fields else []), *fields))
+
+
+class DescribedProgram:
+    """``__doc__`` of a class of programs, and of each of them: the fields of its holders, and the methods and attributes that it has."""
+
+    def __init__(self, text: str | None) -> None:
+        self._text = text or ""
+
+    def __get__(self, program: object, owner: object = None) -> str:
+        if program is None:
+            return self._text
+        import inspect  # slow
+
+        names = [name for name in dir(program) if not name.startswith("_")]
+        texts = {name: inspect.getdoc(inspect.getattr_static(type(program), name)) or "" for name in names}
+        lines = (f"{name}: {' '.join(text.partition(chr(10) * 2)[0].split())}" for name, text in texts.items())
+        return "\n".join(
+            (self._text.partition("\n")[0], "", str(cast("Any", program).holder_type.__doc__), "", "Methods and attributes:", "", *lines)
+        )

@@ -65,7 +65,7 @@ def batch_page(batch: Rows) -> str:
         for message in islice(batch, MAX_PAGE_ROWS)
     ]
     lines = "".join(f"<tr>{row}</tr>" for row in rows)
-    return f"<div><b>{escape(repr(batch))}</b><table><tr>{head}</tr>{lines}</table></div>"
+    return f'<div style="overflow-x:auto"><b>{escape(repr(batch))}</b><table><tr>{head}</tr>{lines}</table></div>'
 
 
 def failed_page(batch: Rows) -> str:

@@ -51,6 +51,9 @@ def _read(number: int, stopped: int, channel: str, source: Source, options: Mapp
     def take(data: memoryview) -> None:
         source.arrived(Message(data, channel, None, time_ns()))
 
+    def read_into(room: memoryview) -> int:
+        return os.readv(number, [room])
+
     feed = Feed(messages(options["frame"], take, options["max_message"]))
     poll = select.poll()
     poll.register(number, select.POLLIN)
@@ -61,12 +64,11 @@ def _read(number: int, stopped: int, channel: str, source: Source, options: Mapp
     try:
         while not any(each == stopped for each, _ in poll.poll(100 if is_named and not came else None)):
             try:
-                count = os.readv(number, [feed.room()])
+                is_some = feed.receive(read_into)
             except BlockingIOError:
                 continue
-            if count:
+            if is_some:
                 came = True
-                feed.filled(count)
             elif came or not is_named:  # a named pipe reads as ended until its first writer comes
                 break
             else:

@@ -1,4 +1,4 @@
-"""protobuf's own `json_format` reads and writes holders: what it makes of them is what it makes of its own messages, both ways."""
+"""protobuf's own `json_format` and `text_format` read and write holders, and make the same of them as of messages of its package."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import json
 import math
 
 import pytest
-from google.protobuf import descriptor_pb2, descriptor_pool, json_format, message_factory
+from google.protobuf import descriptor_pb2, descriptor_pool, json_format, message_factory, text_format
 from grpc_tools import protoc
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -140,6 +140,26 @@ def test_both_ways_as_theirs(pair, data):
     text = json_format.MessageToJson(ours, sort_keys=True)
     assert text == json_format.MessageToJson(theirs, sort_keys=True)
     assert shown(json_format.MessageToDict(json_format.Parse(text, pair[1]()))) == shown(json_format.MessageToDict(ours))
+
+
+def test_text_format(pair):
+    plain = {
+        "names": {"1": "a", "-2": "\u00e4\n"}, "wides": {"true": {"aLongName": "2", "names": {"3": "c"}}}, "right": "x",
+        "doubles": [0.5, -0.0], "kinds": ["SOME", 3], "raw": "AA==", "object": {"a": [1, None, {"b": True}]}, "more": [{"left": 0}],
+    }  # fmt: skip
+    theirs, ours = (json_format.ParseDict(plain, made()) for made in pair)
+    options = [{}, {"as_one_line": True}, {"as_utf8": True}, {"use_index_order": True}, {"use_field_number": True, "indent": 3}]
+    for each in options:
+        assert text_format.MessageToString(ours, **each) == text_format.MessageToString(theirs, **each)
+    text = text_format.MessageToString(theirs)
+    assert text_format.Parse(text, pair[1]()) == ours
+    for made in pair:  # parts of an entry that are not there, and a key that comes twice
+        message = text_format.Parse('wides { } names { key: 3 value: "x" } names { value: "y" } names { key: 3 }', made())
+        assert (dict(message.names), list(message.wides)) == ({3: "", 0: "y"}, [False])
+        with pytest.raises(text_format.ParseError, match="nothing"):
+            text_format.Parse("names { nothing: 1 }", made())
+        entry = message.names.GetEntryClass()(key=5, value="five")
+        assert (entry.DESCRIPTOR.full_name, entry.key, entry.value) == ("wide.Wide.NamesEntry", 5, "five")
 
 
 @pytest.mark.parametrize(

@@ -57,6 +57,16 @@ struct torso_state_holder {
     int64_t now = 0;
     int64_t number = 0;
 };
+/* What a message is written from: elements where an object has them, and those that are put together in the codec's memory. */
+struct torso_state_source {
+    rosetta_jit::detail::lane<uint8_t> &unknown;
+    int64_t most;
+    int64_t now;
+    int64_t number;
+    rosetta_jit::detail::shown<float> angles = {};
+
+    torso_state_source(torso_state_holder &memory, codec &owner) : unknown(memory.unknown), most(rosetta_jit::detail::most_rows(std::size_t{1} << 39)), now(owner.now), number(owner.number) { static_cast<void>(memory); }
+};
 
 /* Where and why a message cannot be read or written. `site` is a row of the table of sites; 0 stands for a lane without room. */
 struct failure {
@@ -65,7 +75,7 @@ struct failure {
     int64_t indices[4];
 };
 
-static int64_t fail(struct failure *failure, int64_t site, int64_t offset)
+ROSETTA_JIT_COLD static int64_t fail(struct failure *failure, int64_t site, int64_t offset)
 {
     failure->site = site;
     failure->offset = offset;
@@ -73,7 +83,7 @@ static int64_t fail(struct failure *failure, int64_t site, int64_t offset)
 }
 
 /* A lane lacks room. */
-static int64_t full(struct failure *failure, int64_t lane, int64_t missing)
+ROSETTA_JIT_COLD static int64_t full(struct failure *failure, int64_t lane, int64_t missing)
 {
     failure->site = 0;
     failure->offset = lane;
@@ -362,7 +372,7 @@ const site encode_sites[] = {
     {status::length, "", "no room for the message", "", -1, 0, nullptr},
 };
 
-static int64_t encode_message(torso_state_holder *holder, const torso_state_JointAngles &given_row, unsigned char *restrict bytes, int64_t end, struct failure *failure)
+static int64_t encode_message(torso_state_source *holder, const torso_state_JointAngles &given_row, unsigned char *restrict bytes, int64_t end, struct failure *failure)
 {
     const torso_state_JointAngles *restrict const message = &given_row;
     float *restrict const angles = holder->angles.rows;
@@ -416,7 +426,7 @@ void fill(const torso_state_holder &from, const unsigned char *bytes, const tors
 }
 
 template <class Source>
-void collect(const Source &source, torso_state_holder &to, torso_state_JointAngles &row)
+void collect(const Source &source, torso_state_source &to, torso_state_JointAngles &row)
 {
     static_cast<void>(source);
     static_cast<void>(to);
@@ -441,7 +451,7 @@ const char *const lanes[] = {
 };
 
 /* The error of a failure. `available` is how many bytes there are behind its offset. */
-rosetta_jit::error report(const site *sites, const struct failure &failure, int64_t available, const torso_state_holder &holder)
+ROSETTA_JIT_COLD rosetta_jit::error report(const site *sites, const struct failure &failure, int64_t available, const torso_state_holder &holder)
 {
     static_cast<void>(holder);
     const site &where = sites[failure.site];
@@ -500,38 +510,43 @@ rosetta_jit::error unplaced(rosetta_jit::error found)
     return found;
 }
 
-void gather(const ::torso_state::holder &source, torso_state_holder *holder, torso_state_JointAngles &row)
+void gather(const ::torso_state::holder &source, torso_state_source *holder, torso_state_JointAngles &row)
 {
+    static_cast<void>(holder);
     row = {};
-    holder->most = rosetta_jit::detail::most_rows(std::size_t{1} << 39);
     holder->unknown.reset();
-    holder->angles.reset();
     holder->angles.read(source.angles());
     row.angles = {0, holder->angles.used};
     collect(source, *holder, row);
 }
 
-int64_t measured(torso_state_holder *holder, const torso_state_JointAngles &given_row, struct failure *failure_of_size)
+/* The bytes of the message. Where parts of it have lengths, these are left in the scratch memory. */
+rosetta_jit::result<std::size_t> measured(torso_state_source *holder, const torso_state_JointAngles &given_row, const torso_state_holder &memory)
 {
-    struct failure &failure = *failure_of_size;
+    struct failure failure = {0, 0, {0, 0, 0, 0}};
     const int64_t end = INT64_MAX;
     static_cast<void>(end);
     static_cast<void>(holder);
     static_cast<void>(given_row);
-    static_cast<void>(failure);
-    return size_message();
+    const int64_t size = size_message();
+    if (size < 0) {
+        return unplaced(report(size_sites, failure, 0, memory));
+    }
+    return static_cast<std::size_t>(size);
 }
 
-rosetta_jit::result<std::size_t> written(torso_state_holder *holder, unsigned char *bytes, int64_t end)
+rosetta_jit::result<std::size_t> written(torso_state_source *holder, const torso_state_JointAngles &given_row, const torso_state_holder &memory, void *target, std::size_t capacity)
 {
+    unsigned char *const bytes = static_cast<unsigned char *>(target);
+    const int64_t end = reach(capacity);
     struct failure failure = {0, 0, {0, 0, 0, 0}};
-    const auto &given_row = holder->message;
+    static_cast<void>(holder);
     static_cast<void>(given_row);
     static_cast<void>(bytes);
     static_cast<void>(end);
     const int64_t result = encode_message(holder, given_row, bytes, end, &failure);
     if (result < 0) {
-        return unplaced(report(encode_sites, failure, 0, *holder));
+        return unplaced(report(encode_sites, failure, 0, memory));
     }
     return static_cast<std::size_t>(result);
 }
@@ -539,35 +554,29 @@ rosetta_jit::result<std::size_t> written(torso_state_holder *holder, unsigned ch
 
 rosetta_jit::result<std::size_t> codec::try_size(const ::torso_state::holder &source)
 {
-    torso_state_holder *const holder = memory_.get();
-    struct failure failure = {0, 0, {0, 0, 0, 0}};
-    holder->now = now;
-    holder->number = number;
-    gather(source, holder, holder->message);
-    const int64_t size = measured(holder, holder->message, &failure);
-    if (size < 0) {
-        return unplaced(report(size_sites, failure, 0, *holder));
-    }
-    return static_cast<std::size_t>(size);
+    torso_state_source given(*memory_, *this);
+    gather(source, &given, memory_->message);
+    return measured(&given, memory_->message, *memory_);
 }
 
 rosetta_jit::result<std::size_t> codec::try_encode(const ::torso_state::holder &source, void *bytes, std::size_t capacity)
 {
-    torso_state_holder *const holder = memory_.get();
-    holder->now = now;
-    holder->number = number;
-    gather(source, holder, holder->message);
-    return written(holder, static_cast<unsigned char *>(bytes), reach(capacity));
+    torso_state_source given(*memory_, *this);
+    torso_state_JointAngles &row = memory_->message;
+    gather(source, &given, row);
+    return written(&given, row, *memory_, bytes, capacity);
 }
 
 rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::torso_state::holder &source, std::string &bytes)
 {
-    const auto size = try_size(source);
+    torso_state_source given(*memory_, *this);
+    gather(source, &given, memory_->message);
+    const auto size = measured(&given, memory_->message, *memory_);
     if (!size) {
         return size.error();
     }
     bytes.resize(*size);
-    const auto found = written(memory_.get(), reinterpret_cast<unsigned char *>(&bytes[0]), static_cast<int64_t>(*size));
+    const auto found = written(&given, memory_->message, *memory_, &bytes[0], *size);
     if (!found) {
         return found.error();
     }

@@ -24,11 +24,13 @@
 #include <span>
 #endif
 
-/* Code that is as quick as what it stands for only where a compiler sees both. */
+/* INLINE: code that is as quick as what it stands for only where a compiler sees both. COLD: code that seldom runs, which must not slow down what is around it. */
 #if defined(__GNUC__)
 #define ROSETTA_JIT_INLINE __attribute__((always_inline)) inline
+#define ROSETTA_JIT_COLD __attribute__((noinline, cold))
 #else
 #define ROSETTA_JIT_INLINE inline
+#define ROSETTA_JIT_COLD
 #endif
 
 namespace rosetta_jit {
@@ -268,14 +270,6 @@ template <class Row> struct lane {
         used = 0;
     }
 
-    /* No rows, and a place in memory for each. */
-    void address()
-    {
-        rows = nullptr;
-        capacity = 0;
-        used = INT64_MAX;
-    }
-
     void show(const Row *elements, std::int64_t count)
     {
         rows = const_cast<Row *>(elements); /* the functions that write messages change no row */
@@ -284,7 +278,7 @@ template <class Row> struct lane {
     }
 
     /* Makes room for more rows; false where that would be more than `most`. */
-    bool grow(std::int64_t missing, std::int64_t most)
+    ROSETTA_JIT_COLD bool grow(std::int64_t missing, std::int64_t most)
     {
         if (missing > most - capacity) {
             return false;
@@ -308,7 +302,7 @@ struct scratch {
     std::int64_t size = 0;
     std::unique_ptr<std::int64_t[]> memory;
 
-    bool grow(std::int64_t missing, std::int64_t most)
+    ROSETTA_JIT_COLD bool grow(std::int64_t missing, std::int64_t most)
     {
         if (missing > 4096 * (most / 64) - size) {
             return false;
@@ -365,7 +359,7 @@ template <class Container> std::int64_t count_of(const Container &from)
 template <class Container> void resize_to(Container &target, std::int64_t count)
 {
     if constexpr (is_repeated<Container>::value) {
-        if constexpr (std::is_arithmetic_v<std::remove_reference_t<decltype(*target.mutable_data())>>) {
+        if constexpr (std::is_arithmetic_v<typename Container::value_type>) {
             target.Resize(static_cast<int>(count), {});
         } else {
             target.Reserve(static_cast<int>(count));
@@ -543,6 +537,20 @@ template <class Lane, class Span, class Container> void point_span(Lane &, Span 
     span.count = count_of(from);
 }
 
+/* To write a message: rows that are the elements of a container; or anywhere in memory, by their addresses. */
+template <class Row> struct shown {
+    Row *rows = nullptr;
+    std::int64_t used = INT64_MAX;
+
+    template <class Container> void read(const Container &from)
+    {
+        static_assert(same_numbers<std::remove_cv_t<std::remove_reference_t<decltype(*std::data(from))>>, Row>,
+                      "the class has elements of another type than the schema");
+        rows = const_cast<Row *>(reinterpret_cast<const Row *>(std::data(from))); /* the functions that write messages change no row */
+        used = count_of(from);
+    }
+};
+
 /* Rows that are the elements of a container, so that nothing is copied. */
 template <class Row, class Container> struct field_lane {
     Row *rows = nullptr;
@@ -553,22 +561,13 @@ template <class Row, class Container> struct field_lane {
     using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(std::declval<Container &>()))>>;
     static_assert(same_numbers<Number, Row>, "the class has elements of another type than the schema");
 
-    void reset() { used = 0; }
-
     void fill(Container &target)
     {
         container = &target;
         look();
     }
 
-    void read(const Container &from)
-    {
-        container = const_cast<Container *>(&from); /* the functions that write messages change no row */
-        look();
-        used = capacity;
-    }
-
-    bool grow(std::int64_t missing, std::int64_t most)
+    ROSETTA_JIT_COLD bool grow(std::int64_t missing, std::int64_t most)
     {
         if (missing > most - capacity) {
             return false;
@@ -608,13 +607,20 @@ private:
 template <class Message, class = void> struct shows_unknown : std::false_type {};
 template <class Message> struct shows_unknown<Message, std::void_t<decltype(std::declval<Message &>().mutable_unknown_fields())>> : std::true_type {};
 
+/* The reflection of a class of protobuf's, for which a message looks each time that it is asked. */
+template <class Message> const auto &reflection_of(const Message &message)
+{
+    static const auto *const reflection = message.GetReflection();
+    return *reflection;
+}
+
 /* The unknown fields of a protobuf message: of proto3 only its reflection has them. */
 template <class Message> const auto &unknown_fields(const Message &message)
 {
     if constexpr (shows_unknown<Message>::value) {
         return message.unknown_fields();
     } else {
-        return message.GetReflection()->GetUnknownFields(message);
+        return reflection_of(message).GetUnknownFields(message);
     }
 }
 
@@ -623,7 +629,7 @@ template <class Message> auto &mutable_unknown_fields(Message &message)
     if constexpr (shows_unknown<Message>::value) {
         return *message.mutable_unknown_fields();
     } else {
-        return *message.GetReflection()->MutableUnknownFields(&message);
+        return *reflection_of(message).MutableUnknownFields(&message);
     }
 }
 

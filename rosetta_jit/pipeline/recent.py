@@ -1,0 +1,69 @@
+"""What the texts of the last requests said: the encoder of a mapping, after its decoder, has nothing read and checked again."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from contextlib import suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeVar, cast
+
+from rosetta_jit.frameworks.installed import installed
+from rosetta_jit.language.function import offered
+from rosetta_jit.pipeline.limits import MAX_RECENT, MAX_RECENT_BYTES
+from rosetta_jit.pipeline.request import here
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable, Mapping
+
+    from rosetta_jit.frameworks.base import Framework
+    from rosetta_jit.language.function import Function
+    from rosetta_jit.pipeline.declared import Files
+    from rosetta_jit.pipeline.request import Request
+
+_Said = TypeVar("_Said")
+
+
+@dataclass(frozen=True, slots=True)
+class _Recent:
+    """What was made of some files, by which frameworks and functions of installed packages."""
+
+    said: object
+    files: Files
+    frameworks: Mapping[str, Framework]
+    functions: tuple[Function, ...]
+
+    def holds(self) -> bool:
+        """Whether the same would be made of the files as they are now."""
+        return self.frameworks is installed() and self.functions is offered() and self.files.are_unchanged()
+
+
+_recent: OrderedDict[Hashable, _Recent] = OrderedDict()
+"""The last one is the youngest. Threads share it: each step is one that Python does not interrupt."""
+
+
+def recently(request: Request, files: Files, say: Callable[[], _Said]) -> _Said:
+    """What ``say`` makes of a request's ``files``, or made of the same ones a moment ago.
+
+    ``say`` must depend on nothing of the request that `_texts` leaves out. What it raises is not remembered.
+    """
+    asked = (_texts(request), files.search, here())
+    known = _recent.get(asked)
+    if known is not None and known.holds():
+        files.reading.take(known.files.reading)
+        with suppress(KeyError):  # another thread has removed it
+            _recent.move_to_end(asked)
+        return cast("_Said", known.said)
+    said = say()
+    if files.reading.size_bytes <= MAX_RECENT_BYTES:
+        _recent[asked] = _Recent(said, files, installed(), offered())
+        _recent.move_to_end(asked)
+        while len(_recent) > MAX_RECENT:
+            _recent.popitem(last=False)
+    return said
+
+
+def _texts(request: Request) -> Request:
+    """A request as far as it says what is read, and how it is checked: the same for both directions, and for every backend."""
+    wire: dict[str, Any] = {} if request.mapping is None else {"wire": None}
+    return replace(request, direction="decode", borrow=False, byte_order=None, functions=(), backend=None, **wire)
