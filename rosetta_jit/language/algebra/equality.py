@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.algebra.polynomial import TooComplexError, polynomial_of
-from rosetta_jit.language.algebra.quotients import NOTHING, QUOTIENTS, are_same, mentions, only_atom
+from rosetta_jit.language.algebra.quotients import NOTHING, are_same, mentions, only_atom, reduced
 from rosetta_jit.language.typed import BOOL, Access, Binary, Call, Const, Convert, Has, IndexStep, LenOf, Local, Nearest, StateVariable
 from rosetta_jit.language.walk import operands, parts, renamed
 from rosetta_jit.model.types import Int
@@ -106,11 +106,27 @@ def same_number(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:
 
 def own_part(expr: Expr, facts: Callable[[], Facts]) -> Expr | None:
     """The part of an integer that it is the same as: of `floor_divide(x * c + y, c)` the x, if y is known to be from 0 to below c."""
-    if not isinstance(expr.type, Int) or not any(isinstance(each, Call) and each.function in QUOTIENTS for each in parts(expr)):
+    if not isinstance(expr.type, Int) or not _is_of_parts(expr):
         return None
     known = facts()
     inner = (each for each in parts(expr) if each is not expr and isinstance(each.type, Int) and not isinstance(each, Const | Local))
-    return next((each for each in inner if same_number(expr, each, known)), None)
+    try:
+        whole = reduced(polynomial_of(expr), known)
+        return next((each for each in inner if reduced(polynomial_of(each), known) == whole), None)
+    except TooComplexError:
+        return None
+
+
+def _is_of_parts(expr: Expr) -> bool:
+    """Whether an integer is a part of one that is put together, or is put together of parts."""
+    within = {each.function if isinstance(each, Call) else each.operator for each in parts(expr) if isinstance(each, Call | Binary)}
+    match expr:
+        case Call("floor_divide" | "modulo"):
+            return not within.isdisjoint(("+", "nanoseconds"))
+        case Call("nanoseconds") | Binary("+"):
+            return within.issuperset(("floor_divide", "modulo"))
+        case _:
+            return False
 
 
 def given_back(value: Expr) -> Expr:

@@ -22,9 +22,6 @@ if TYPE_CHECKING:
 
 SECOND = 10**9
 
-QUOTIENTS = frozenset(("divide", "floor_divide", "modulo", "nanoseconds"))
-"""Functions by which integers are taken apart and put together."""
-
 Fact = tuple[Atom, Polynomial]
 """What an atom is equal to."""
 
@@ -52,9 +49,18 @@ def are_same(left: Polynomial, right: Polynomial, facts: Facts = NOTHING) -> boo
     """
     if left == right:
         return True
-    rest = subtract(_put(left, facts.equal), _put(right, facts.equal))
-    rest = _reduced(_reduced(rest, facts), facts)
+    rest = reduced(subtract(left, right), facts)
     return _put(rest, list(_products(rest))[:MAX_SUBSTITUTED]) == number(0)
+
+
+def reduced(polynomial: Polynomial, facts: Facts) -> Polynomial:
+    """A number without quotients and remainders of what is known.
+
+    Raises
+    ------
+    TooComplexError
+    """
+    return _reduced(_reduced(_put(polynomial, facts.equal), facts), facts)
 
 
 def mentions(polynomial: Polynomial, atom: Atom) -> bool:

@@ -3,18 +3,12 @@
 | expression        | its field                         |
 |-------------------|-----------------------------------|
 | `.a`              | the value                         |
-| `x + c`, `c + x`  | value - c                         |
-| `x - c`           | value + c                         |
-| `c - x`           | c - value                         |
-| `x * c`, `c * x`  | divide(value, c)                  |
-| `x / c`           | value * c, of floats              |
-| `x ^ c`           | value ^ c                         |
 | `-x`, `not x`     | -value, not value                 |
 | `float32(x)` …    | the value, as the field holds it  |
 | `table(x) {a = b}`| table(value) {b = a}              |
 
-What undoes a function stands in its record (`language.function`). Arrays are in `language.arrays.layouts`, and expressions of several
-fields in `language.both_ways.inverse_parts`.
+What undoes an operator or a function stands in its record (`language.operators`, `language.function`), beside what comes back when it is
+undone. Arrays are in `language.arrays.layouts`, and expressions of several fields in `language.both_ways.inverse_parts`.
 """
 
 from __future__ import annotations
@@ -26,6 +20,7 @@ from rosetta_jit.language.arrays.layouts import ARGUMENTS, put_back, rounded_byt
 from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.function import SEVERAL, Affine, ByType, Function, written
 from rosetta_jit.language.groups import arguments_of, component, function_of
+from rosetta_jit.language.operators import form_of, rounds, why_lost
 from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Given, Item, Len, List, Literal, Name, Nearest, Path, Unary
 from rosetta_jit.model.types import Float, Int, String
 from rosetta_jit.model.walk import parts, rebuilt, side_of
@@ -118,8 +113,8 @@ def may_round(expr: Expr) -> bool:
 def _is_rounding(part: Expr) -> bool:
     """Whether an operation rounds, if it is one of floats."""
     match part:
-        case Binary(operator="+" | "-" | "*" | "/"):
-            return True
+        case Binary(operator):
+            return rounds(operator)
         case Call(function):
             found = written(function)
             return found is not None and isinstance(found.law, Affine) and found.law.rounds
@@ -249,22 +244,10 @@ def _operation(expr: Binary, value: Expr) -> tuple[Expr, Expr]:
     inner, other = (expr.left, expr.right) if left else (expr.right, expr.left)
     if fields_in(other):
         raise NoInverseError(expr, "the field stands in it twice")
-    span = expr.span
-    match expr.operator, left:
-        case "+", _:
-            return inner, Binary("-", value, other, span)
-        case "-", True:
-            return inner, Binary("+", value, other, span)
-        case "-", False:
-            return inner, Binary("-", other, value, span)
-        case "*", _:
-            return inner, Call("divide", (value, other), span)
-        case "/", True:
-            return inner, Binary("*", value, other, span)
-        case "^", _:
-            return inner, Binary("^", value, other, span)
-        case operator, _:
-            raise NoInverseError(expr, f"`{operator}` gives the same for several values")
+    form = form_of(expr.operator, is_left=left)
+    if form is None:
+        raise NoInverseError(expr, why_lost(expr.operator))
+    return inner, form.undo(value, other, expr.span)
 
 
 def _without(sum_: Binary, value: Expr) -> tuple[Expr, Expr] | None:

@@ -14,6 +14,7 @@ from rosetta_jit.language.both_ways.presence import flag_of, is_kept
 from rosetta_jit.language.both_ways.signal_relations import frames_of, told_in_all
 from rosetta_jit.language.both_ways.text_parts import numbers_of_texts
 from rosetta_jit.language.function import Affine, written
+from rosetta_jit.language.operators import form_of
 from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
 from rosetta_jit.model.mapping import Arranged, For, Relation, When
 from rosetta_jit.model.walk import Field, fields_of, parts, path_of, rebuilt
@@ -76,8 +77,11 @@ def _loss(relation: tuple[Relation, Loops]) -> int:
 def _is_reversible(part: Expr) -> bool:
     """Whether an operation gives another value for each, or refuses it, whatever the types."""
     match part:
-        case Path() | Len() | Literal() | Name() | Unary() | Binary(operator="+" | "-" | "^"):
+        case Path() | Len() | Literal() | Name() | Unary():
             return True
+        case Binary(operator):
+            form = form_of(operator, is_left=True)
+            return form is not None and form.exact
         case Call(function="int8" | "int16" | "int32" | "int64" | "uint8" | "uint16" | "uint32" | "uint64", arguments=(_,)):
             return True
         case Call(function) if (known := written(function)) is not None:

@@ -11,15 +11,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from fractions import Fraction
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
-from rosetta_jit.language.affine_steps import LARGEST, PRECISION, LostError, Value, divided_by, fraction, rounded, scaled, shifted
+from rosetta_jit.language.affine_steps import LARGEST, PRECISION, LostError, Value, rounded, scaled
 from rosetta_jit.language.affine_steps import UNSHOWN as NOT_SHOWN
 from rosetta_jit.language.conversions import EXACT_BITS
 from rosetta_jit.language.function import Affine, NotFollowed, Undone, functions
 from rosetta_jit.language.laws.integers import as_whole, squeezed
+from rosetta_jit.language.operators import form_of, why_lost
 from rosetta_jit.language.typed import Binary, Call, Choice, Const, Convert, Given, Nearest, Unary
 from rosetta_jit.model.types import Float, Int
 from rosetta_jit.startup.dataclass import dataclass
@@ -130,36 +130,26 @@ def _done(step: Expr, value: Value) -> Value:
         case Nearest(type=type_):
             return as_whole(replace(value, type=type_), "round")
         case Unary("-"):
-            return replace(scaled(value, Fraction(-1)), type=step.type)
+            return replace(scaled(value, -1), type=step.type)
         case Unary() | Choice():
             return _bijection(step, value)
         case Call():
             law = functions()[step.function].law
             return law.follow(step, value) if isinstance(law, Affine) else _bijection(step, value)
-        case Binary("^"):
-            return _bijection(step, value)
         case Binary():
-            return _computed(step, replace(value, type=step.type))
+            return _computed(step, value)
         case _:
             raise LostError(UNSHOWN.why)
 
 
 def _computed(step: Binary, value: Value) -> Value:
-    match step:
-        case Binary("+", left, right):
-            constant = right if isinstance(right, Const) else left
-            return rounded(shifted(value, fraction(_number(constant))), 1)
-        case Binary("-", _, Const(number)):
-            return rounded(shifted(value, -fraction(number)), 1)
-        case Binary("-", Const(number), _):
-            return rounded(shifted(scaled(value, Fraction(-1)), fraction(number)), 1)
-        case Binary("*", left, right):
-            constant = right if isinstance(right, Const) else left
-            return rounded(scaled(value, fraction(_number(constant))), 1)
-        case Binary("/", _, Const(number)) if number:
-            return divided_by(value, number, "/", step.type)
-        case _:
-            raise LostError(f"`{step.operator}` gives the same for several values")
+    is_left = isinstance(step.right, Const)
+    form = form_of(step.operator, is_left=is_left)
+    if form is None:
+        raise LostError(why_lost(step.operator))
+    if form.follow is None:
+        return _bijection(step, value)
+    return form.follow(replace(value, type=step.type), _number(step.right if is_left else step.left))
 
 
 def _number(expr: Expr) -> object:
