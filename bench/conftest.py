@@ -22,6 +22,7 @@ ORDER = (
     "state",
     "wires",
     "filters",
+    "lookup",
     "mapped",
     "bridges",
     "peers",

@@ -25,6 +25,9 @@ UNSIGNED = EQUAL | {sign: f"u{name}" for sign, name in ORDERS.items()}
 ORDERED = {sign: f"o{name}" for sign, name in (EQUAL | ORDERS).items()}
 UNORDERED = {sign: f"u{name}" for sign, name in (EQUAL | ORDERS).items()}
 
+# llvmlite fills a table of characters when it first prints bytes, and a second thread would find it half full: so before there is one.
+ir.MetaDataString(ir.Module(), "").get_reference()
+
 
 class Line(ir.Value):
     """An instruction: what others call its result, and its text."""

@@ -28,7 +28,7 @@ TRANSPORTS = (
         publish=f"{HERE}.tcp:publish",
         call=f"{HERE}.calls:call",
         serve=f"{HERE}.calls:serve",
-        check=f"{HERE}.places:place",
+        check=f"{HERE}.endpoints:place",
         options=STREAM,
     ),
     Transport(
@@ -37,7 +37,7 @@ TRANSPORTS = (
         "udp:127.0.0.1:9000",
         subscribe=f"{HERE}.udp:subscribe",
         publish=f"{HERE}.udp:publish",
-        check=f"{HERE}.places:place",
+        check=f"{HERE}.endpoints:place",
         options={"interface": Option("text", "127.0.0.1", "by which address of this machine groups are joined and reached")},
     ),
     Transport(
