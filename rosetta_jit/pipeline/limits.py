@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-MAX_RECENT = 8
+MAX_RECENT = 2
 """mappings and types of which a process remembers what was read and checked"""
 
 MAX_RECENT_BYTES = 256 * 1024

@@ -6,6 +6,7 @@ This is the slow path of calls that go through the entry, and the only path of k
 from __future__ import annotations
 
 import ctypes
+import marshal
 from collections.abc import Callable
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, cast
@@ -190,17 +191,23 @@ class Site:
 
 
 class Sites:
-    """The sites of a kernel by their numbers, as headers of programs have them. Each is made when it is asked for: few messages fail."""
+    """The sites of a kernel by their numbers, as headers of programs have them.
 
-    __slots__ = ("_plain",)
+    Few messages fail: they are kept packed until one does, in less memory, and each is made when it is asked for.
+    """
+
+    __slots__ = ("_count", "_packed", "_plain")
 
     def __init__(self, plain: Sequence[Sequence[Any]] = ()) -> None:
-        self._plain = plain
+        self._count, self._packed = len(plain), marshal.dumps(plain)
+        self._plain: Sequence[Sequence[Any]] | None = None
 
     def __len__(self) -> int:
-        return len(self._plain)
+        return self._count
 
     def __getitem__(self, number: int) -> Site:
+        if self._plain is None:
+            self._plain = cast("Sequence[Sequence[Any]]", marshal.loads(self._packed))  # noqa: S302 - what it has packed itself
         return Site.of(self._plain[number])
 
 

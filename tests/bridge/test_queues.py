@@ -8,6 +8,7 @@ import time
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.transports.loop import loop
 from tests.bridge.routes import route
 from tests.transports.free import free_port, until
 
@@ -166,7 +167,8 @@ def test_many_targets_that_take_nothing_are_closed_side_by_side(run):
     targets = [free_port() for _ in range(8)]
     bridge, _ = run("".join(route(free_port(), each, f'name = "{each}"') for each in targets))
     for each in bridge.live.values():
-        each.deliver(message(0))
+        loop().soon(each.deliver, message(0))  # where messages arrive, nobody waits for a target
+    until(lambda: all(each.waiting for each in bridge.live.values()))
     begun = time.monotonic()
     bridge.stop(0.5)
     assert time.monotonic() - begun < 3.0
