@@ -199,7 +199,7 @@ class Sites:
     __slots__ = ("_count", "_packed", "_plain")
 
     def __init__(self, plain: Sequence[Sequence[Any]] = ()) -> None:
-        self._count, self._packed = len(plain), marshal.dumps(plain)
+        self._count, self._packed = len(plain), marshal.dumps(cast("Any", plain))
         self._plain: Sequence[Sequence[Any]] | None = None
 
     def __len__(self) -> int:
