@@ -17,11 +17,10 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf
-    from rosetta_jit.language.both_ways.knowledge import Loops
+    from rosetta_jit.language.both_ways.together import Related
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Relation
 
-Related = tuple["Relation", "Loops"]
 MEASURES = ("image_width", "image_height", "image_channels")
 
 
@@ -44,6 +43,24 @@ class Image:
         if fields_of(found.value, "wire"):
             raise NoInverseError(self.pixels[0].value, "no relation says what its measures are")
         return found
+
+    @property
+    def whole(self) -> Expr:
+        return self.pixels[0].value
+
+    @property
+    def relations(self) -> tuple[Related, ...]:
+        """That to the pixels first."""
+        return self.pixels, *self.measures
+
+    def length(self, type_of: TypeOf) -> None:
+        """Not known: it is that of what compresses."""
+        del type_of
+
+    @property
+    def refused(self) -> tuple[tuple[Expr, str], ...]:
+        """None: packing gives every message back."""
+        return ()
 
 
 def images_of(relations: list[Related]) -> list[Image]:

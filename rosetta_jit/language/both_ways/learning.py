@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.both_ways.array_relations import equal_lengths
 from rosetta_jit.language.both_ways.image_relations import images_of
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solved
@@ -20,8 +19,9 @@ from rosetta_jit.model.mapping import Arranged, For, Relation, When
 from rosetta_jit.model.walk import Field, fields_of, parts, path_of, rebuilt
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
+    from rosetta_jit.language.both_ways.together import Together
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Rule
 
@@ -38,8 +38,8 @@ def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops, is_assigned: 
         if isinstance(rule, When) and not loops:
             known.signals |= told_in_all(rule, known.type_of)
     relations = [each for each in _relations(rules, loops) if not _is_left(each[0], is_assigned)]
-    done = _pairs(known, relations) | _texts(known, relations, is_assigned) | _frames(known, relations, is_assigned)
-    done |= _images(known, relations, is_assigned)
+    groups = (*numbers_of_texts(relations), *frames_of(relations), *images_of(relations))
+    done = _pairs(known, relations) | _together(known, groups, is_assigned)
     done |= {id(rule) for rule, around in sorted(relations, key=_loss) if id(rule) not in done and _solve(known, rule, around)}
     later = [each for each in relations if id(each[0]) not in done]
     for _ in range(2):
@@ -155,56 +155,24 @@ def _put_together(known: Knowledge, rule: Relation, other: Relation, loops: Loop
     return True
 
 
-def _texts(known: Knowledge, relations: list[tuple[Relation, Loops]], is_assigned: Callable[[Field], bool]) -> set[int]:
-    """Relations that together name all numbers of a text set it together; gives the relations for which that is so."""
+def _together(known: Knowledge, groups: Iterable[Together], is_assigned: Callable[[Field], bool]) -> set[int]:
+    """Relations that together say what a value is set it, the first of them for all; gives the relations for which that is so."""
     done: set[int] = set()
-    for text in numbers_of_texts(relations):
-        (first, loops), *others = text.relations
-        if any(map(is_assigned, fields_in(text.text))):
+    for group in groups:
+        (first, loops), *others = group.relations
+        if any(map(is_assigned, fields_in(group.whole))):
             continue
         try:
-            solution = text.solved(known.type_of)
+            solution, length = group.solved(known.type_of), group.length(known.type_of)
         except NoInverseError:
             continue
         _say(known, first, solution.place, solution.value, loops)
-        known.beside[id(first)] = Beside(first, "wire", (), ((text.too_many, words.OTHER_PARTS),))
+        if length is not None:
+            known.learn(Len(path_of(solution.place)), Literal(length, first.span), loops)
+        if group.refused:
+            known.beside[id(first)] = Beside(first, "wire", (), group.refused)
         known.beside.update({id(rule): Beside(rule, "holder", ()) for rule, _ in others})
-        done |= {id(rule) for rule, _ in text.relations}
-    return done
-
-
-def _frames(known: Knowledge, relations: list[tuple[Relation, Loops]], is_assigned: Callable[[Field], bool]) -> set[int]:
-    """Relations to the signals of a frame set it together; gives the relations for which that is so."""
-    done: set[int] = set()
-    for frame in frames_of(relations):
-        (first, loops), *others = frame.relations
-        if any(map(is_assigned, fields_in(frame.bytes))):
-            continue
-        try:
-            solution = frame.solved(known.type_of)
-        except NoInverseError:
-            continue
-        _say(known, first, solution.place, solution.value, loops)
-        known.learn(Len(path_of(solution.place)), Literal(frame.size(known.type_of), first.span), loops)
-        known.beside.update({id(rule): Beside(rule, "holder", ()) for rule, _ in others})
-        done |= {id(rule) for rule, _ in frame.relations}
-    return done
-
-
-def _images(known: Knowledge, relations: list[tuple[Relation, Loops]], is_assigned: Callable[[Field], bool]) -> set[int]:
-    """A relation that decompresses an image sets it, with those to its measures; gives the relations for which that is so."""
-    done: set[int] = set()
-    for image in images_of(relations):
-        first, loops = image.pixels
-        if any(map(is_assigned, fields_in(first.value))):
-            continue
-        try:
-            solution = image.solved(known.type_of)
-        except NoInverseError:
-            continue
-        _say(known, first, solution.place, solution.value, loops)
-        known.beside.update({id(rule): Beside(rule, "holder", ()) for rule, _ in image.measures})
-        done |= {id(rule) for rule, _ in (image.pixels, *image.measures)}
+        done |= {id(rule) for rule, _ in group.relations}
     return done
 
 

@@ -20,19 +20,17 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.language.both_ways.inverse import TypeOf
-    from rosetta_jit.language.both_ways.knowledge import Loops
+    from rosetta_jit.language.both_ways.together import Related
     from rosetta_jit.language.signal_bits import Signal
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Rule
-
-Related = tuple[Relation, "Loops"]
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
     """Bytes, and the relations to the signals in them."""
 
-    bytes: Expr
+    whole: Expr
     relations: tuple[Related, ...]
 
     def solved(self, type_of: TypeOf) -> Solution:
@@ -42,28 +40,33 @@ class Frame:
         ------
         NoInverseError
         """
-        size = self.size(type_of)
-        arguments: list[Expr] = [Literal(size, self.bytes.span)]
+        size = self.length(type_of)
+        arguments: list[Expr] = [Literal(size, self.whole.span)]
         for rule, _ in self.relations:
             call = signal_in(rule)
             assert call is not None
             arguments += [call.arguments[1], _number(rule, call, type_of)]
-        return solve(self.bytes, Call("signal_bytes", tuple(arguments), self.bytes.span), type_of)
+        return solve(self.whole, Call("signal_bytes", tuple(arguments), self.whole.span), type_of)
 
-    def size(self, type_of: TypeOf) -> int:
+    def length(self, type_of: TypeOf) -> int:
         """How many bytes the frame has.
 
         Raises
         ------
         NoInverseError
         """
-        type_ = type_of(self.bytes)
+        type_ = type_of(self.whole)
         length = type_.length if isinstance(type_, Array | Bytes) else None
         signals = [_signal(call) for rule, _ in self.relations if (call := signal_in(rule)) is not None]
         known = [each.size for each in signals if each is not None]
         if len(known) < len(self.relations):
-            raise NoInverseError(self.bytes, "its signals are not known")
+            raise NoInverseError(self.whole, "its signals are not known")
         return length if isinstance(length, int) else max(known)
+
+    @property
+    def refused(self) -> tuple[tuple[Expr, str], ...]:
+        """None: packing gives every message back."""
+        return ()
 
 
 def frames_of(relations: list[Related]) -> list[Frame]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.both_ways.inverse import Solution, fields_in, solve
 from rosetta_jit.language.both_ways.inverse_parts import separates, until
 from rosetta_jit.model.expr import Binary, Call, Literal
@@ -16,18 +17,16 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf
-    from rosetta_jit.language.both_ways.knowledge import Loops
+    from rosetta_jit.language.both_ways.together import Related
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Relation
-
-Related = tuple["Relation", "Loops"]
 
 
 @dataclass(frozen=True, slots=True)
 class NumbersOfText:
     """A text, and the relations to the numbers in it, by their place."""
 
-    text: Expr
+    whole: Expr
     separator: Literal
     relations: tuple[Related, ...]
 
@@ -45,13 +44,18 @@ class NumbersOfText:
             spelt = until(rule.value, rule.place, call, type_of)
             whole = spelt if whole is None else Binary("+", Binary("+", whole, self.separator, rule.span), spelt, rule.span)
         assert whole is not None
-        return solve(self.text, whole, type_of)
+        return solve(self.whole, whole, type_of)
+
+    def length(self, type_of: TypeOf) -> None:
+        """Not known: it is that of the numbers as they are written."""
+        del type_of
 
     @property
-    def too_many(self) -> Expr:
-        """That a text has other numbers of parts than relations."""
-        span = self.text.span
-        return Binary("!=", Call("parts", (self.text, self.separator), span), Literal(len(self.relations), span), span)
+    def refused(self) -> tuple[tuple[Expr, str], ...]:
+        """A text that has another number of parts than relations."""
+        span = self.whole.span
+        parts_ = Call("parts", (self.whole, self.separator), span)
+        return ((Binary("!=", parts_, Literal(len(self.relations), span), span), words.OTHER_PARTS),)
 
 
 def numbers_of_texts(relations: list[Related]) -> list[NumbersOfText]:
