@@ -246,32 +246,28 @@ def size_of_varint(writer: Writer, value: Expr, where: Where) -> Local:
 
 def _write(writer: Writer) -> Contract:
     """One byte is the common case, here as in reading, and two are the next."""
-    at, value = writer.parameter("at", "i64"), writer.parameter("value", "u64")
-    after = writer.var("next", at)
-    with writer.nested() as one:
-        writer.position = at
-        writer.store(Convert("u8", value), MESSAGE)
-        writer.assign(after, writer.position)
-    with writer.nested() as several:
-        (behind,) = writer.call("write_two_bytes", _write_two, (at, value), MESSAGE)
-        writer.assign(after, behind)
-    writer.emit(If(Compare("lt", value, ONE_BYTE), block(one), block(several)))
-    return Contract((at, value), (after,), writer.within(at), writer.behind(at, after))
+    return _write_short(writer, 1, "write_two_bytes", _write_two)
 
 
 def _write_two(writer: Writer) -> Contract:
     """A varint of two bytes, or of more."""
+    return _write_short(writer, 2, "write_long_varint", _write_long)
+
+
+def _write_short(writer: Writer, size: int, longer: str, write_longer: Callable[[Writer], Contract]) -> Contract:
+    """A varint of so many bytes, or what another routine writes."""
     at, value = writer.parameter("at", "i64"), writer.parameter("value", "u64")
     after = writer.var("next", at)
-    with writer.nested() as two:
+    with writer.nested() as short:
         writer.position = at
-        writer.store(Convert("u8", Binary("or", value, Const("u64", 128))), MESSAGE)
-        writer.store(Convert("u8", Binary("shr", value, Const("u64", 7))), MESSAGE)
+        for number in range(size):
+            rest = Binary("shr", value, Const("u64", 7 * number)) if number else value
+            writer.store(Convert("u8", rest if number == size - 1 else Binary("or", rest, Const("u64", 128))), MESSAGE)
         writer.assign(after, writer.position)
-    with writer.nested() as more:
-        (behind,) = writer.call("write_long_varint", _write_long, (at, value), MESSAGE)
+    with writer.nested() as several:
+        (behind,) = writer.call(longer, write_longer, (at, value), MESSAGE)
         writer.assign(after, behind)
-    writer.emit(If(Compare("lt", value, TWO_BYTES), block(two), block(more)))
+    writer.emit(If(Compare("lt", value, Const("u64", 1 << 7 * size)), block(short), block(several)))
     return Contract((at, value), (after,), writer.within(at), writer.behind(at, after))
 
 
