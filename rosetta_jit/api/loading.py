@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.api import cacheable as certainty
+from rosetta_jit.kernel.entries import HOST, ON_DEMAND
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.cache.kernels import Cache
 from rosetta_jit.runtime.cache.names import entry_name, request_name
 from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.allowed import ForeignCodeError
+from rosetta_jit.runtime.on_demand import Place
 from rosetta_jit.startup.garbage import seldom_collected
 
 if TYPE_CHECKING:
@@ -81,10 +83,17 @@ def _compiled(build: Any, cache: Cache, link: Callable[[Mapping[str, Any], bytes
     image = build.image()
     doubts = (*doubts, *certainty.doubts_of_compiled(build.called, addressing))
     certainty.note(build.request, cache, doubts)
+    header = {**build.header, "name": entry_name(build.text)}
     if name is None or doubts:
-        return link(build.header, image)
+        return link(header, image)
     cache.put(name, build.header, image)
-    return _answered(build, cache, name, link(build.header, image))
+    return _answered(build, cache, name, link(header, image))
+
+
+def is_as_before(request: Any, name: str, build_of: Callable[[Any], Any]) -> bool:
+    """Whether a program of this name would answer a request now: none of the files that it depends on has changed."""
+    known = Cache.default().get_manifest(request_name(request.key())) if request.is_identified() else None
+    return (known or entry_name(build_of(request).text)) == name
 
 
 def _answered(build: Any, cache: Cache, name: str, loaded: Linked) -> Linked:
@@ -101,21 +110,27 @@ def _shared(name: str, cache: Cache, link: Callable[[Mapping[str, Any], bytes], 
     if entry is None:
         raise KeyError(name)
     try:
-        return link(entry.header, entry.image)
+        return link({**entry.header, "name": name}, entry.image)
     except ForeignCodeError as error:
         _warn(str(error))
         raise KeyError(name) from error
 
 
-def library(image: bytes, symbols: Sequence[str], called: Sequence[str]) -> native.Library:
-    """The code, with the functions of ours that it calls."""
-    if not called:
-        return native.load(image, symbols)
+def library(image: bytes, symbols: Sequence[str], called: Sequence[str], *, leaves_rare_of: str = "") -> native.Library:
+    """The code, with the functions of ours that it calls, and the place for another program if the one so named leaves it rare messages."""
+    wanted = (*symbols, HOST) if called else symbols
+    prepare = partial(_host_functions, called) if called else len
+    if not leaves_rare_of:
+        return native.load(image, wanted, prepare)
+    return native.load(image, (*wanted, ON_DEMAND), lambda addresses: Place(addresses[ON_DEMAND], prepare(addresses)), leaves_rare_of)
+
+
+def _host_functions(called: Sequence[str], addresses: Mapping[str, int]) -> object:
+    """Give code the functions of ours that it calls."""
     from rosetta_jit.runtime.code.host_table import fill
     from rosetta_jit.runtime.images import image_functions
 
-    functions = image_functions()
-    return native.load(image, (*symbols, "host"), lambda addresses: fill(addresses["host"], called, functions))
+    return fill(addresses[HOST], called, image_functions())
 
 
 def interpreted_kernel(build: Any, number: int) -> run.Run:

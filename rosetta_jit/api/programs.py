@@ -6,8 +6,10 @@ import os
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self, Unpack
 
-from rosetta_jit.api.loading import answer, interpreted_kernel, library, sites_of
+from rosetta_jit.api.loading import answer, interpreted_kernel, is_as_before, library, sites_of
 from rosetta_jit.api.options import request_of, type_request
+from rosetta_jit.catalogue.pipeline import changed_since
+from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.base import manners_of
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.model.serial import to_plain
@@ -19,6 +21,7 @@ from rosetta_jit.runtime.decoder import DecoderBase
 from rosetta_jit.runtime.encoder import EncoderBase
 from rosetta_jit.runtime.holder import holder_class_of
 from rosetta_jit.runtime.looks.described import DescribedProgram
+from rosetta_jit.runtime.on_demand import OnDemand
 from rosetta_jit.runtime.program import Loaded
 from rosetta_jit.runtime.registers import Kept
 from rosetta_jit.startup.cached import cached_property
@@ -69,7 +72,7 @@ class _Made:
 
     def stage(self, stage: StageName | str) -> str:
         """What the program became, as text: ``model``, ``codec``, ``kernel``, ``python``, ``llvm`` or ``asm``."""
-        return _build(self._request).stage(stage)
+        return _build_compiled(self._request).stage(stage)
 
     def __repr__(self) -> str:
         request, holder = self._request, self.holder_type.family_.struct.name
@@ -138,6 +141,14 @@ class Decoder(_Made, DecoderBase):
         program = Program(sites_of(build.header, 0), build.header["limit"], tell, self._untell)
         return callable_kernel(build.kernels[0], self.holder_type.family_, program)
 
+    def _other(self, on_demand: OnDemand) -> Loaded:
+        other = None
+        if is_as_before(self._request, on_demand.name, _build_compiled):
+            other = _loaded(replace(self._request, byte_order=on_demand.byte_order))
+        if other is None or other.holder_type is not self._loaded.holder_type:
+            raise SchemaError((changed_since(on_demand.byte_order),))
+        return other
+
     def _make(self, request: Request, beside: Self | None = None) -> None:
         """Become the program that answers a request; ``beside`` is one for another wire of the same mapping."""
         self._request = request
@@ -184,15 +195,23 @@ def _build(request: Request) -> Build:
     return Build(request)
 
 
+def _build_compiled(request: Request) -> Build:
+    """The same as it is compiled: messages that hardly ever come are left to another program."""
+    imported("rosetta_jit.pipeline.build")
+    from rosetta_jit.pipeline.build import Build
+
+    return Build(request, leaves_rare=True)
+
+
 def _loaded(request: Request) -> Loaded:
     """The program that answers a request."""
-    return answer(request, request.backend, _build, _linked, _interpreted)
+    return answer(request, request.backend, _build_compiled, _linked, _interpreted)
 
 
 def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
     """A program from its object code."""
     holder_type = _holder_type(header)
-    code = library(image, SYMBOLS[header["entry"]], header["host"])
+    code = library(image, SYMBOLS[header["entry"]], header["host"], leaves_rare_of=header["name"] if header["rare"] else "")
     size = run.native_run(code["size"]) if header["entry"] == "encode" else None
     return Loaded(
         holder_type=holder_type,
@@ -205,6 +224,7 @@ def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
         told=header["told"],
         limit=header["limit"],
         state=Kept.of(header["state"]),
+        on_demand=OnDemand.of(header, code),
         **_wires(header),
     )
 

@@ -115,7 +115,9 @@ def _is_mapping(name: str) -> bool:
 def _made(request: Request) -> tuple[Warmed, ...]:
     started = time.perf_counter()
     try:
-        program_of(request)
+        program = program_of(request)
+        if request.direction == "decode":
+            program.complete_()
     except ReportError as error:
         match error.diagnostics[0].code:
             case "no-rules":

@@ -58,6 +58,12 @@ def unknown_byte_order(name: str) -> Diagnostic:
     return Diagnostic("error", "unknown-byte-order", f"there is no byte order `{name}`", help="it is little or big")
 
 
+def changed_since(byte_order: str) -> Diagnostic:
+    """A program is to be compiled for the first message of another byte order, and files have changed since the decoder was made."""
+    message = f"this is the first {byte_order}-endian message, and the files that its decoder was made from have changed since"
+    return Diagnostic("error", "changed-since", message, help="make the decoder anew")
+
+
 def unknown_backend(name: str, known: Sequence[str]) -> Diagnostic:
     """A backend that does not exist."""
     return Diagnostic("error", "unknown-backend", f"there is no backend `{name}`", help=f"there are {', '.join(known)}")

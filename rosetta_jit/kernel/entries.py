@@ -13,3 +13,6 @@ SYMBOLS: dict[EntryName, tuple[str, ...]] = {
     "bridge": ("kernel", "size", "write", "call", "many"),
 }
 """By entry, what the object code defines for others; everything else in it is private."""
+
+HOST, ON_DEMAND = "host", "on_demand"
+"""What it defines besides, where it has that: the table of the host's functions, and the place for a kernel that is made on demand."""

@@ -1,6 +1,7 @@
 r"""The kernel: one small typed function from a message to a holder, or back. This page is its grammar and its meaning.
 
-    Kernel = name, direction, strides of the lanes, how many are hidden, Routine*, Body+, Site*, how many registers, kept lanes
+    Kernel = name, direction, strides of the lanes, how many are hidden, Routine*, Body+, Site*, how many registers, kept lanes,
+             whether another kernel goes on
     Body   = Stmt*                                        an attempt; the first that succeeds is the result
     Stmt   = Require(at, size) | Expect(condition) | Let(name, value) | Var(name, value) | Assign(name, value)
            | Store(at, value) | SetField(place, value) | Reserve(lane, count) | Advance(lane, count)
@@ -508,9 +509,9 @@ class Routine:
 class Kernel:
     """``sites[0]`` stands for a lane that must grow, so that real sites count from 1. The last ``hidden`` lanes are hidden ones.
 
-    ``registers`` is how many its program has at least. ``rare`` bodies, the last ones, are for messages that hardly ever come: whoever
-    compiles them takes no time for their speed. ``kept`` are the lanes whose rows stay when a message is decoded into row 0; none
-    unless the message is one of several that fill the holder, and then lane 0 is one of them.
+    ``registers`` is how many its program has at least. ``kept`` are the lanes whose rows stay when a message is decoded into row 0; none
+    unless the message is one of several that fill the holder, and then lane 0 is one of them. Where all bodies of a kernel that ``goes_on``
+    have failed, another kernel may handle the message.
     """
 
     name: str
@@ -521,15 +522,10 @@ class Kernel:
     routines: tuple[Routine, ...] = ()
     hidden: int = 0
     registers: int = 0
-    rare: int = 0
     kept: tuple[int, ...] = ()
+    goes_on: bool = False
 
     @property
     def lanes(self) -> int:
         """How many lanes are the holder's."""
         return len(self.strides) - self.hidden
-
-    @property
-    def usual(self) -> tuple[Block, ...]:
-        """The bodies that are not rare."""
-        return self.bodies[: len(self.bodies) - self.rare]

@@ -52,7 +52,8 @@ def to_text(kernel: ir.Kernel) -> str:
     hidden = f", {kernel.hidden} hidden" if kernel.hidden else ""
     registers = f", {kernel.registers} registers" if kernel.registers else ""
     kept = f", keeps lanes {list(kernel.kept)}" if kernel.kept else ""
-    lines = [f"kernel {_name(kernel.name)}: {kernel.direction}, strides {list(kernel.strides)}{hidden}{registers}{kept}"]
+    goes_on = ", another kernel goes on" if kernel.goes_on else ""
+    lines = [f"kernel {_name(kernel.name)}: {kernel.direction}, strides {list(kernel.strides)}{hidden}{registers}{kept}{goes_on}"]
     for routine in kernel.routines:
         lines.extend(_routine(routine))
     for number, body in enumerate(kernel.bodies):

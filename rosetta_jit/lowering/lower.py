@@ -148,8 +148,7 @@ class _Lowering:
         bodies = tuple(self.body(writer, attempt, relate) for attempt in self.attempts)
         strides, routines = tuple(writer.strides), tuple(writer.routines.values())
         sites, hidden = tuple(writer.sites), len(strides) - own
-        rare = self.encoding.rare if self.direction == "decode" else 0
-        return Kernel(name, self.direction, strides, bodies, sites, routines, hidden, self.registers, rare, self.kept)
+        return Kernel(name, self.direction, strides, bodies, sites, routines, hidden, self.registers, self.kept)
 
     def body(self, writer: Writer, attempt: Codec, relate: Relate) -> Block:
         writer.registers = {}

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, cast, get_args
 
 from rosetta_jit.backends.installed import backend_named
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Mapping
 
     from rosetta_jit.backends.backend import Backend
+    from rosetta_jit.backends.entry.link import Options
     from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Kernel, Site
     from rosetta_jit.language.typed import Rule
@@ -55,16 +57,20 @@ if TYPE_CHECKING:
     from rosetta_jit.pipeline.request import GivenFunction
     from rosetta_jit.pipeline.stages import Made
     from rosetta_jit.source import Span
-    from rosetta_jit.wire.codec import Encoding
+    from rosetta_jit.wire.codec import Encoding, Rare
 
 
 class Build:
-    """A program in the making. Each stage is made when it is first asked for."""
+    """A program in the making. Each stage is made when it is first asked for.
 
-    def __init__(self, request: Request, references: References | None = None) -> None:
+    Its kernels handle all messages of the encoding. If it ``leaves_rare`` ones and becomes machine code, they are another program's.
+    """
+
+    def __init__(self, request: Request, references: References | None = None, *, leaves_rare: bool = False) -> None:
         self.request = request
         self.references = references
         self.sources = files_of(request)
+        self._leaves_rare = leaves_rare and request.direction == "decode"
 
     def referring(self, references: References) -> Build:
         """The same, with bytes left in the message."""
@@ -102,6 +108,12 @@ class Build:
         if self.request.direction == "encode" and encoding.written is None:
             raise report(self.request, words.ambiguous_encoding(name, tuple(each for each in framework.encodings if each != name)))
         return encoding
+
+    @property
+    def rare(self) -> Rare | None:
+        """The messages that are left to another program, which is made when the first of them comes."""
+        is_compiled = not self.backend.runner and not self.backend.types_kernels
+        return self.encoding.rare if self._leaves_rare and is_compiled else None
 
     @cached_property
     def layout(self) -> Layout:
@@ -142,12 +154,12 @@ class Build:
         types, request = self.types, self.request
         mapped = None if types.rules is None else self._mapped(types.rules)
         borrow = request.borrow or self.references is not None
+        encoding, goes_on = (self.encoding, False) if self.rare is None else (self.encoding.usual, True)
         try:
-            return lower(
-                self.encoding, self.layout, direction, name=types.wire.name, mapped=mapped, borrow=borrow, references=self.references
-            )
+            kernel = lower(encoding, self.layout, direction, name=types.wire.name, mapped=mapped, borrow=borrow, references=self.references)
         except TooManyStatementsError as error:
             raise report(self.request, words.too_many_statements(self._span, str(error))) from error
+        return replace(kernel, goes_on=goes_on)
 
     @property
     def _span(self) -> Span | None:
@@ -220,7 +232,7 @@ class Build:
         kernels = [to_text(kernel) for kernel in self.kernels]
         digests = [f"{given.name} {given.identity.digest}" for given in self.called]
         holder = json.dumps(self.header["type"], sort_keys=True)
-        state = json.dumps([self.header["state"], self.wires, self.header["wire"]])
+        state = json.dumps([self.header["state"], self.wires, self.header["wire"], self.header["rare"]])
         return "\n".join([self.backend.name, self.entry, self.manners, str(self.limit), state, holder, *kernels, *digests])
 
     @cached_property
@@ -243,6 +255,7 @@ class Build:
             "limit": self.limit,
             "wires": self.wires,
             "wire": None if self.types.share is None else self.types.share.number,
+            "rare": None if self.rare is None else [self.rare.opening.hex(), self.rare.byte_order],
         }
 
     @property
@@ -268,7 +281,13 @@ class Build:
         imported("rosetta_jit.backends.entry.link")
         from rosetta_jit.backends.entry.link import compile_program
 
-        return compile_program(self.kernels, self.entry, with_numba=self.backend.types_kernels, functions=self.functions)
+        return compile_program(self.kernels, self.entry, **self.compiled_with)
+
+    @property
+    def compiled_with(self) -> Options:
+        """What the code depends on besides the kernels and the entry."""
+        opening = None if self.rare is None else self.rare.opening
+        return {"with_numba": self.backend.types_kernels, "functions": self.functions, "opening": opening}
 
     def stage(self, stage: str) -> str:
         """What the program became, as text."""

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosetta_jit.backends.backend import Backend
+    from rosetta_jit.backends.entry.link import Options
     from rosetta_jit.kernel.entries import EntryName
-    from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Kernel
     from rosetta_jit.pipeline.types import Types
     from rosetta_jit.wire.codec import Encoding
@@ -34,7 +34,7 @@ class Made(Protocol):
     @property
     def backend(self) -> Backend: ...
     @property
-    def functions(self) -> tuple[UserFunction, ...]: ...
+    def compiled_with(self) -> Options: ...
 
 
 class Stage(NamedTuple):
@@ -72,13 +72,13 @@ def _show_python(build: Made) -> str:
 def _show_llvm(build: Made) -> str:
     from rosetta_jit.backends.entry.link import llvm_text
 
-    return llvm_text(build.kernels, build.entry, with_numba=build.backend.types_kernels, functions=build.functions)
+    return llvm_text(build.kernels, build.entry, **build.compiled_with)
 
 
 def _show_assembly(build: Made) -> str:
     from rosetta_jit.backends.entry.link import assembly
 
-    return assembly(build.kernels, build.entry, with_numba=build.backend.types_kernels, functions=build.functions)
+    return assembly(build.kernels, build.entry, **build.compiled_with)
 
 
 STAGES = (

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.objects.giving import Givers
     from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.message_spans import MessageSpans
+    from rosetta_jit.runtime.on_demand import OnDemand
 
 _Object = TypeVar("_Object")
 
@@ -201,7 +202,7 @@ class DecoderBase(Program):
             raise ValueError(f'on_error is "raise", "skip" or "mask", not {on_error!r}')
         batch = self._batch(count) if into is None else into
         self._lanes_of(batch)
-        return Filling(self._loaded, batch, on_error, count, self._compiled_many)
+        return Filling(self._loaded, batch, on_error, count, self._compiled_many, self._made_for)
 
     def fill_(self, filling: Filling, data: NDArray[np.uint8], spans: MessageSpans, count: int) -> None:
         """One step, inside ``with lanes:``. Message ``i`` of all steps lies at place ``i``; there are ``count`` behind this step."""
@@ -246,9 +247,31 @@ class DecoderBase(Program):
         """One message into the first row of lanes."""
         with run.decoding():
             result = run.run_growing(self._loaded.kernel, data, 0, data.size, lanes, 0, message_limit=self._loaded.limit)
+            if result < 0 and self._made_for(data, 0, data.size):
+                result = run.run_growing(self._loaded.kernel, data, 0, data.size, lanes, 0, message_limit=self._loaded.limit)
         if result < 0:
-            raise run.decode_error(self._loaded.sites[-1 - result], lanes, 0, data.size)
+            raise run.decode_error(self._loaded.site(result), lanes, 0, data.size)
         self._need(roomier(self._plan, lanes))
+
+    def _made_for(self, data: NDArray[np.uint8], begin: int, end: int) -> bool:
+        """Where a message has failed, whether the program that it is left to was made now, for this message."""
+        on_demand = self._loaded.on_demand
+        if on_demand is None or not on_demand.is_awaited(data, begin, end):
+            return False
+        self.complete_()
+        return True
+
+    def complete_(self) -> None:
+        """Make the program now that is made on demand, if there is one."""
+        on_demand = self._loaded.on_demand
+        if on_demand is not None and on_demand.place.sites is None:
+            other = self._other(on_demand)
+            assert other.library is not None, "it is compiled, as this one is"
+            on_demand.place.take(other.library, other.sites)
+
+    def _other(self, on_demand: OnDemand) -> Loaded:
+        """The program that some messages are left to. Who makes programs makes it."""
+        raise NotImplementedError
 
     def _join(self, data: NDArray[np.uint8], holder: Holder, wire: int) -> None:
         """One message into its part of a holder."""

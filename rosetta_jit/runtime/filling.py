@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.program import Loaded
 
 OnError = Literal["raise", "skip", "mask"]
+MadeFor: TypeAlias = "Callable[[NDArray[np.uint8], int, int], bool]"
+"""Whether what a message of a buffer is left to was made now: it is tried again."""
 
 
 class Filling:
@@ -39,9 +41,11 @@ class Filling:
         How many there are going to be, as far as is known: lanes that grow get room for the rest, too.
     """
 
-    def __init__(self, loaded: Loaded, batch: Batch, on_error: OnError, expected: int, compiled: Callable[..., int] | None) -> None:
+    def __init__(
+        self, loaded: Loaded, batch: Batch, on_error: OnError, expected: int, compiled: Callable[..., int] | None, made_for: MadeFor
+    ) -> None:
         self.batch, self.count, self.expected = batch, 0, expected
-        self._loaded, self._on_error, self._compiled = loaded, on_error, compiled
+        self._loaded, self._on_error, self._compiled, self._made_for = loaded, on_error, compiled, made_for
 
     def begin(self) -> None:
         """Forget what the batch holds."""
@@ -89,8 +93,10 @@ class Filling:
         return batch
 
     def _unstuck(self, lanes: Lanes, data: NDArray[np.uint8], spans: MessageSpans, done: int) -> Exception | None:
-        """Make the room that was missing, if it was that; otherwise what is wrong with the message."""
+        """Make the room or the program that was missing, if it was that; otherwise what is wrong with the message."""
         result = run.result_of(lanes)
+        if result < run.GROW and self._made_for(data, *spans.span(done)):
+            return None
         if result != run.GROW:
             return self._error(result, data, spans, done)
         try:
@@ -120,7 +126,7 @@ class Filling:
     def _error(self, result: int, data: NDArray[np.uint8], spans: MessageSpans, done: int) -> Exception:
         if result == 0:
             return spans.broken(done, data.size)
-        error = run.decode_error(self._loaded.sites[-1 - result], self.batch.lanes, *spans.span(done))
+        error = run.decode_error(self._loaded.site(result), self.batch.lanes, *spans.span(done))
         return DecodeError(error.kind, f"[{done}]{error.path}", error.detail, error.offset)
 
 

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.message_spans import MessageSpans
+    from rosetta_jit.runtime.on_demand import OnDemand
     from rosetta_jit.runtime.plan import Plan
     from rosetta_jit.runtime.registers import Registers
 
@@ -70,6 +71,8 @@ class Loaded:
         The names of the mapping's wires, where it has several.
     wire
         Of a decoder, the number of the one among them whose messages it reads; None where messages fill the whole holder.
+    on_demand
+        The program for messages that hardly ever come; None where this one handles all.
     """
 
     holder_type: type[Holder]
@@ -84,6 +87,16 @@ class Loaded:
     state: Kept = NOTHING_KEPT
     wires: tuple[str, ...] = ()
     wire: int | None = None
+    on_demand: OnDemand | None = None
+
+    def site(self, result: int) -> run.Site:
+        """Where a message has failed, by what the kernel gave: behind its own sites are those of the program that is made on demand."""
+        number = -1 - result
+        if number < len(self.sites):
+            return self.sites[number]
+        others = None if self.on_demand is None else self.on_demand.place.sites
+        assert others is not None, "it has run"
+        return others[number - len(self.sites)]
 
 
 def entry_of(library: Library | None, state: Kept) -> int | None:

@@ -10,7 +10,7 @@ a `Tagged` field. The path () is that element itself. What decoding and encoding
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.startup.dataclass import dataclass
@@ -337,6 +337,14 @@ class Ending:
 
 
 @dataclass(frozen=True, slots=True)
+class Rare:
+    """Messages that hardly ever come: they begin with ``opening``, as no others do. A program for ``byte_order`` reads them alone."""
+
+    opening: bytes
+    byte_order: Literal["little", "big"]
+
+
+@dataclass(frozen=True, slots=True)
 class Encoding:
     """All that a wire is for one type.
 
@@ -344,7 +352,7 @@ class Encoding:
     ``recursive`` are the messages of recursive structs; where the message is not `Tagged`, ``nested`` are their codecs, for each attempt.
     ``origin`` is where alignment counts from, in bytes behind the begin of the message. At its end there is what ``ending`` says, and
     ``spare`` bytes may be left over. Of the leniency ``trailing`` of the encoding, so many could: ``forgivable``, 0 where it has none.
-    The last ``rare`` attempts are for messages that hardly ever come.
+    The last attempt is for messages that hardly ever come, if there is ``rare``.
     """
 
     name: str
@@ -356,4 +364,9 @@ class Encoding:
     ending: Ending | None = None
     spare: int = 0
     forgivable: int = 0
-    rare: int = 0
+    rare: Rare | None = None
+
+    @property
+    def usual(self) -> Encoding:
+        """The encoding without what hardly ever comes."""
+        return self if self.rare is None else replace(self, attempts=self.attempts[:-1], nested=self.nested[:-1], rare=None)

@@ -424,6 +424,6 @@ PASSED = {
         (ROW_EXISTS, need(BEGIN, 24), *(Store(add(BEGIN, 8 * at), Get("i64", Place(0, ROW, 8 * at))) for at in range(3)), Return(BEGIN)),
         direction="encode",
     ),
-    "attempts, of which the last is rare": replace(kernels.ALL["attempts"], rare=1),
+    "attempts, behind which another kernel goes on": replace(kernels.ALL["attempts"], goes_on=True),
 }
 """What a pass does, or must not do."""

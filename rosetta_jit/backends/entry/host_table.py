@@ -8,15 +8,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.llvm.host import symbol
+from rosetta_jit.kernel.entries import HOST
 from rosetta_jit.kernel.shape import calls_to_host, extents_of, our_functions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rosetta_jit.kernel.ir import Kernel
-
-TABLE = "host"
-"""The symbol of the table."""
 
 FUNCTION = """
 define i32 @"{name}"(ptr %result, ptr %exception{parameters}) {{
@@ -36,10 +34,10 @@ def table_text(kernels: Sequence[Kernel]) -> str:
     names = our_functions(kernels)
     shapes = {call.function: (len(call.arguments), len(extents_of(call))) for call in calls_to_host(kernels)}
     functions = [
-        FUNCTION.format(name=symbol(name), table=TABLE, number=number, parameters=_parameters(*shapes[name]))
+        FUNCTION.format(name=symbol(name), table=HOST, number=number, parameters=_parameters(*shapes[name]))
         for number, name in enumerate(names)
     ]
-    return f"@{TABLE} = dso_local global [{len(names)} x ptr] zeroinitializer\n{''.join(functions)}"
+    return f"@{HOST} = dso_local global [{len(names)} x ptr] zeroinitializer\n{''.join(functions)}"
 
 
 def _parameters(numbers: int, extents: int) -> str:

@@ -8,8 +8,7 @@ The object exports, beside each kernel as `kernel` (and `size`, of an encoder, a
 
 A program is made of two modules. *Its own* has the kernels, and, where the first of them is short, the usual call, so that LLVM puts the
 kernel into it; a bridge's has all. *The surroundings* have the rest, which is the same for many programs: compiled once a machine, they are
-kept in the cache. Bodies of kernels for messages that hardly ever come have modules of their own, *aside*, which LLVM compiles in a tenth
-of the time, to code of twice the size.
+kept in the cache.
 """
 
 from __future__ import annotations
@@ -24,11 +23,11 @@ from typing import TYPE_CHECKING, NotRequired, TypedDict, Unpack
 
 from llvmlite import binding, ir
 
-from rosetta_jit.backends.entry.host_table import TABLE, table_text
+from rosetta_jit.backends.entry.host_table import table_text
 from rosetta_jit.backends.entry.references import references_text
 from rosetta_jit.backends.llvm import definitions, support
 from rosetta_jit.backends.llvm import function as llvm
-from rosetta_jit.kernel.entries import SYMBOLS
+from rosetta_jit.kernel.entries import HOST, ON_DEMAND, SYMBOLS
 from rosetta_jit.kernel.shape import (
     are_straight_and_compute,
     are_vast,
@@ -41,7 +40,7 @@ from rosetta_jit.kernel.shape import (
     is_short_and_straight,
     our_functions,
 )
-from rosetta_jit.kernel.state import USED, lane_word, state_words
+from rosetta_jit.kernel.state import ERROR_SITE, USED, lane_word, state_words
 from rosetta_jit.runtime.cache.texts import kept
 from rosetta_jit.runtime.code.assembler import linked, make_private, object_of, run_few_passes, run_passes, shortened, target_machine
 from rosetta_jit.runtime.code.prelink import is_prelinking, prelinked
@@ -84,12 +83,14 @@ class Options(TypedDict):
     ``with_numba`` says whether the first kernel is typed by numba on its way, unless it is large: that optimises it once more; the code
     does the same. ``functions`` are those of the user's that the kernels call; they need numba. ``references`` are, of a bridge, the lanes
     that become the message when it is decoded. ``thorough`` takes the time for LLVM's slow passes, whatever the kernels look like.
+    ``opening`` is what messages begin with that are left to another program, which is made on demand (`rosetta_jit.runtime.on_demand`).
     """
 
     with_numba: bool
     functions: NotRequired[Sequence[UserFunction]]
     references: NotRequired[Sequence[int]]
     thorough: NotRequired[bool]
+    opening: NotRequired[bytes | None]
 
 
 def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:
@@ -99,19 +100,11 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpa
     """
     if not is_prelinking():
         return object_file(kernels, entry, **options)
-    machine, texts = target_machine(hurried=are_vast(kernels)), list[str]()
-    module = linked(_own_parts(kernels, entry, options, texts))
+    machine = target_machine(hurried=are_vast(kernels))
+    module = linked(_own_parts(kernels, entry, options, whole=False))
     _optimise(module, kernels, entry, machine, options)
-    aside = [linked([text]) for text in texts]
-    images = machine.emit_object(module), *map(_hurried, aside), *_surroundings((module, *aside), kernels, entry)
-    return prelinked(*images, gives=(*SYMBOLS[entry], TABLE)) or object_file(kernels, entry, **options)
-
-
-def _hurried(module: binding.ModuleRef) -> bytes:
-    """The object file of a module whose speed does not matter."""
-    machine = target_machine(hurried=True)
-    run_few_passes(module, machine)
-    return machine.emit_object(module)
+    images = machine.emit_object(module), *_surroundings(module, kernels, entry)
+    return prelinked(*images, gives=(*SYMBOLS[entry], HOST, ON_DEMAND)) or object_file(kernels, entry, **options)
 
 
 def object_file(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:
@@ -133,7 +126,7 @@ def assembly(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Opti
 
 def optimised(kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, options: Options) -> binding.ModuleRef:
     """The whole program in one module, after one run of LLVM's passes."""
-    module = linked((*_own_parts(kernels, entry, options, None), *_surrounding_texts(kernels, entry)))
+    module = linked((*_own_parts(kernels, entry, options, whole=True), *_surrounding_texts(kernels, entry)))
     _optimise(module, kernels, entry, machine, options)
     return module
 
@@ -147,7 +140,7 @@ def _optimise(
     five times as long, are for loops over elements that become loops over vectors; those of O1 for such loops in large kernels and, with
     vectors made of statements that stand side by side, for arithmetic without loops. docs/performance.md has the figures.
     """
-    make_private(module, (*SYMBOLS[entry], TABLE))
+    make_private(module, (*SYMBOLS[entry], HOST, ON_DEMAND))
     asked = bool(options.get("functions") or options.get("thorough"))
     loops = [kernel for kernel in kernels if has_loops_for_vectors(kernel)]
     is_straight = are_straight_and_compute(kernels)
@@ -166,16 +159,16 @@ def _optimise(
 # --- parts ---------------------------------------------------------------------------------------------------------------
 
 
-def _own_parts(kernels: Sequence[Kernel], entry: EntryName, options: Options, aside: list[str] | None) -> Iterator[str]:
-    """The modules that a program's own is linked from, as LLVM text. Those ``aside`` are appended to a list.
-
-    Without such a list the program is to be one module: it has the rare bodies, and defines what it calls of `support`.
-    """
+def _own_parts(kernels: Sequence[Kernel], entry: EntryName, options: Options, *, whole: bool) -> Iterator[str]:
+    """The modules that a program's own is linked from, as LLVM text; if it is to be ``whole``, they define what they call of `support`."""
+    opening = options.get("opening")
     if options["with_numba"] and not is_large(kernels[0]) and not calls_to_host(kernels):
         yield from _typed(kernels[0])
     else:
-        yield _emitted(kernels[0], FUNCTIONS[0], aside)
-    yield from (_emitted(kernel, name, aside) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
+        yield _emitted(kernels[0], FUNCTIONS[0], whole=whole)
+    yield from (_emitted(kernel, name, whole=whole) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
+    if opening is not None:
+        yield _going_on(kernels[0], opening)
     for function in options.get("functions", ()):
         from rosetta_jit.backends.numba.user_functions import compile_function
 
@@ -187,7 +180,7 @@ def _own_parts(kernels: Sequence[Kernel], entry: EntryName, options: Options, as
     if _is_inside(kernels, entry):
         yield _usual(_entry_text(USUAL[entry], kernels), SYMBOLS[entry])
     if _has_own_many(kernels, entry):
-        yield from _own_many(kernels[0], whole=aside is None)
+        yield from _own_many(kernels[0], whole=whole)
 
 
 def _surrounding_texts(kernels: Sequence[Kernel], entry: EntryName) -> tuple[str, ...]:
@@ -214,7 +207,7 @@ def _has_own_many(kernels: Sequence[Kernel], entry: EntryName) -> bool:
 def _own_many(kernel: Kernel, *, whole: bool) -> Iterator[str]:
     """The loop over many messages, and the kernel's usual body for it."""
     module = ir.Module("first")
-    llvm.emit(module, replace(kernel, bodies=kernel.bodies[:1], rare=0), "first", whole=whole).attributes.add("alwaysinline")
+    llvm.emit(module, replace(kernel, bodies=kernel.bodies[:1], goes_on=False), "first", whole=whole).attributes.add("alwaysinline")
     yield str(module)
     words, count = state_words(kernel.lanes), kernel.registers
     used = [_copied_word(lane_word(lane, USED)) for lane in range(kernel.lanes)]
@@ -238,12 +231,12 @@ def _usual(text: str, exported: tuple[str, ...]) -> str:
     return kept("call", text, lambda: shortened(text, exported).encode()).decode()
 
 
-def _surroundings(modules: Sequence[binding.ModuleRef], kernels: Sequence[Kernel], entry: EntryName) -> Iterator[bytes]:
-    """The object files of what stands around a program's own modules."""
+def _surroundings(module: binding.ModuleRef, kernels: Sequence[Kernel], entry: EntryName) -> Iterator[bytes]:
+    """The object files of what stands around a program's own module."""
     around = _surrounding_texts(kernels, entry)
     if around:
         yield _entries(*around)
-    wanted = {each.name for module in modules for each in module.functions if each.is_declaration} & set(support.SIGNATURES)
+    wanted = {each.name for each in module.functions if each.is_declaration} & set(support.SIGNATURES)
     yield from map(_support, sorted(wanted))
 
 
@@ -257,14 +250,17 @@ def _support(name: str) -> bytes:
     return kept("support", name, lambda: object_of([definitions.text((name,))], (name,)))
 
 
-def _emitted(kernel: Kernel, name: str, aside: list[str] | None) -> str:
+def _emitted(kernel: Kernel, name: str, *, whole: bool) -> str:
     module = ir.Module(name)
-    is_split = aside is not None and kernel.rare and not calls_to_host((kernel,))  # what they call is in the program's own module
-    rare = ir.Module(f"{name}.rare") if is_split else None
-    llvm.emit(module, kernel, name, whole=aside is None, rare=rare)
-    if aside is not None and rare is not None:
-        aside.append(str(rare))
+    llvm.emit(module, kernel, name, whole=whole)
     return str(module)
+
+
+def _going_on(kernel: Kernel, opening: bytes) -> str:
+    """What a kernel calls where it has failed and another program may not."""
+    name = f"{FUNCTIONS[0]}.inside" if kernel.hidden else FUNCTIONS[0]
+    words = {"name": f"{name}.next", "size": len(opening), "bits": 8 * len(opening), "opening": int.from_bytes(opening, sys.byteorder)}
+    return Template(_template("on_demand.ll")).substitute(words, site=ERROR_SITE, sites=len(kernel.sites))
 
 
 def _typed(kernel: Kernel) -> tuple[str, str]:

@@ -37,11 +37,6 @@ def _define(function: ir.Function) -> None:
 
         utf8.define(function)
         return
-    if function.name.startswith("rosetta_swap"):
-        from rosetta_jit.backends.llvm import swap
-
-        swap.define(function)
-        return
     from rosetta_jit.backends.llvm import decimals
 
     decimals.DEFINITIONS[function.name](function)

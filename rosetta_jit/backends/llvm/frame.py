@@ -128,8 +128,8 @@ class Given:
 class Frame:
     """One body being printed. ``entry`` prints into the function's entry block, ``builder`` where the body has got to.
 
-    A routine that is printed where it is called has a frame with locals of its own, which knows its ``caller``. ``is_rare`` says that LLVM
-    will take no time for the body's speed. ``indices`` are the locals that grow with the rounds of a loop. Of a body with series (`alike`),
+    A routine that is printed where it is called has a frame with locals of its own, which knows its ``caller``.
+    ``indices`` are the locals that grow with the rounds of a loop. Of a body with series (`alike`),
     ``rows`` is an array of the used lengths of the holder's lanes, and ``given`` has the numbers of the stretch that is being printed.
     ``bases`` are addresses of rows and places in the message, by the block that has computed them.
     """
@@ -146,7 +146,6 @@ class Frame:
     emptied: frozenset[int]
     routines: Mapping[str, ir.Function | Routine]
     caller: tuple[Frame, Call] | None = None
-    is_rare: bool = False
     alike: Found = NOTHING
     given: Given | None = None
     rows: ir.Value | None = None

@@ -54,14 +54,14 @@ TINY, SHORT = 8, 24
 """Statements up to which a routine is part of its callers: if it does not loop, and if its callers are not many."""
 
 
-def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, rare: ir.Module | None = None) -> ir.Function:
+def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True) -> ir.Function:
     """Define the kernel's function in the module.
 
     The kernel must have passed `verify`: what it promises there is handed to LLVM as a fact. Unless the module is to be ``whole``, it only
-    declares the functions of `support` that the kernel calls, and rare bodies if there is a module for these.
+    declares the functions of `support` that the kernel calls. The next kernel of one that goes on is declared in any case.
     """
     function = _function(module, SIGNATURE, f"{name}.inside" if kernel.hidden else name, ARGUMENTS)
-    _attempt(function, kernel, kernel.bodies, _routines(module, kernel, name), rare)
+    _attempt(function, kernel, kernel.bodies, _routines(module, kernel, name))
     if whole:
         definitions.define(module)
     return _behind_check(module, kernel, function, name) if kernel.hidden else function
@@ -171,7 +171,6 @@ def _attempt(
     kernel: Kernel,
     bodies: Sequence[Block],
     routines: Mapping[str, ir.Function | Routine],
-    rare: ir.Module | None = None,
 ) -> None:
     """The first of the bodies, whose failures lead to the next one. What has failed so far stands in the state.
 
@@ -181,7 +180,6 @@ def _attempt(
     done, failed = _exit(entry, "done", 1), _exit(entry, "failed", 2 + _width(kernel))
     parameters, lanes, emptied = Parameters(*function.args), (kernel.strides, kernel.lanes), emptied_lanes(kernel)
     frame = Frame(function.module, entry, entry.beside(first), parameters, *lanes, {}, done, failed, emptied, routines)
-    frame.is_rare = len(bodies) <= kernel.rare
     frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
     frame.alike = found(kernel, bodies[0])
     if frame.alike:
@@ -196,31 +194,19 @@ def _attempt(
         return
     builder = ir.IRBuilder(failed.block)
     site = _record(builder, parameters.state, failed.phis, is_first=len(bodies) == len(kernel.bodies))
-    if len(bodies) == 1:
+    if len(bodies) == 1 and not kernel.goes_on:
         builder.ret(builder.sub(constant(-1), site))
-    else:
-        builder.ret(builder.call(_next_attempt(function, kernel, bodies[1:], routines, rare), function.args))
-
-
-def _next_attempt(
-    function: ir.Function,
-    kernel: Kernel,
-    bodies: Sequence[Block],
-    routines: Mapping[str, ir.Function | Routine],
-    rare: ir.Module | None,
-) -> ir.Function:
-    """A function that goes on where another one failed. It saves the registers that it uses, so that those that call it need not."""
-    following = _following(function.module, function)
-    if rare is None or len(bodies) > kernel.rare:
+        return
+    following = _following(function)
+    if len(bodies) > 1:
         following.linkage = "internal"
-        _attempt(following, kernel, bodies, routines, rare)
-    else:
-        _attempt(_following(rare, function), kernel, bodies, _routines(rare, kernel, f"{function.name}.rare"))
-    return following
+        _attempt(following, kernel, bodies[1:], routines)
+    builder.ret(builder.call(following, function.args))
 
 
-def _following(module: ir.Module, function: ir.Function) -> ir.Function:
-    following = _function(module, SIGNATURE, f"{function.name}.next", ARGUMENTS)
+def _following(function: ir.Function) -> ir.Function:
+    """A function that goes on where another one failed. It saves the registers that it uses, so that those that call it need not."""
+    following = _function(function.module, SIGNATURE, f"{function.name}.next", ARGUMENTS)
     following.attributes.add("noinline")
     following.calling_convention = "preserve_mostcc"
     return following

@@ -28,7 +28,6 @@ from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Variable, con
 from rosetta_jit.backends.llvm.host import host_called
 from rosetta_jit.backends.llvm.rounds import print_switch, rounds_of
 from rosetta_jit.backends.llvm.series import print_cases, print_series
-from rosetta_jit.backends.llvm.swap import Run, print_run, swapped, with_runs
 from rosetta_jit.kernel import ir as kernel
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
@@ -50,20 +49,17 @@ def block(frame: Frame, statements: kernel.Block) -> None:
         print_part(frame, part)
 
 
-def parts(frame: Frame, statements: kernel.Block) -> Sequence[kernel.Stmt | Series | Run]:
+def parts(frame: Frame, statements: kernel.Block) -> Sequence[kernel.Stmt | Series]:
     """What a block is printed as."""
-    found = frame.alike.parts(statements)
-    return with_runs(found) if frame.is_rare else found
+    return frame.alike.parts(statements)
 
 
-def print_part(frame: Frame, part: kernel.Stmt | Series | Run) -> None:
+def print_part(frame: Frame, part: kernel.Stmt | Series) -> None:
     """Print a part of a block, unless one before it has ended it."""
     if frame.builder.block.is_terminated:
         return
     if isinstance(part, Series):
         print_series(frame, part, block)
-    elif isinstance(part, Run):
-        print_run(frame, part)
     else:
         _statement(frame, part)
 
@@ -139,8 +135,6 @@ def _keep(frame: Frame, registers: tuple[tuple[int, kernel.Expr], ...]) -> None:
 
 def _nested(frame: Frame, statement: kernel.For | kernel.While | kernel.If | kernel.Switch) -> None:
     match statement:
-        case kernel.For() if frame.is_rare and swapped(frame, statement):
-            pass
         case kernel.For(variable, count, body):
             _for(frame, variable, expression(frame, count), body)
         case kernel.While():

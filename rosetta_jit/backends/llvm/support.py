@@ -3,7 +3,6 @@
 `rosetta_is_text(bytes, size)` says whether bytes are UTF-8. The others are about floats in decimal: `rosetta_shortest_f64` and its like
 give digits and scale as `kernel.decimals.shortest` does, `rosetta_fixed` the digits to a number of decimals, `rosetta_nearest(bytes, size,
 exponent)` the float64 nearest to the digits of a text times a power of ten, and `rosetta_digits` reads what C's `snprintf` has written.
-`rosetta_swap8(target, source, count)` and its like copy numbers of the other byte order (`swap`).
 """
 
 from __future__ import annotations
@@ -13,7 +12,6 @@ from llvmlite import ir
 from rosetta_jit.backends.llvm.frame import F64, I1, I32, I64, POINTER
 
 BOTH = ir.LiteralStructType([I64, I64])
-SWAP = ir.FunctionType(ir.VoidType(), [POINTER, POINTER, I64])
 
 SIGNATURES = {
     "rosetta_is_text": ir.FunctionType(I1, [POINTER, I64]),
@@ -22,9 +20,6 @@ SIGNATURES = {
     "rosetta_fixed": ir.FunctionType(I64, [F64, I32]),
     "rosetta_nearest": ir.FunctionType(F64, [POINTER, I64, I64]),
     "rosetta_digits": ir.FunctionType(BOTH, [POINTER]),
-    "rosetta_swap2": SWAP,
-    "rosetta_swap4": SWAP,
-    "rosetta_swap8": SWAP,
 }
 
 

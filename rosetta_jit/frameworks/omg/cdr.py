@@ -68,8 +68,15 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
         ending=_ending(name, choices),
         spare=spare,
         forgivable=PADDING_OF_PAYLOADS,
-        rare=len(attempts) - 1,  # no machine that is still built writes big-endian CDR unless told to
+        rare=wire.Rare(_opening(name, struct, ">"), "big")
+        if len(attempts) > 1
+        else None,  # no machine that is still built writes it untold
     )
+
+
+def _opening(encoding: str, struct: Struct, order: wire.Order) -> bytes:
+    """The representation identifier of a message."""
+    return bytes((0, IDENTIFIERS[encoding][_extensibility(struct)] + (order == "<")))
 
 
 def _ending(name: str, choices: Choices) -> wire.Ending | None:
@@ -100,8 +107,7 @@ class _Rules:
 
     def header(self, struct: Struct) -> tuple[wire.Codec, ...]:
         """The representation identifier, and two bytes of options, of which the `Ending` is the last."""
-        base = IDENTIFIERS[self.encoding][_extensibility(struct)]
-        return wire.Constant((), bytes((0, base + (self.order == "<")))), wire.Padding("u16", 0)
+        return wire.Constant((), _opening(self.encoding, struct, self.order)), wire.Padding("u16", 0)
 
     def aligned(self, codec: wire.Codec, size: int) -> wire.Codec:
         return wire.Seq((wire.Align(min(size, 4 if self.second else 8)), codec))

@@ -1,8 +1,8 @@
 """The Requires of a straight run become one at its front, which still knows which field each byte belongs to.
 
-As in `hoist` a check may move up across everything but a Return and what it reads. Where several bodies are attempted, the first
-Expect behind a Require is what tells their formats from each other; checks stay behind it, so that a message that is cut off is
-reported by the attempt whose format it has.
+As in `hoist` a check may move up across everything but a Return and what it reads. Where several bodies are attempted, or another kernel
+goes on, the first Expect behind a Require is what tells their formats from each other; checks stay behind it, so that a message that is cut
+off is reported by the attempt whose format it has.
 """
 
 from __future__ import annotations
@@ -66,7 +66,8 @@ class _Open:
 def merge(kernel: Kernel) -> Kernel:
     """The kernel with fewer Requires."""
     sites = list(kernel.sites)
-    bodies = tuple(_block(body, sites, is_attempt=len(kernel.bodies) > 1) for body in kernel.bodies)
+    is_attempt = kernel.goes_on or len(kernel.bodies) > 1
+    bodies = tuple(_block(body, sites, is_attempt=is_attempt) for body in kernel.bodies)
     changed = with_bodies(kernel, bodies)
     return kernel if changed is kernel else replace(changed, sites=tuple(sites))
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from operator import is_
 from typing import TYPE_CHECKING
 
@@ -79,22 +78,10 @@ def _all(kernel: Kernel, passes: tuple[Pass, ...]) -> Kernel:
     large = is_large(kernel)
     for transform in passes:
         made = results.get(transform)
-        if made is None:
+        if made is None or (not large and not all(map(is_, made.bodies, kernel.bodies))):
             kernel = results[transform] = transform(kernel)
-        # What a pass has made, and no pass has changed since, it would not change again. In large kernels later rounds find little.
-        elif not large and not all(map(is_, made.usual, kernel.usual)):
-            kernel = results[transform] = _of_usual(transform, kernel)
     verify(kernel)
     return kernel
-
-
-def _of_usual(transform: Pass, kernel: Kernel) -> Kernel:
-    """The result of a pass over the usual bodies: rare ones go through each pass once."""
-    usual = replace(kernel, bodies=kernel.usual, rare=0) if kernel.rare else kernel
-    changed = transform(usual)
-    if changed is usual or not kernel.rare:
-        return kernel if changed is usual else changed
-    return replace(changed, bodies=(*changed.bodies, *kernel.bodies[len(kernel.usual) :]), rare=kernel.rare)
 
 
 def _proven(transform: Pass, kernel: Kernel) -> Kernel:

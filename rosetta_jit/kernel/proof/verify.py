@@ -72,7 +72,7 @@ def verify(kernel: ir.Kernel, record: Record | None = None) -> None:
 def settled(kernel: ir.Kernel) -> frozenset[int]:
     """The ids of Require and Expect statements that cannot fail wherever they stand, and of Ifs that always choose their first block.
 
-    In rare bodies nobody looks for them. The kernel's shape is sound.
+    The kernel's shape is sound.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def settled(kernel: ir.Kernel) -> frozenset[int]:
     found: set[int] = set()
     needed: set[int] = set()
     routines = _proven_routines(kernel)
-    for body in kernel.usual:
+    for body in kernel.bodies:
         walk = _body(kernel, body, routines, notes=True)
         found |= walk.seen.keys()
         needed |= walk.needed

@@ -16,15 +16,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, weakref_slot=True)
 class Library:
-    """Loaded code. The addresses are good until the last reference to the library is gone; then its memory is freed."""
+    """Loaded code, and what it was ``prepared`` with. The addresses are good until the last reference to the library is gone."""
 
     addresses: Mapping[str, int]
+    prepared: object = None
 
     def __getitem__(self, symbol: str) -> int:
         return self.addresses[symbol]
 
 
-def load(image: bytes, symbols: Sequence[str], prepare: Callable[[Mapping[str, int]], object] = len) -> Library:
+def load(image: bytes, symbols: Sequence[str], prepare: Callable[[Mapping[str, int]], object] = len, program: str = "") -> Library:
     """Load code into the process, or find it there: whoever loads the same code at the same time shares it.
 
     Parameters
@@ -35,13 +36,15 @@ def load(image: bytes, symbols: Sequence[str], prepare: Callable[[Mapping[str, i
         What it defines.
     prepare
         Is given the addresses when the code is loaded, before anybody calls it; what it gives lives as long as the code.
+    program
+        The name of the only program that may share the code, where it keeps what depends on that.
 
     Raises
     ------
     ForeignCodeError
         If it is no code for this machine, wants what is not allowed, or lacks one of ``symbols``.
     """
-    key = (sha256(image).digest(), *symbols)
+    key = (sha256(image).digest(), program, *symbols)
     library = _in_use().get(key)
     if library is None:
         library = _in_use()[key] = _loaded(image, symbols, prepare)
@@ -55,9 +58,9 @@ def _loaded(image: bytes, symbols: Sequence[str], prepare: Callable[[Mapping[str
         from rosetta_jit.runtime.code import linker
 
         addresses, free = linker.link(image, symbols)
-    library = Library(addresses)
+    library = Library(addresses, prepare(addresses))
     # Not at exit: other objects may still call the code then.
-    finalize(library, _free, free, prepare(addresses)).atexit = False
+    finalize(library, _free, free, library.prepared).atexit = False
     return library
 
 

@@ -1,0 +1,86 @@
+"""Programs that are made on demand: for messages that hardly ever come, such as CDR of the other byte order, when the first of them does.
+
+The compiled kernel of a program that leaves such messages to another one looks for that one's kernel where it has failed itself
+(`backends/entry/on_demand.ll`). Until it is there, the message comes to the slow path, which makes it.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING
+
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import Literal
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rosetta_jit.runtime.code.native import Library
+    from rosetta_jit.runtime.run import Sites
+
+
+class Place:
+    """Where the code of a program looks for the other one's kernel. It lives as long as that code, and so does what it refers to.
+
+    That is the other program's code, and whatever else the program was ``prepared`` with.
+
+    Attributes
+    ----------
+    sites
+        Where the other one's kernel can fail; None until it is made.
+    """
+
+    def __init__(self, address: int, prepared: object) -> None:
+        self._kernel, self._prepared = ctypes.c_int64.from_address(address), prepared
+        self._libraries: list[Library] = []
+        self.sites: Sites | None = None
+
+    def take(self, library: Library, sites: Sites) -> None:
+        """Let the other program go on from now on. Threads may come here at once: what they have made is the same, and all of it stays."""
+        self._libraries.append(library)
+        self.sites = sites
+        self._kernel.value = library["kernel"]
+
+
+@dataclass(frozen=True, slots=True)
+class OnDemand:
+    """What a program knows of the other one.
+
+    Attributes
+    ----------
+    opening
+        What the messages begin with that are left to it, and no others.
+    byte_order
+        What it is asked for with.
+    name
+        The name of the program that leaves them, which says what it was made from.
+    """
+
+    opening: bytes
+    byte_order: Literal["little", "big"]
+    name: str
+    library: Library
+
+    @classmethod
+    def of(cls, header: Mapping[str, object], library: Library) -> OnDemand | None:
+        """From the header of a program, which has its name, too; None where it leaves no messages to another one."""
+        match header:
+            case {"rare": [str(opening), "little" | "big" as byte_order], "name": str(name)}:
+                return cls(bytes.fromhex(opening), byte_order, name, library)
+            case _:
+                return None
+
+    @property
+    def place(self) -> Place:
+        """Where the other one is found."""
+        place = self.library.prepared
+        assert isinstance(place, Place)
+        return place
+
+    def is_awaited(self, data: NDArray[np.uint8], begin: int, end: int) -> bool:
+        """Whether a message is the first one of those that are left to the other program."""
+        opening = self.opening
+        return self.place.sites is None and data[begin : min(end, begin + len(opening))].tobytes() == opening
