@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.omg import cdr_diagnostics as words
+from rosetta_jit.frameworks.omg import diagnostics as words
 from rosetta_jit.model.layout import map_entry, recursive_structs, scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass

@@ -31,13 +31,7 @@ if TYPE_CHECKING:
 
 
 def gathered(source: Source, load: Load, dialect: Dialect) -> Gathered:
-    """The definitions of a source and of all that it needs.
-
-    Raises
-    ------
-    SchemaError
-        With everything that is wrong in any of the texts.
-    """
+    """The definitions of a source and of all that it needs; raises SchemaError with everything that is wrong in any of the texts."""
     problems: list[Diagnostic] = []
     found = gather(source, load, dialect, problems)
     _refuse(problems)
@@ -45,13 +39,7 @@ def gathered(source: Source, load: Load, dialect: Dialect) -> Gathered:
 
 
 def definition_of(source: Source, dialect: Dialect) -> tree.Definition:
-    """The first definition of a message's file, by itself.
-
-    Raises
-    ------
-    SchemaError
-        With everything that is wrong in it.
-    """
+    """The first definition of a message's file, by itself; raises SchemaError with everything that is wrong in it."""
     problems: list[Diagnostic] = []
     found = sections(source, declared_in(source.name, dialect), dialect, problems)
     definitions = [read(each, dialect, problems) for each in found[:1]]

@@ -46,13 +46,7 @@ def with_messages(load: Load, dialect: Dialect, texts: Mapping[str, str] | None 
 
 
 def idl_text(definition: Definition, dialect: Dialect) -> str:
-    """A definition in IDL.
-
-    Raises
-    ------
-    SchemaError
-        It has values that IDL has no literals for.
-    """
+    """A definition in IDL; raises SchemaError where it has values that IDL has no literals for."""
     *modules, name = definition.name.split("/")
     includes = sorted({each.type.base for each in definition.fields if not each.type.builtin} - {definition.name})
     constants = "".join(_constant(each) for each in definition.constants)

@@ -114,13 +114,7 @@ def unknown(scope: Scope, type_: ir.Scalar) -> Value:
 
 
 def evaluate(scope: Scope, expr: ir.Expr) -> Typed:
-    """Type and value of an expression.
-
-    Raises
-    ------
-    UnprovenError
-        An obligation in it cannot be shown.
-    """
+    """Type and value of an expression; raises UnprovenError where an obligation in it cannot be shown."""
     match expr:
         case ir.Local(type_, name):
             found = scope.locals.get(name)

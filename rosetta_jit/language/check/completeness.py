@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.language.algebra.polynomial import Polynomial, TooComplexError, number
 from rosetta_jit.language.check.block_paths import TooManyWaysError, ways
-from rosetta_jit.language.check.cases import contradictions, contradictions_in_elements, implied
-from rosetta_jit.language.check.coverage import coverage
+from rosetta_jit.language.check.coverage import contradictions, contradictions_in_elements, coverage, implied
 from rosetta_jit.language.check.written_places import Write, enter, writes_of
 from rosetta_jit.language.limits import MAX_CHECKED_WAYS
 from rosetta_jit.language.places import field_names, places_in

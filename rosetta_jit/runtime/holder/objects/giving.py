@@ -46,13 +46,7 @@ class Givers:
         self._makers: dict[int, ByClass] = {}
 
     def fill(self, value: object, holder: Any) -> None:
-        """Give an object the values of a holder.
-
-        Raises
-        ------
-        ValuesError
-            If it lacks an attribute, or no class is known for a message in it.
-        """
+        """Give an object the values of a holder; raises ValuesError if it lacks an attribute, or no class is known for a message in it."""
         whole = self._family.wholes[type(value)]
         if whole is not None:
             whole.fill(value, holder)
@@ -252,13 +246,7 @@ class Givers:
 
 
 def _spelled(object_type: type, names: tuple[str, ...], path: str) -> str:
-    """What a class calls an attribute.
-
-    Raises
-    ------
-    ValuesError
-        If it has none: a value would be lost.
-    """
+    """What a class calls an attribute; raises ValuesError if it has none: a value would be lost."""
     own = shapes.declared(object_type)
     known = next((name for name in names if name in own or hasattr(object_type, name)), None)
     if known is None and not (shapes.has_dict(object_type) and not shapes.fields_of(object_type)):
