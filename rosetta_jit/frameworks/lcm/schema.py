@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.limits import MAX_DIGITS, MAX_DIMENSIONS, MAX_PROBLEMS
-from rosetta_jit.frameworks.lcm.scalars import BYTE, CONSTANTS, INTEGERS, PRIMITIVES
-from rosetta_jit.frameworks.lcm.shape import SIZES
+from rosetta_jit.frameworks.lcm.shape import BYTE, CONSTANTS, INTEGERS, PRIMITIVES, SIZES
 from rosetta_jit.frameworks.lcm.tree import Constant, Member, StructDeclaration, qualified
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Array, Bytes, Enum, Field, Float, Int, NamedConstant, Ref, Schema, Struct

@@ -10,7 +10,7 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.ros import diagnostics as say
-from rosetta_jit.frameworks.ros.limits import MAX_PROBLEMS
+from rosetta_jit.frameworks.ros.limits import MAX_PROBLEMS, MAX_UNIT
 from rosetta_jit.frameworks.ros.tree import Constant, Definition, Field, TypeName, Word
 from rosetta_jit.frameworks.ros.values import array_values, scalar_value, wanted
 from rosetta_jit.model.types import String
@@ -246,3 +246,18 @@ def _length(text: str) -> int | None:
 
 def _empty_bound(match: re.Match[str]) -> bool:
     return bool(match["most"]) and not match["length"]
+
+
+IN_BRACKETS = re.compile(r"\[([^,\]]+)\]")
+"""A comma makes it a range."""
+
+
+def unit_in(comment: str) -> str | None:
+    """The unit that a field's comment gives, or None: what stands in brackets, ``# start of the scan [rad]``, if nothing else does.
+
+    That is how rosidl_adapter (``parser.py``, ``process_comments``) finds the ``@unit`` of the `.idl` file that it makes. ROS 1 has no
+    such rule.
+    """
+    found = IN_BRACKETS.findall(comment)
+    unit = found[0].strip() if len(found) == 1 else ""
+    return unit if 0 < len(unit) <= MAX_UNIT and unit.isprintable() else None

@@ -11,9 +11,8 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.ros.gather import gather
 from rosetta_jit.frameworks.ros.limits import MAX_PROBLEMS
 from rosetta_jit.frameworks.ros.names import declared_in
-from rosetta_jit.frameworks.ros.reading import read
+from rosetta_jit.frameworks.ros.reading import read, unit_in
 from rosetta_jit.frameworks.ros.sections import sections
-from rosetta_jit.frameworks.ros.units import unit_in
 from rosetta_jit.model.types import Array, Bytes, Field, NamedConstant, Optional, Ref, Schema, String, Struct
 
 if TYPE_CHECKING:

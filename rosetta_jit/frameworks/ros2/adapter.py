@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.ros import definition_of
 from rosetta_jit.frameworks.ros import diagnostics as say
-from rosetta_jit.frameworks.ros.units import unit_in
+from rosetta_jit.frameworks.ros.reading import unit_in
 from rosetta_jit.source import Source
 
 if TYPE_CHECKING:

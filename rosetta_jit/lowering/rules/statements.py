@@ -16,7 +16,7 @@ from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, If, IsText, Local, W
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import binary
-from rosetta_jit.lowering.calls import lowered
+from rosetta_jit.lowering.evaluation import lowered
 from rosetta_jit.lowering.made_arrays import UINT8
 from rosetta_jit.lowering.rules.filters import filtered
 from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
