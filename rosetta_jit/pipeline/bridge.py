@@ -125,7 +125,7 @@ class BridgeBuild:
             "entry": "bridge",
             "references": list(self.references),
             "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
-            "told": asks_host(self.kernels),
+            "asks_host": asks_host(self.kernels),
             "state": kept_of(self.kernels, dict(zip(("decode.", "encode."), (half.types.state for half in self.halves), strict=True))),
             "host": our_functions(self.kernels),
             "limit": decode.limit,

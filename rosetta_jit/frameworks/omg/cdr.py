@@ -35,7 +35,7 @@ IDENTIFIERS = {
 PADDING_OF_PAYLOADS = 3
 OPTIONS = 3
 """The byte of the header whose last two bits say how many bytes of padding are behind the value (DDS-XTypes 1.3, 7.6.3.1.2)."""
-ENDINGS = {"cdr": wire.Ending(OPTIONS, untold=4), "cdr2": wire.Ending(OPTIONS, align=4)}
+ENDINGS = {"cdr": wire.Ending(OPTIONS, unstated=4), "cdr2": wire.Ending(OPTIONS, align=4)}
 """XCDR2 is written with the padding that the specification asks for; XCDR1 as ROS 2 has it, without any or with untold zeros."""
 SENTINEL = 0x7F02
 """The end of a list of parameters, which must be understood (DDS-XTypes 1.3, 7.4.1.2.1)."""
@@ -74,7 +74,7 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
 
 def _ending(name: str, choices: Choices) -> wire.Ending | None:
     ending = ENDINGS.get(name)
-    return replace(ending, align=ending.untold) if ending is not None and "padding" in choices.lenient else ending
+    return replace(ending, align=ending.unstated) if ending is not None and "padding" in choices.lenient else ending
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,8 +123,8 @@ class _Rules:
         if not struct.fields:  # rosidl gives a struct without members one, which it calls structure_needs_at_least_one_member
             return wire.Padding("u8", 0)
         union = next((each.type for each in struct.fields if isinstance(each.type, Union) and each.type.discriminator), None)
-        told = () if union is None else (union.discriminator,)
-        return wire.Seq(tuple(self.field(each, path, struct) for each in struct.fields if each.name not in told))
+        discriminators = () if union is None else (union.discriminator,)
+        return wire.Seq(tuple(self.field(each, path, struct) for each in struct.fields if each.name not in discriminators))
 
     def field(self, field: Field, path: wire.Path, struct: Struct) -> wire.Codec:
         own = (*path, field.name)

@@ -139,7 +139,7 @@ def evaluate(scope: Scope, expr: ir.Expr) -> Typed:
             check_lane(scope, lane)
             return "i64", (scope.used if isinstance(expr, ir.Used) else scope.capacity)[lane]
         case ir.HostValue(what) | ir.Register(what):
-            kind = "told" if isinstance(expr, ir.HostValue) else "register"
+            kind = "host" if isinstance(expr, ir.HostValue) else "register"
             return "i64", scope.facts.named((kind, what), *limits("i64"))
         case ir.Unary():
             return _unary(scope, expr)

@@ -87,15 +87,15 @@ def _has_defaults(struct: Struct, message: Message, depth: int = 0) -> bool:
     return False
 
 
-def has_array(type_: Type, schema: Schema, *, told: bool, seen: frozenset[str] = frozenset()) -> bool:
-    """Whether there are always elements in a type: as many as other fields have ``told``, or as the type fixes."""
+def has_array(type_: Type, schema: Schema, *, counted: bool, seen: frozenset[str] = frozenset()) -> bool:
+    """Whether there are always elements in a type: as many as other fields have ``counted``, or as the type fixes."""
     match schema.resolve(type_):
         case Array(length=length, element=element):
-            return length is not None and (isinstance(length, int) != told or has_array(element, schema, told=told, seen=seen))
+            return length is not None and (isinstance(length, int) != counted or has_array(element, schema, counted=counted, seen=seen))
         case Bytes(length=length):
-            return length is not None and isinstance(length, int) != told
+            return length is not None and isinstance(length, int) != counted
         case Struct(name=name, fields=fields) if name not in seen:
-            return any(has_array(field.type, schema, told=told, seen=seen | {name}) for field in fields)
+            return any(has_array(field.type, schema, counted=counted, seen=seen | {name}) for field in fields)
         case _:
             return False
 

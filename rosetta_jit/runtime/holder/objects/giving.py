@@ -218,14 +218,14 @@ class Givers:
             found = cast("Any", type(old) if old is not None else known)
             if found is None:
                 raise ValuesError(path, f"no class is known for {record.struct}: name it in `types`")
-            getters, told = shown.access_.getters, shown.access_.getters[entry.name](shown)
-            case = unions.case_of(record, choice, told)
+            getters, selector = shown.access_.getters, shown.access_.getters[entry.name](shown)
+            case = unions.case_of(record, choice, selector)
             value = None
             if case is not None:
                 value = self._value(case.node, found, shapes.annotation(found, case.name), f"{path}.{case.name}")(
                     getters[case.name](shown), None
                 )
-            return unions.made(found, told, value)
+            return unions.made(found, selector, value)
 
         return given
 
