@@ -199,7 +199,7 @@ def _loaded(header: Mapping[str, Any], kernels: tuple[run.Run, run.Run, run.Run]
         sites=tuple(sites_of(header, number) for number in range(3)),
         references=tuple(header["references"]),
         library=code,
-        told=header["told"],
+        asks_host=header["asks_host"],
         limit=header["limit"],
         state=Kept.of(header["state"]),
     )

@@ -67,13 +67,7 @@ _KNOWN = {"decode": frozenset(Options.__annotations__), "encode": frozenset(Opti
 
 
 def request_of(direction: Direction, options: Options, *, mapping: str | None = None, type_: str | None = None) -> Request:
-    """The request for a program of a mapping, or of a type.
-
-    Raises
-    ------
-    TypeError
-        There is no such option.
-    """
+    """The request for a program of a mapping, or of a type; raises TypeError where there is no such option."""
     unknown = sorted(set(options) - _KNOWN[direction])
     if unknown:
         raise TypeError(f"unknown option {unknown[0]!r}; there are {', '.join(sorted(_KNOWN[direction]))}")

@@ -137,7 +137,7 @@ class Decoder(_Made, DecoderBase):
         from rosetta_jit.in_numba.taking import Program
 
         build = _build(replace(self._request, borrow=False))
-        tell = self._tell if build.header["told"] else None
+        tell = self._tell if build.header["asks_host"] else None
         program = Program(sites_of(build.header, 0), build.header["limit"], tell, self._untell)
         return callable_kernel(build.kernels[0], self.holder_type.family_, program)
 
@@ -221,7 +221,7 @@ def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
         size_sites=sites_of(header, 1),
         library=code,
         borrow=header["entry"] == "borrow",
-        told=header["told"],
+        asks_host=header["asks_host"],
         limit=header["limit"],
         state=Kept.of(header["state"]),
         on_demand=OnDemand.of(header, code),
@@ -239,7 +239,7 @@ def _interpreted(build: Build) -> Loaded:
         size=kernels[1] if len(kernels) > 1 else None,
         size_sites=sites_of(build.header, 1),
         borrow=build.request.borrow,
-        told=build.header["told"],
+        asks_host=build.header["asks_host"],
         limit=build.header["limit"],
         state=Kept.of(build.header["state"]),
         **_wires(build.header),

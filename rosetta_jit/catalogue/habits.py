@@ -6,7 +6,7 @@ import re
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.names import shorten
+from rosetta_jit.catalogue.spelling import shorten
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping

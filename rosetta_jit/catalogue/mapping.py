@@ -6,8 +6,7 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.names import shorten
-from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.spelling import closest, shorten
 from rosetta_jit.catalogue.unexpected import instead
 from rosetta_jit.diagnostics import Diagnostic
 

@@ -1,4 +1,4 @@
-"""What somebody meant who wrote a name that there is not."""
+"""Names of the user's: what somebody meant who wrote one that there is not, and how reports show them."""
 
 from __future__ import annotations
 
@@ -28,3 +28,8 @@ def closest(name: str, known: Iterable[str]) -> str | None:
     near = get_close_matches(written, candidates, NEAR) or get_close_matches(written.casefold(), list(folded), NEAR)
     near.sort(key=lambda each: each[:1].casefold() != written[:1].casefold())
     return folded.get(written.casefold()) or (folded.get(near[0].casefold()) if near else None)
+
+
+def shorten(name: str) -> str:
+    """A name of hostile length, cut for a report."""
+    return name if len(name) <= 80 else f"{name[:77]}..."

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import re
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import habits
-from rosetta_jit.catalogue.blocks import unclosed
-from rosetta_jit.catalogue.names import shorten
-from rosetta_jit.catalogue.spelling import closest
-from rosetta_jit.catalogue.typeset import plain
+from rosetta_jit.catalogue.spelling import closest, shorten
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosetta_jit.source import Span
+
 
 STARTS_VALUE = frozenset({"START", "NAME", "QUALIFIED", "INTEGER", "REAL", "STRING", "LPAR", "LSQB"})
 COMPARISONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
@@ -200,3 +201,84 @@ def _misspelt(place: _Place) -> str:
     near = near or next((each.removesuffix(":") for each in known if len(word) > 3 and word in each), None)
     meant = next((each for each in known if near is not None and each.removesuffix(":") == near), None)
     return "" if meant is None else f"did you mean `{meant}`?"
+
+
+TOKEN = re.compile(r'"(?:\\.|[^"\\\n])*"|#[^\n]*|\.?[A-Za-z_][\w-]*')
+"""A text, a comment, a field, or a word: what may hold the words of blocks without being one."""
+
+
+def unclosed(text: str, stop: int) -> str:
+    """What to say of the block that is open at a place of a text."""
+    open_: list[tuple[str, int]] = []
+    last = ("", "")
+    for found in TOKEN.finditer(text, 0, stop):
+        word = found[0]
+        if word.startswith("#"):
+            continue
+        if word in ("for", "when") and last[1] != "reject" and not (last[0] == "reject" and last[1].startswith('"')):
+            open_.append((word, found.start()))
+        elif word == "end" and open_:
+            open_.pop()
+        last = last[1], word
+    if not open_:
+        return "every `for` and every `when` needs an `end`"
+    word, start = open_[-1]
+    before = text[text.rfind("\n", 0, start) + 1 : start].strip()
+    said = f"the `{word}` of line {text.count(chr(10), 0, start) + 1} has no `end`"
+    if word == "when" and before == "else":
+        return f"{said}: each `when` needs one, also behind `else`"
+    if word == "when" and before:
+        return f"{said}: it begins a block, for the rules behind it; elements are chosen by `where`"
+    return said
+
+
+PLAIN: Mapping[str, str] = MappingProxyType(
+    {
+        **dict.fromkeys("\u201c\u201d\u201e\u201f\u00ab\u00bb\u2018\u2019\u201a\u2033", '"'),
+        **dict.fromkeys("\u2010\u2011\u2012\u2013\u2014\u2015\u2212", "-"),
+        **dict.fromkeys("\u00d7\u00b7\u22c5\u2217\u2219", "*"),
+        **dict.fromkeys("\u00f7\u2215\u2044", "/"),
+        **dict.fromkeys("\u2194\u21d4\u27f7", "<->"),
+        **dict.fromkeys("\u2190\u2254", "="),
+        "\u2264": "<=",
+        "\u2265": ">=",
+        "\u2260": "!=",
+        "\u2227": "and",
+        "\u2228": "or",
+        "\u00ac": "not",
+        "\u03c0": "pi",
+    }
+)
+"""A character, and how the language writes it."""
+
+ROOTS_AND_POWERS: Mapping[str, str] = MappingProxyType(
+    {
+        "\u00b2": "a square is `x * x`",
+        "\u00b3": "a cube is `x * x * x`",
+        "\u221a": "a root is `sqrt(x)`",
+        "\u00b0": "`radians(x)` turns degrees into radians",
+        "\u2026": "three dots stand for nothing: write what they leave out",
+        "\u2208": "whether a value is one of several is `x == a or x == b`",
+    }
+)
+"""Characters that stand for more than a character."""
+
+UNSEEN = ("Cf", "Cc", "Zl", "Zp")
+"""Categories of characters that are not seen."""
+
+
+def plain(character: str) -> str:
+    """How to write a character that the language does not have; empty where nothing is known of it."""
+    if character.isascii():
+        return ""
+    from unicodedata import category, name, normalize  # whoever writes plain characters does not import it
+
+    if character in ROOTS_AND_POWERS:
+        return ROOTS_AND_POWERS[character]
+    code = f"U+{ord(character):04X}" + (f" {called}" if (called := name(character, "")) else "")
+    if category(character) == "Zs":
+        return f"this is {code}: write a plain blank"
+    if category(character) in UNSEEN:
+        return f"this is {code}, which is not seen: delete it"
+    known = PLAIN.get(character) or normalize("NFKC", character)
+    return f"write the plain character{'s' * (len(known) > 1)} `{known}`" if known.isascii() and known.isprintable() else ""

@@ -66,8 +66,8 @@ def _plain(mapping: str, diagnostics: tuple[Diagnostic, ...]) -> dict[str, objec
 def _summary(mapping: str, diagnostics: tuple[Diagnostic, ...]) -> str:
     """How many of each a mapping has."""
     counts = Counter(each.severity for each in diagnostics)
-    told = [f"{count} {severity}{'' if count == 1 else 's'}" for severity, count in sorted(counts.items())]
-    return f"{printable(mapping)}: {', '.join(told)}"
+    counted = [f"{count} {severity}{'' if count == 1 else 's'}" for severity, count in sorted(counts.items())]
+    return f"{printable(mapping)}: {', '.join(counted)}"
 
 
 def _diagnostics(mapping: str, encoding: str | None, framework: str | None) -> tuple[Diagnostic, ...]:

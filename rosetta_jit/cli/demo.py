@@ -27,8 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
     if missing:
         print(f"error: the demo draws with {' and '.join(missing)}: pip install 'rosetta-jit[demo]'", file=sys.stderr)
         return 1
-    from rosetta_jit.demo.play import play
-    from rosetta_jit.demo.table import table
+    from rosetta_jit.demo.play import play, table
 
     report = play(Path(arguments.output))
     print(table(report))

@@ -158,13 +158,7 @@ def channels_of(log: Log, arguments: Namespace) -> list[Channel]:
 
 
 def one_topic(log: Log, topics: list[str] | None) -> str:
-    """The topic of a command that takes one: that which is named, or the only one.
-
-    Raises
-    ------
-    LogError
-        There are several.
-    """
+    """The topic of a command that takes one: that which is named, or the only one; raises LogError where there are several."""
     from rosetta_jit.catalogue import logs as words
     from rosetta_jit.errors import LogError
 

@@ -69,13 +69,7 @@ def _print(curves: Sequence[Curve], span_ns: tuple[int, int]) -> None:
 
 
 def _draw(curves: Sequence[Curve], span_ns: tuple[int, int], output: Path, name: str) -> None:
-    """A picture with a field for each curve.
-
-    Raises
-    ------
-    MissingPackage
-        matplotlib is not installed.
-    """
+    """A picture with a field for each curve; raises MissingPackage where matplotlib is not installed."""
     from rosetta_jit.errors import MissingPackage
     from rosetta_jit.file_errors import named
     from rosetta_jit.logs.moments import shown

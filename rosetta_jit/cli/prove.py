@@ -56,7 +56,7 @@ def _judge() -> Judge:
 
 
 def _shown(found: MappingProof, *, as_json: bool, briefly: bool) -> str:
-    from rosetta_jit.explain.proof_text import as_text, summary
+    from rosetta_jit.explain.proof import as_text, summary
 
     if as_json:
         return json.dumps({**asdict(found), "proved": found.is_proved})

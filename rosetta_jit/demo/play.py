@@ -9,9 +9,10 @@ import numpy as np
 from tqdm import tqdm
 
 import rosetta_jit
-from rosetta_jit.demo.dynamic import dynamic_reader
 from rosetta_jit.demo.start import start_key, start_times_ms
 from rosetta_jit.demo.streams import Stream, load_streams
+from rosetta_jit.frameworks.yarp.bottle import read
+from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.demo.pictures import Angles, RstImage
     from rosetta_jit.runtime.holder import Holder
+
 
 DRAWN_JOINTS, DRAWN_FRAME = "left_arm_state", "cam_left"
 ROUNDS = 5
@@ -96,3 +98,39 @@ def _best_ns(decode: Callable[[bytes], object], stream: Stream) -> float:
             decode(message)
         best = min(best, (time.perf_counter_ns() - started) / len(messages))
     return best
+
+
+def dynamic_reader(dialect: str) -> Callable[[bytes], object]:
+    """A function from a message of that dialect to its tree."""
+    tags = DIALECTS[dialect]
+    return lambda message: read(message, tags)
+
+
+HEADINGS = ("recording", "dialect", "messages", "bytes", "ns a message", "dynamic ns", "ratio", "cold ms", "warm ms")
+
+
+def table(report: Report) -> str:
+    """One line a recording; cold is a first compile, warm a load from the cache in a fresh process."""
+    rows = [HEADINGS, *(_cells(played) for played in report.played)]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(HEADINGS))]
+    lines = ["  ".join(_padded(cell, width, column) for column, (cell, width) in enumerate(zip(row, widths, strict=True))) for row in rows]
+    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:]])
+
+
+def _cells(played: Played) -> tuple[str, ...]:
+    stream = played.stream
+    return (
+        stream.name,
+        stream.dialect,
+        f"{len(stream.messages):,}",
+        f"{stream.size_bytes:,}",
+        f"{played.message_ns:,.0f}",
+        f"{played.dynamic_ns:,.0f}",
+        f"{played.dynamic_ns / played.message_ns:,.0f} x",
+        f"{played.cold_ms:.1f}",
+        f"{played.warm_ms:.1f}",
+    )
+
+
+def _padded(cell: str, width: int, column: int) -> str:
+    return cell.ljust(width) if column < 2 else cell.rjust(width)

@@ -68,5 +68,5 @@ def _counted(found: Cost) -> str:
         ("", found.operations, "operation"),
         ("", found.checks, "check"),
     ]
-    told = [f"{verb} {number} {noun}{'' if number == 1 else 's'}".strip() for verb, number, noun in parts if number]
-    return ", ".join(told) or "nothing else"
+    counts = [f"{verb} {number} {noun}{'' if number == 1 else 's'}".strip() for verb, number, noun in parts if number]
+    return ", ".join(counts) or "nothing else"

@@ -12,7 +12,7 @@ from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.function import SEVERAL
 from rosetta_jit.language.functions.texts import NAMED
 from rosetta_jit.lowering.codec.fields import scalar_name
-from rosetta_jit.lowering.texts.comparison import are_bytes
+from rosetta_jit.lowering.texts.search import are_bytes
 from rosetta_jit.lowering.texts.values import chosen_text, expect, placed_of
 from rosetta_jit.lowering.texts.views import TRUE, Quoted, View, joined
 from rosetta_jit.lowering.writer import block

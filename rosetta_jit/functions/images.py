@@ -22,7 +22,7 @@ from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
 from rosetta_jit.language.functions.texts import is_bytes
 from rosetta_jit.language.image_orders import COLOURS, ORDERED
 from rosetta_jit.language.typed import INT64
-from rosetta_jit.lowering.calls import lowered
+from rosetta_jit.lowering.evaluation import lowered
 from rosetta_jit.lowering.texts.views import View, sound
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Bytes, String

@@ -6,7 +6,7 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import reductions as words
+from rosetta_jit.catalogue import functions as words
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Select
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language import typed

@@ -26,7 +26,7 @@ class Machine:
     capacities: list[int]
     used: list[int]
     routines: Mapping[str, ir.Routine]
-    told: Mapping[str, int]
+    host_values: Mapping[str, int]
     registers: tuple[int, ...]
     functions: Functions
     locals: dict[str, Value]
@@ -87,7 +87,7 @@ def _known(machine: Machine, expr: ir.Known) -> int:
         case ir.Capacity(lane):
             return machine.capacities[lane]
         case ir.HostValue(what):
-            return machine.told[what]
+            return machine.host_values[what]
         case ir.Register(number):
             return machine.registers[number]
         case _:

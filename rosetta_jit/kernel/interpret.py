@@ -153,8 +153,8 @@ def _machine(kernel: ir.Kernel, buffer: Memory, state: State, lanes: Sequence[Me
     starts_empty = kernel.direction == "decode" and row == 0
     used = [0 if starts_empty and k and k not in kernel.kept else int(state[lane_word(k, USED)]) for k in own] + [0 for _ in hidden]
     routines = {routine.name: routine for routine in kernel.routines}
-    told = {"now": int(state[NOW]), "number": int(state[NUMBER]) + row}
-    return Machine(kernel.strides, memoryview(buffer).cast("B"), views, capacities, used, routines, told, (), functions, {})
+    host_values = {"now": int(state[NOW]), "number": int(state[NUMBER]) + row}
+    return Machine(kernel.strides, memoryview(buffer).cast("B"), views, capacities, used, routines, host_values, (), functions, {})
 
 
 def _report(state: State, failed: _Failed) -> int:

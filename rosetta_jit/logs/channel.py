@@ -301,7 +301,7 @@ def _type_and_options(log: LogFile, connection: Connection, target: str | None, 
 
 def _of_fingerprint(connection: Connection, options: dict[str, Any]) -> tuple[str, tuple[str, ...]]:
     """The type of LCM's messages, and the file on the search path that declares it; empty if none has their fingerprint."""
-    from rosetta_jit.frameworks.lcm.known import type_of
+    from rosetta_jit.frameworks.lcm.idl import type_of
     from rosetta_jit.language.imports.search import Reading, SearchPath
 
     search = SearchPath.of(options.get("search_path", ()))

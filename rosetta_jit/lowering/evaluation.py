@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
+from rosetta_jit.language.function import functions
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -111,3 +112,8 @@ class Evaluation(Protocol):
     def with_local(self, name: str, number: Expr, *, afresh: bool = False) -> Evaluation:
         """The same where a loop variable has a value; ``afresh`` where what was decided may be something else for it."""
         ...
+
+
+def lowered(call: typed.Call, values: Evaluation) -> object:
+    """The kernel expression of a number; of a text, where it lies; of the parts of a text, that text and what separates them."""
+    return functions()[call.function].lower(call, values)

@@ -41,13 +41,7 @@ def to_plain(type_: types.Type, schema: types.Schema) -> Plain:
 
 
 def from_plain(plain: Plain) -> tuple[types.Type, types.Schema]:
-    """The type, and a schema of the declarations that it reaches.
-
-    Raises
-    ------
-    ValueError
-        If the data is not what `to_plain` makes.
-    """
+    """The type, and a schema of the declarations that it reaches; raises ValueError if the data is not what `to_plain` makes."""
     try:
         declared = {name: _type(each, 0) for name, each in plain["declared"].items()}
         root = _type(plain["type"], 0)

@@ -152,13 +152,7 @@ class Grammar:
         self.plain = plain
 
     def lex(self, text: str) -> Iterator[Token]:
-        """The tokens of a text, one by one.
-
-        Raises
-        ------
-        UnexpectedCharacterError
-            Where none starts.
-        """
+        """The tokens of a text, one by one; raises UnexpectedCharacterError where none starts."""
         match, ignored, words = self._pattern.match, self._ignored, self.plain["words"]
         at = 0
         while at < len(text):

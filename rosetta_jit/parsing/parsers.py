@@ -25,7 +25,7 @@ LAYOUT = "1"
 """Of the tables; part of their digest."""
 
 
-def parser_of(grammar: Path, *, start: str = "start", told: Sequence[str] = ()) -> Grammar:
+def parser_of(grammar: Path, *, start: str = "start", mistake_tokens: Sequence[str] = ()) -> Grammar:
     """The parser of a grammar.
 
     Parameters
@@ -34,17 +34,17 @@ def parser_of(grammar: Path, *, start: str = "start", told: Sequence[str] = ()) 
         A `.lark` file.
     start
         The rule of a whole text.
-    told
+    mistake_tokens
         Tokens that no rule has, and that are tokens all the same: they stand for mistakes.
     """
     text = grammar.read_text("utf-8")
     plain = _read(grammar.with_suffix(SUFFIX))
-    return Grammar(plain if plain.get("digest") == digest(text, start, told) else _made(text, start, told))
+    return Grammar(plain if plain.get("digest") == digest(text, start, mistake_tokens) else _made(text, start, mistake_tokens))
 
 
-def tables_of(grammar: Path, *, start: str = "start", told: Sequence[str] = ()) -> str:
+def tables_of(grammar: Path, *, start: str = "start", mistake_tokens: Sequence[str] = ()) -> str:
     """The text of a grammar's `.tables`; parameters as of `parser_of`."""
-    parts = _made(grammar.read_text("utf-8"), start, told).items()
+    parts = _made(grammar.read_text("utf-8"), start, mistake_tokens).items()
     return "{" + ",\n".join(f"{json.dumps(name)}: {_lines(part)}" for name, part in parts) + "}\n"
 
 
@@ -55,15 +55,15 @@ def _lines(part: object) -> str:
     return json.dumps(part)
 
 
-def digest(text: str, start: str, told: Sequence[str]) -> str:
+def digest(text: str, start: str, mistake_tokens: Sequence[str]) -> str:
     """What tables depend on."""
-    return sha256("\0".join((LAYOUT, start, *told, text)).encode()).hexdigest()
+    return sha256("\0".join((LAYOUT, start, *mistake_tokens, text)).encode()).hexdigest()
 
 
-def _made(text: str, start: str, told: Sequence[str]) -> dict[str, Any]:
+def _made(text: str, start: str, mistake_tokens: Sequence[str]) -> dict[str, Any]:
     from rosetta_jit.parsing.tables import tables_of as make
 
-    return {"digest": digest(text, start, told), **make(text, start=start, told=told)}
+    return {"digest": digest(text, start, mistake_tokens), **make(text, start=start, mistake_tokens=mistake_tokens)}
 
 
 def _read(tables: Path) -> dict[str, Any]:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from lark.grammar import Rule, Symbol, Terminal
 
 
-def tables_of(text: str, *, start: str, told: Sequence[str]) -> dict[str, Any]:
+def tables_of(text: str, *, start: str, mistake_tokens: Sequence[str]) -> dict[str, Any]:
     """The tables of a grammar.
 
     Parameters
@@ -31,10 +31,10 @@ def tables_of(text: str, *, start: str, told: Sequence[str]) -> dict[str, Any]:
         The grammar, as lark reads it.
     start
         The rule of a whole text.
-    told
+    mistake_tokens
         Tokens that no rule has, and that are tokens all the same: they stand for mistakes.
     """
-    made: Any = lark_of(text, start=start, told=told)  # lark types it in part only
+    made: Any = lark_of(text, start=start, mistake_tokens=mistake_tokens)  # lark types it in part only
     table = made.parser.parser._parse_table  # noqa: SLF001 - what lark writes into its own files, too
     rules: list[Rule] = sorted(made.rules, key=lambda rule: (rule.origin.name, rule.order))
     order = _reached(table.states, table.start_states[start])
@@ -49,9 +49,9 @@ def tables_of(text: str, *, start: str, told: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def lark_of(text: str, *, start: str, told: Sequence[str]) -> Lark:
+def lark_of(text: str, *, start: str, mistake_tokens: Sequence[str]) -> Lark:
     """Lark's own parser of the same language."""
-    postlex = _KeptTokens(told)
+    postlex = _KeptTokens(mistake_tokens)
     return Lark(text, start=start, parser="lalr", lexer="basic", postlex=postlex, propagate_positions=True, maybe_placeholders=False)
 
 

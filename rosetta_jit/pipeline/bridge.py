@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, assert_never
 
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.catalogue.wires import not_here
@@ -17,7 +17,7 @@ from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.rewrite import with_registers_behind
 from rosetta_jit.kernel.shape import asks_host, our_functions, statements
 from rosetta_jit.lowering.writer import References
-from rosetta_jit.model.same_layout import have_same_fields
+from rosetta_jit.model.layout import Layout, Members, Number, Row, Span, Variant
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref, same_name
 from rosetta_jit.pipeline.build import Build, plain_site
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Kernel
     from rosetta_jit.language.uses import Signature
+    from rosetta_jit.model.layout import Slot
     from rosetta_jit.pipeline.request import BridgeRequest, GivenFunction, Request
 
 
@@ -124,7 +125,7 @@ class BridgeBuild:
             "entry": "bridge",
             "references": list(self.references),
             "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
-            "told": asks_host(self.kernels),
+            "asks_host": asks_host(self.kernels),
             "state": kept_of(self.kernels, dict(zip(("decode.", "encode."), (half.types.state for half in self.halves), strict=True))),
             "host": our_functions(self.kernels),
             "limit": decode.limit,
@@ -182,3 +183,29 @@ def _written_lanes(kernels: tuple[Kernel, ...]) -> set[int]:
         for stmt, _ in statements(block)
         if isinstance(stmt, Reserve)
     }
+
+
+def have_same_fields(one: Layout, other: Layout) -> bool:
+    """Whether two layouts differ in the names of structs at most."""
+    return _without_names(one) == _without_names(other)
+
+
+def _without_names(layout: Layout) -> Layout:
+    lanes = tuple(replace(lane, element=_slot(lane.element)) for lane in layout.lanes)
+    return Layout(lanes, tuple((lane, "") for lane, _ in layout.recursive))
+
+
+def _slot(slot: Slot) -> Slot:
+    match slot:
+        case Number() | Span():
+            return slot
+        case Row():
+            return replace(slot, struct="", members=_members(slot.members))
+        case Variant():
+            return replace(slot, members=_members(slot.members))
+        case _:
+            assert_never(slot)
+
+
+def _members(members: Members) -> Members:
+    return Members(replace(each, slot=_slot(each.slot)) for each in members)

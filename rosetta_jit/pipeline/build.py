@@ -249,7 +249,7 @@ class Build:
             "manners": self.manners,
             "entry": self.entry,
             "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
-            "told": asks_host(self.kernels),
+            "asks_host": asks_host(self.kernels),
             "state": kept_of(self.kernels, {"": self.types.state}),
             "host": our_functions(self.kernels),
             "limit": self.limit,

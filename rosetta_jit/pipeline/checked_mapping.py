@@ -40,8 +40,8 @@ class CheckedMapping:
 
     def __repr__(self) -> str:
         count = len(self.warnings)
-        told = "no warnings" if not count else "1 warning" if count == 1 else f"{count} warnings"
-        return f"<mapping between {self.checked.holder.root.name} and {self.checked.wire.root.name}, {told}>"
+        warnings = "no warnings" if not count else "1 warning" if count == 1 else f"{count} warnings"
+        return f"<mapping between {self.checked.holder.root.name} and {self.checked.wire.root.name}, {warnings}>"
 
     def __iter__(self) -> Iterator[Diagnostic]:
         return iter(self.warnings)

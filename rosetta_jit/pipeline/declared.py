@@ -1,8 +1,9 @@
-"""The type that a request names, where no mapping does: from the files that declare it."""
+"""The type that a request names, where no mapping does: from the files that declare it, or with less than these promise."""
 
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.catalogue import pipeline as words
@@ -13,9 +14,8 @@ from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language.imports.search import Reading, SearchPath, refusal
 from rosetta_jit.language.parse.unit_file import SUFFIX
 from rosetta_jit.model.expansion import excess
-from rosetta_jit.model.relax import without_text
 from rosetta_jit.model.serial import from_plain
-from rosetta_jit.model.types import Schema, Struct, same_name
+from rosetta_jit.model.types import Array, Map, Optional, Schema, String, Struct, Union, same_name
 from rosetta_jit.pipeline.similar_types import similar_types
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.runtime.cache.kernels import digest_file
@@ -23,6 +23,7 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.model.types import Declaration, Type
     from rosetta_jit.pipeline.request import Request
     from rosetta_jit.source import Source
 
@@ -138,3 +139,30 @@ def readers_of(request: Request) -> Readers:
 def report(request: Request, diagnostic: Diagnostic) -> SchemaError | MappingError:
     """What is wrong with a request, as the error that its user expects."""
     return (MappingError if request.mapping is not None else SchemaError)((diagnostic,))
+
+
+def without_text(schema: Schema) -> Schema:
+    """The schema with strings of octets in place of UTF-8."""
+    return replace(schema, types={name: _declaration(each) for name, each in schema.types.items()})
+
+
+def _declaration(declared: Declaration) -> Declaration:
+    if not isinstance(declared, Struct):
+        return declared
+    return replace(declared, fields=tuple(replace(each, type=_type(each.type)) for each in declared.fields))
+
+
+def _type(type_: Type) -> Type:
+    match type_:
+        case String("utf-8"):
+            return replace(type_, encoding="octets")
+        case Array(element):
+            return replace(type_, element=_type(element))
+        case Optional(value):
+            return Optional(_type(value))
+        case Map(key, value):
+            return replace(type_, key=_type(key), value=_type(value))
+        case Union(_, cases):
+            return replace(type_, cases=tuple(replace(each, type=_type(each.type)) for each in cases))
+        case _:
+            return type_

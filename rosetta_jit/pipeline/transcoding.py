@@ -86,7 +86,7 @@ class TranscodingBuild:
             "entry": "bridge",
             "references": list(self.references),
             "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
-            "told": False,
+            "asks_host": False,
             "state": kept_of((), {}),
             "host": [],
             "limit": GRACE_BYTES,

@@ -59,7 +59,7 @@ class LoadedBridge:
         The lanes that become the message when it is decoded.
     library
         The compiled code, None where kernels run in Python.
-    told, limit, state
+    asks_host, limit, state
         As of `rosetta_jit.runtime.program.Loaded`.
     """
 
@@ -68,7 +68,7 @@ class LoadedBridge:
     sites: tuple[run.Sites, ...]
     references: tuple[int, ...] = ()
     library: Library | None = None
-    told: bool = False
+    asks_host: bool = False
     limit: int = 0
     state: Kept = NOTHING_KEPT
 
@@ -88,7 +88,7 @@ class BridgeBase(ProgramBase):
     def _start(self, loaded: LoadedBridge) -> None:
         if "_loaded" in vars(self):
             raise TypeError(f"this {type(self).__name__} is made already: its code may be running")
-        self._loaded, self._asks, self._registers = loaded, loaded.told, loaded.state.registers()
+        self._loaded, self._asks, self._registers = loaded, loaded.asks_host, loaded.state.registers()
         self._lanes = Lanes.of(loaded.layout)
         self._spares: list[Lanes] = []
         address = address_of(self._registers)

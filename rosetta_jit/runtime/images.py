@@ -63,13 +63,7 @@ class Measures:
 
 
 def image_functions() -> Mapping[str, Callable[..., int]]:
-    """The functions by name, with a memory of their own.
-
-    Raises
-    ------
-    MappingError
-        Pillow is not installed.
-    """
+    """The functions by name, with a memory of their own; raises MappingError where pillow is not installed."""
     if find_spec("PIL") is None:
         from rosetta_jit.catalogue.images import no_library
 

@@ -36,10 +36,9 @@ from rosetta_jit.model.initial_values import FirstCase, FixedArray
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.beginning import address_of_bytes, begin
 from rosetta_jit.runtime.cells import Array, Arrays, Cells, Memory
-from rosetta_jit.runtime.hidden import Hidden
 from rosetta_jit.runtime.limits import MAX_READINGS
 from rosetta_jit.runtime.locks import shared_lock
-from rosetta_jit.runtime.memory import ALIGNMENT, address_of, aligned, aligned_bytes
+from rosetta_jit.runtime.memory import ALIGNMENT, Hidden, address_of, aligned, aligned_bytes
 from rosetta_jit.runtime.plan import Plan, plan
 
 if TYPE_CHECKING:

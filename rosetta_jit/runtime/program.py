@@ -61,7 +61,7 @@ class Loaded:
         The compiled code, None where kernels run in Python.
     borrow
         Whether bytes fields of decoded holders are views into the message.
-    told
+    asks_host
         Whether the kernels ask for the time or the number of a message.
     limit
         How many bytes of a lane a message may ask for, whatever its own size.
@@ -82,7 +82,7 @@ class Loaded:
     size_sites: run.Sites = run.NO_SITES
     library: Library | None = None
     borrow: bool = False
-    told: bool = False
+    asks_host: bool = False
     limit: int = 0
     state: Kept = NOTHING_KEPT
     wires: tuple[str, ...] = ()
@@ -210,7 +210,7 @@ class Program(ProgramBase):
         """Become a loaded program; ``beside`` is one for another wire, with which it shares its own holder, and its state."""
         if "_loaded" in vars(self):
             raise TypeError(f"this {type(self).__name__} is made already: its code may be running")
-        self._loaded, self._asks = loaded, loaded.told
+        self._loaded, self._asks = loaded, loaded.asks_host
         if beside is None:
             made = type.__call__(loaded.holder_type)  # one holder is not worth the time to compile how classes are called
             self._registers, self._holder, self._owners = loaded.state.registers(), made, {}

@@ -70,13 +70,7 @@ def run_growing(
 
 
 def grow(lanes: Lanes) -> None:
-    """Make the room that the last run lacked.
-
-    Raises
-    ------
-    MemoryError
-        If there is none.
-    """
+    """Make the room that the last run lacked; raises MemoryError if there is none."""
     lanes.grow(*missing(lanes))
 
 

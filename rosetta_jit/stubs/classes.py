@@ -1,11 +1,14 @@
 """The text of one class: fields with units and shapes beside them, and what the manners of its framework add.
 
-Methods of a framework are inherited from the class of its manners, which is annotated itself.
+Methods of a framework are inherited from the class of its manners, which is annotated itself. A name that is no identifier of Python is
+left out, or another one takes its place.
 """
 
 from __future__ import annotations
 
+import builtins
 import inspect
+import keyword
 import re
 from itertools import accumulate, repeat
 from typing import TYPE_CHECKING, Any, cast
@@ -14,14 +17,14 @@ from rosetta_jit.model.words import escaped, field_words
 from rosetta_jit.runtime.holder import Holder
 from rosetta_jit.runtime.holder.message import OWN_NAMES
 from rosetta_jit.stubs.fields import annotation, path
-from rosetta_jit.stubs.names import is_attribute
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.record import Entry
     from rosetta_jit.stubs.fields import Shapes
+
 
 SIMPLE = (bool, int, float, str, bytes)
 OVERRIDE = "  # type: ignore  # pyright: ignore"
@@ -107,3 +110,39 @@ def _constructor(family: HolderFamily, fields: dict[str, list[str]]) -> Iterator
     star = f"*{others}: typing.Any" if inspect.Parameter.VAR_POSITIONAL in kinds else "*"
     given = "".join(f", {name}: typing.Any = ..." for name in names)
     yield f"def __init__(self, {star}{given}) -> None: ..." if names or star != "*" else "def __init__(self) -> None: ..."
+
+
+MODULES = ("builtins", "collections", "numpy", "rosetta_jit", "typing", "typing_extensions")
+"""What a stub imports."""
+
+RESERVED = frozenset({*dir(builtins), *keyword.kwlist, "Decoder", "Encoder", "decoder", "encoder", *MODULES})
+"""Names that mean something else in the text of a stub."""
+
+
+def is_attribute(name: str) -> bool:
+    """Whether an attribute of that name can be written down, and means itself: names of two underscores are changed inside classes."""
+    return name.isascii() and name.isidentifier() and not keyword.iskeyword(name) and not name.startswith("__") and name not in MODULES
+
+
+def class_names(structs: Iterable[str]) -> dict[str, str]:
+    """Identifiers for qualified names: the last part alone where no other has it."""
+    parts = {name: [re.sub(r"\W", "_", part, flags=re.ASCII) for part in _parts(name)] for name in structs}
+    short = [_safe(each[-1]) for each in parts.values()]
+    found: dict[str, str] = {}
+    for name, each in parts.items():
+        wanted = _safe(each[-1])
+        candidate = wanted if short.count(wanted) == 1 else _safe("_".join(each))
+        while candidate in found.values():
+            candidate += "_"
+        found[name] = candidate
+    return found
+
+
+def _parts(name: str) -> list[str]:
+    return [part for part in name.replace("::", "/").replace(".", "/").split("/") if part] or ["Message"]
+
+
+def _safe(name: str) -> str:
+    """An identifier that begins with a letter, and means nothing else."""
+    name = name if name[:1].isalpha() else f"v{name}"
+    return f"{name}_" if name in RESERVED else name

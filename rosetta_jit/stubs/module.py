@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.model.words import escaped
 from rosetta_jit.runtime.holder.record import Child, Items, Pairs, Record
-from rosetta_jit.stubs.classes import class_text
+from rosetta_jit.stubs.classes import class_names, class_text
 from rosetta_jit.stubs.fields import Shapes, path
-from rosetta_jit.stubs.names import class_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -325,15 +325,15 @@ Codec = (
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """Padding behind a message: the last two bits of its byte number ``told`` say how many bytes.
+    """Padding behind a message: the last two bits of its byte number ``size_byte`` say how many bytes.
 
     It is written up to a multiple of ``align`` bytes from the origin. Where these bits say that there is none, zeros up to a multiple of
-    ``untold`` bytes are read nevertheless, and what is written is not told.
+    ``unstated`` bytes are read nevertheless, and padding that is written is not stated.
     """
 
-    told: int
+    size_byte: int
     align: int = 1
-    untold: int = 1
+    unstated: int = 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,9 +20,9 @@ def show_encoding(encoding: wire.Encoding) -> str:
         lines += ["written", *_lines(encoding.written, 1)]
     if encoding.ending is not None:
         aligned = f", written up to a multiple of {encoding.ending.align} bytes" if encoding.ending.align > 1 else ""
-        lines.append(f"padding at the end, as much as the last two bits of byte {encoding.ending.told} say{aligned}")
-        if encoding.ending.untold > 1:
-            lines.append(f"or zeros up to a multiple of {encoding.ending.untold} bytes that they do not tell")
+        lines.append(f"padding at the end, as much as the last two bits of byte {encoding.ending.size_byte} say{aligned}")
+        if encoding.ending.unstated > 1:
+            lines.append(f"or zeros up to a multiple of {encoding.ending.unstated} bytes that they do not tell")
     for messages in (encoding.recursive, *encoding.nested[:1]):
         for name, each in messages.items():
             lines += [f"message {name}", *_lines(each, 1)]

@@ -9,11 +9,9 @@ import pytest
 from PIL import Image
 
 from rosetta_jit.cli import demo, main
-from rosetta_jit.demo.dynamic import dynamic_reader
 from rosetta_jit.demo.pictures import draw_frame, draw_joints
-from rosetta_jit.demo.play import Played, Report
+from rosetta_jit.demo.play import Played, Report, dynamic_reader, table
 from rosetta_jit.demo.streams import load_streams
-from rosetta_jit.demo.table import table
 
 PIXELS = np.arange(4 * 6 * 3, dtype=np.uint8).reshape(4, 6, 3)
 

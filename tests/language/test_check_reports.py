@@ -20,7 +20,6 @@ from rosetta_jit.catalogue import layouts as layouts_words
 from rosetta_jit.catalogue import mapping as mapping_words
 from rosetta_jit.catalogue import nested as nested_words
 from rosetta_jit.catalogue import number_bytes as number_bytes_words
-from rosetta_jit.catalogue import reductions as reductions_words
 from rosetta_jit.catalogue import resolve as resolve_words
 from rosetta_jit.catalogue import rest as rest_words
 from rosetta_jit.catalogue import state as state_words
@@ -69,7 +68,6 @@ CATALOGUE = (
     bind_words,
     number_bytes_words,
     groups_words,
-    reductions_words,
     checksums_words,
     wires_words,
 )

@@ -32,13 +32,13 @@ class Case:
     grammar: Path
     suffix: str
     start: str = "start"
-    told: tuple[str, ...] = ()
+    mistake_tokens: tuple[str, ...] = ()
 
     def ours(self):
-        return parsers.parser_of(self.grammar, start=self.start, told=self.told)
+        return parsers.parser_of(self.grammar, start=self.start, mistake_tokens=self.mistake_tokens)
 
     def larks(self):
-        return lark_of(self.grammar.read_text("utf-8"), start=self.start, told=self.told)
+        return lark_of(self.grammar.read_text("utf-8"), start=self.start, mistake_tokens=self.mistake_tokens)
 
     def texts(self):
         """Texts, and some that are cut off or have a sign too many."""
@@ -50,7 +50,7 @@ class Case:
 
 
 CASES = {
-    "mapping": Case(templates.GRAMMAR, ".mapping", told=templates.MISTAKES),
+    "mapping": Case(templates.GRAMMAR, ".mapping", mistake_tokens=templates.MISTAKES),
     "proto": Case(syntax.GRAMMAR, ".proto", syntax.START, syntax.MISTAKES),
     "bottle": Case(sexpr.GRAMMAR, ".bottle-schema"),
 }
@@ -64,7 +64,7 @@ def case(request):
 def test_every_grammar_has_fresh_tables(case):
     """``UPDATE_GOLDENS=1 pytest`` makes them anew after a change of a grammar."""
     tables = case.grammar.with_suffix(parsers.SUFFIX)
-    wanted = parsers.tables_of(case.grammar, start=case.start, told=case.told)
+    wanted = parsers.tables_of(case.grammar, start=case.start, mistake_tokens=case.mistake_tokens)
     if os.environ.get("UPDATE_GOLDENS"):
         tables.write_text(wanted, "utf-8")
     assert tables.read_text("utf-8") == wanted, "run with UPDATE_GOLDENS=1"
@@ -129,10 +129,10 @@ def lark_tree(tree):
 def test_a_changed_grammar_does_not_use_old_tables(case, tmp_path):
     grammar = Path(shutil.copy(case.grammar, tmp_path))
     tables = Path(shutil.copy(case.grammar.with_suffix(parsers.SUFFIX), tmp_path))
-    changed = Case(grammar, case.suffix, case.start, case.told)
+    changed = Case(grammar, case.suffix, case.start, case.mistake_tokens)
     grammar.write_text(grammar.read_text("utf-8") + "// more\n", "utf-8")
     stale = json.loads(tables.read_text("utf-8"))
-    assert changed.ours().plain == json.loads(parsers.tables_of(grammar, start=case.start, told=case.told))
+    assert changed.ours().plain == json.loads(parsers.tables_of(grammar, start=case.start, mistake_tokens=case.mistake_tokens))
     assert {**changed.ours().plain, "digest": stale["digest"]} == stale
     tables.unlink()
     assert changed.ours().plain["states"] == stale["states"]

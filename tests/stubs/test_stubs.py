@@ -12,8 +12,8 @@ import pytest
 from rosetta_jit.cli import main
 from rosetta_jit.model.types import Array, Enum, Field, Float, Int, Ref, Schema, Struct
 from rosetta_jit.runtime.holder import holder_class
+from rosetta_jit.stubs.classes import MODULES
 from rosetta_jit.stubs.module import stub
-from rosetta_jit.stubs.names import MODULES
 
 SCHEMA = """
 syntax = "proto3"; package t;

@@ -7,7 +7,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.bridge.table import rows
-from rosetta_jit.runtime.looks.png import png
+from rosetta_jit.runtime.looks.pixels import png
 
 if TYPE_CHECKING:
     from pathlib import Path

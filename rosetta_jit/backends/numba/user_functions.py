@@ -37,12 +37,7 @@ class FunctionTypeError(ValueError):
 
 
 def compile_function(declared: UserFunction) -> binding.ModuleRef:
-    """A module that defines the function under its name as one of the host.
-
-    Raises
-    ------
-    FunctionTypeError
-    """
+    """A module that defines the function under its name as one of the host; raises FunctionTypeError."""
     given: Any = declared.function
     options = {key: value for key, value in getattr(given, "targetoptions", {}).items() if key in KEPT}
     types_of_locals: Any = getattr(given, "locals", {})

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.limits import MAX_FILES, MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.reading import read
-from rosetta_jit.frameworks.lcm.scalars import PRIMITIVES
+from rosetta_jit.frameworks.lcm.shape import PRIMITIVES
 from rosetta_jit.frameworks.lcm.tree import Member, StructDeclaration, qualified
 from rosetta_jit.startup.dataclass import dataclass
 

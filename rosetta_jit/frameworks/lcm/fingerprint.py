@@ -26,13 +26,7 @@ STRUCT_SEED, ENUM_SEED = 0x12345678, 0x87654321
 
 
 def fingerprint(struct: Struct, schema: Schema) -> int:
-    """The fingerprint of a type, as an unsigned number.
-
-    Raises
-    ------
-    SchemaError
-        If structs contain each other too deep, or in too many ways.
-    """
+    """The fingerprint of a type, as an unsigned number; raises SchemaError if structs contain each other too deep, or in too many ways."""
     return _Sums(schema, recursive_structs(Ref(struct.name), schema)).of(struct.name, frozenset())
 
 

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.lcm.endless import check_endless
+from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.files import gather
-from rosetta_jit.frameworks.lcm.limits import MAX_PROBLEMS
+from rosetta_jit.frameworks.lcm.fingerprint import fingerprint
+from rosetta_jit.frameworks.lcm.limits import MAX_FILES, MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.schema import schema_of
+from rosetta_jit.model.types import Array, Ref, Struct
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
+
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.types import Schema
+    from rosetta_jit.model.types import Field, Schema, Type
     from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
@@ -46,3 +52,65 @@ def parse(source: Source, load: Load) -> Schema:
 
 def _place(problem: Diagnostic) -> tuple[str, int]:
     return ("", 0) if problem.span is None else (problem.span.source.name, problem.span.start)
+
+
+def check_endless(schema: Schema, problems: list[Diagnostic]) -> None:
+    """Report structs that contain themselves in every value, so that none ends: no array on the way back could be empty."""
+    done: set[str] = set()
+    for name in schema.types:
+        if name not in done:
+            _visit(name, schema, done, problems)
+
+
+def _visit(start: str, schema: Schema, done: set[str], problems: list[Diagnostic]) -> None:
+    """Depth first; a field that leads to a struct which is still open closes a circle."""
+    open_ = {start: _always(schema, start)}
+    while open_:
+        name, fields = next(reversed(open_.items()))
+        each = next(fields, None)
+        if each is None:
+            done.add(name)
+            del open_[name]
+            continue
+        field, target = each
+        if target in open_:
+            problems.append(say.endless(field.name, field.span, target))
+        elif target not in done:
+            open_[target] = _always(schema, target)
+
+
+def _always(schema: Schema, name: str) -> Iterator[tuple[Field, str]]:
+    """The structs that are in every value of a struct, and the fields which they are in."""
+    declared = schema.types.get(name)
+    fields = declared.fields if isinstance(declared, Struct) else ()
+    return ((field, target) for field in fields if (target := _inside(field.type)) is not None)
+
+
+def _inside(type_: Type) -> str | None:
+    while isinstance(type_, Array) and isinstance(type_.length, int) and type_.length:
+        type_ = type_.element
+    return type_.name if isinstance(type_, Ref) else None
+
+
+def type_of(wanted: int, folders: Iterable[Path], load: Load) -> tuple[str, str] | None:
+    """The type with a fingerprint, and the file that declares it, of all `.lcm` files in some folders; None if there is none.
+
+    LCM's logs tell no types, but each message begins with the fingerprint of its own.
+    """
+    seen = 0
+    for folder in folders:
+        for path in sorted(folder.rglob("*.lcm")):
+            seen += 1
+            if seen > MAX_FILES:
+                return None
+            name = path.relative_to(folder).as_posix()
+            source = load(name)
+            if source is None:
+                continue
+            with suppress(SchemaError):  # what is wrong with a file is said when somebody wants it
+                schema = parse(source, load)
+                structs = [each for each in schema.types.values() if isinstance(each, Struct)]
+                found = next((each.name for each in structs if fingerprint(each, schema) == wanted), None)
+                if found is not None:
+                    return found, name
+    return None

@@ -7,15 +7,16 @@ cannot be decoded raises `rosetta_jit.errors.DecodeError`, a ValueError that say
 
 from __future__ import annotations
 
+import sys
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
 from rosetta_jit.frameworks.lcm.fingerprint import fingerprint
-from rosetta_jit.frameworks.lcm.objects import OBJECTS
 from rosetta_jit.frameworks.lcm.shape import shape_of
 from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
+from rosetta_jit.runtime.holder.objects.foreign import Foreign
 from rosetta_jit.runtime.holder.serialising import encoded, programs_of
 
 if TYPE_CHECKING:
@@ -95,6 +96,16 @@ def members(family: Family) -> dict[str, Any]:
 def _taken(name: str) -> bool:
     """Whether Python or the holder need a name for themselves."""
     return name.startswith("__") or (name.strip("_") != name and hasattr(LcmMessage, name))
+
+
+def class_of(owner: type, struct: str) -> type | None:  # noqa: ARG001  packages have one class for a struct
+    """The class of a struct, if somebody has imported its package. One without a package has a module of its own."""
+    package, _, name = struct.rpartition(".")
+    return getattr(sys.modules.get(package or name), name, None)
+
+
+OBJECTS = Foreign(class_of=class_of)
+"""Objects of the classes that lcm-gen writes."""
 
 
 LCM_GEN = Manners(

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import field
+from math import isfinite
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.lcm import diagnostics as say
-from rosetta_jit.frameworks.lcm.limits import MAX_DIMENSIONS, MAX_PROBLEMS
-from rosetta_jit.frameworks.lcm.numbers import floating, integer
-from rosetta_jit.frameworks.lcm.scalars import BYTE, CONSTANTS, INTEGERS, PRIMITIVES
-from rosetta_jit.frameworks.lcm.shape import SIZES
+from rosetta_jit.frameworks.lcm.limits import MAX_DIGITS, MAX_DIMENSIONS, MAX_PROBLEMS
+from rosetta_jit.frameworks.lcm.shape import BYTE, CONSTANTS, INTEGERS, PRIMITIVES, SIZES
 from rosetta_jit.frameworks.lcm.tree import Constant, Member, StructDeclaration, qualified
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Array, Bytes, Enum, Field, Float, Int, NamedConstant, Ref, Schema, Struct
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.lcm.files import Gathered
     from rosetta_jit.frameworks.lcm.tree import EnumDeclaration, Name, Word
     from rosetta_jit.model.types import Type
+
 
 LARGEST_INT32 = (1 << 31) - 1
 LARGEST_FLOAT = 3.4028234663852886e38
@@ -188,3 +189,28 @@ def _enumerator(word: Word, following: int, problems: list[Diagnostic]) -> int |
     else:
         return value
     return None
+
+
+_INTEGER = re.compile(r"-?(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
+_DECIMAL = re.compile(r"-?([0-9]+(?:\.[0-9]*)?|\.[0-9]+)([eE]-?[0-9]+)?")
+_HEXADECIMAL = re.compile(r"-?0[xX]([0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)([pP]-?[0-9]+)?")
+
+
+def integer(text: str) -> int | None:
+    """A decimal, hexadecimal or octal number (``010`` is 8); None if it is none."""
+    if len(text) > MAX_DIGITS or not _INTEGER.fullmatch(text):
+        return None
+    digits = text.removeprefix("-")
+    base = 16 if digits[1:2] in {"x", "X"} else 8 if digits.startswith("0") else 10
+    return -int(digits, base) if text.startswith("-") else int(digits, base)
+
+
+def floating(text: str) -> float | None:
+    """A finite number; None if it is none."""
+    if len(text) > MAX_DIGITS:
+        return None
+    try:
+        value = float.fromhex(text) if _HEXADECIMAL.fullmatch(text) else float(text) if _DECIMAL.fullmatch(text) else None
+    except OverflowError:
+        return None
+    return value if value is not None and isfinite(value) else None

@@ -1,10 +1,16 @@
-"""What a field was declared with, back from its type: the word or the name of its type, and its sizes."""
+"""The primitive types of LCM by their words; and what a field was declared with, back from its type: the word, and its sizes."""
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Array, Bool, Bytes, Field, Float, Int, Ref, String
 from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.types import Type
+
 
 SIZES = "sizes"
 """The option of a field that keeps its sizes as they were written, where constant ones were not plain decimals."""
@@ -51,3 +57,25 @@ def _size(length: object) -> Size:
         return ".".join(step.name for step in length.steps if isinstance(step, expr.Member))
     assert isinstance(length, int)
     return length
+
+
+PRIMITIVES: dict[str, Type] = {
+    "int8_t": Int(8, spelling="int8_t"),
+    "int16_t": Int(16, spelling="int16_t"),
+    "int32_t": Int(32, spelling="int32_t"),
+    "int64_t": Int(64, spelling="int64_t"),
+    "float": Float(32, "float"),
+    "double": Float(64, "double"),
+    "string": String("utf-8", "string"),
+    "boolean": Bool("boolean"),
+    "byte": Int(8, signed=False, spelling="byte"),
+}
+
+BYTE = "byte"
+"""Its arrays are bytes."""
+
+INTEGERS = frozenset(("int8_t", "int16_t", "int32_t", "int64_t"))
+"""What a size can be."""
+
+CONSTANTS = INTEGERS | {"float", "double"}
+"""What a constant can be."""

@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.omg import cdr_diagnostics as words
+from rosetta_jit.frameworks.omg import diagnostics as words
 from rosetta_jit.model.layout import map_entry, recursive_structs, scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
@@ -35,7 +35,7 @@ IDENTIFIERS = {
 PADDING_OF_PAYLOADS = 3
 OPTIONS = 3
 """The byte of the header whose last two bits say how many bytes of padding are behind the value (DDS-XTypes 1.3, 7.6.3.1.2)."""
-ENDINGS = {"cdr": wire.Ending(OPTIONS, untold=4), "cdr2": wire.Ending(OPTIONS, align=4)}
+ENDINGS = {"cdr": wire.Ending(OPTIONS, unstated=4), "cdr2": wire.Ending(OPTIONS, align=4)}
 """XCDR2 is written with the padding that the specification asks for; XCDR1 as ROS 2 has it, without any or with untold zeros."""
 SENTINEL = 0x7F02
 """The end of a list of parameters, which must be understood (DDS-XTypes 1.3, 7.4.1.2.1)."""
@@ -81,7 +81,7 @@ def _opening(encoding: str, struct: Struct, order: wire.Order) -> bytes:
 
 def _ending(name: str, choices: Choices) -> wire.Ending | None:
     ending = ENDINGS.get(name)
-    return replace(ending, align=ending.untold) if ending is not None and "padding" in choices.lenient else ending
+    return replace(ending, align=ending.unstated) if ending is not None and "padding" in choices.lenient else ending
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,8 +129,8 @@ class _Rules:
         if not struct.fields:  # rosidl gives a struct without members one, which it calls structure_needs_at_least_one_member
             return wire.Padding("u8", 0)
         union = next((each.type for each in struct.fields if isinstance(each.type, Union) and each.type.discriminator), None)
-        told = () if union is None else (union.discriminator,)
-        return wire.Seq(tuple(self.field(each, path, struct) for each in struct.fields if each.name not in told))
+        discriminators = () if union is None else (union.discriminator,)
+        return wire.Seq(tuple(self.field(each, path, struct) for each in struct.fields if each.name not in discriminators))
 
     def field(self, field: Field, path: wire.Path, struct: Struct) -> wire.Codec:
         own = (*path, field.name)

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.cursor import Cursor, SyntaxProblem
 from rosetta_jit.frameworks.omg.expressions import CONDITIONS, Binary, Expr, Literal, Operators, ScopedName, Unary, expression
-from rosetta_jit.frameworks.omg.lexer import Token
-from rosetta_jit.frameworks.omg.literals import LiteralError, number
+from rosetta_jit.frameworks.omg.lexer import LiteralError, Token, number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterable, Iterator

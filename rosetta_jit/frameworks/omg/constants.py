@@ -10,7 +10,7 @@ from typing import Literal as OneOf
 
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.expressions import Binary, Expr, Literal, ScopedName, Unary
-from rosetta_jit.frameworks.omg.literals import LiteralError, number, unescape
+from rosetta_jit.frameworks.omg.lexer import LiteralError, number, unescape
 from rosetta_jit.frameworks.omg.problems import LookupProblem
 from rosetta_jit.model.types import Bool, Float, Int, Ref, String
 from rosetta_jit.startup.dataclass import dataclass
@@ -44,13 +44,7 @@ Lookup = Callable[[ScopedName], Value]
 
 
 def evaluate(node: Expr, lookup: Lookup) -> Value:
-    """The value of an expression.
-
-    Raises
-    ------
-    LookupProblem
-        It has none.
-    """
+    """The value of an expression; raises LookupProblem where it has none."""
     match node:
         case Literal(tokens, span):
             return _literal(tokens, span)
@@ -65,13 +59,7 @@ def evaluate(node: Expr, lookup: Lookup) -> Value:
 
 
 def fit(value: Value, type_: Type, span: Span) -> Constant:
-    """A value as one of a type.
-
-    Raises
-    ------
-    LookupProblem
-        The type has no such value.
-    """
+    """A value as one of a type; raises LookupProblem where the type has no such value."""
     match type_, value:
         case Int(8 | 16, spelling=("char" | "wchar") as word), Value("character" | "wide character", str() as text):
             if (word == "wchar") != (value.sort == "wide character") or ord(text) >= 1 << type_.bits:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.frameworks.omg.cursor import Cursor, SyntaxProblem
 from rosetta_jit.frameworks.omg.grammar_types import TypeReader
+from rosetta_jit.frameworks.omg.lexer import OPAQUE, SKIPPED
 from rosetta_jit.frameworks.omg.limits import MAX_SYNTAX_ERRORS
 from rosetta_jit.frameworks.omg.tree import (
     Aggregate,
@@ -25,7 +26,6 @@ from rosetta_jit.frameworks.omg.tree import (
     Opaque,
     Typedef,
 )
-from rosetta_jit.frameworks.omg.words import OPAQUE, SKIPPED
 
 if TYPE_CHECKING:
     from collections.abc import Callable

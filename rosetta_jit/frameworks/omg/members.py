@@ -113,9 +113,9 @@ class MemberMaker:
         if default is not None and _exhausted(declared, labels):
             self.problems.append(say.needless_default(cases[default].span or name.span))
         options = switch_notes.of_member(switch, None)[1]
-        told = Field(DISCRIMINATOR, switch, 0, options=options, span=name.span)
+        discriminator = Field(DISCRIMINATOR, switch, 0, options=options, span=name.span)
         made = Union(f"{scope.full}::{CASES}", tuple(cases), name.span, DISCRIMINATOR, tuple(labels), default)
-        return (told, Field(CASES, made, span=name.span))
+        return (discriminator, Field(CASES, made, span=name.span))
 
     def cases(
         self, scope: Scope, definition: tree.Aggregate, switch: Type, notes: Annotations

@@ -6,15 +6,14 @@ A file is read once, however often it is included: what rosidl writes has no inc
 from __future__ import annotations
 
 from dataclasses import field
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.conditions import answer_defined, holds
 from rosetta_jit.frameworks.omg.cursor import SyntaxProblem
-from rosetta_jit.frameworks.omg.includes import find
-from rosetta_jit.frameworks.omg.lexer import Token, tokens
+from rosetta_jit.frameworks.omg.lexer import LiteralError, Token, tokens, unescape
 from rosetta_jit.frameworks.omg.limits import MAX_EXPANDED, MAX_FILES
-from rosetta_jit.frameworks.omg.literals import LiteralError, unescape
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
+
 
 PREDEFINED = "__OMNIIDL__"
 """Files for several CORBA compilers tell omniidl by this macro; we read what it reads."""
@@ -220,3 +220,47 @@ def _path(word: Token, rest: list[Token]) -> tuple[str, Span]:
         raise SyntaxProblem(say.unexpected(word.span, "include", "a file name in quotes or angle brackets"))
     span = first.span.to(closing.span)
     return span.source.text[first.span.end : closing.span.start], span
+
+
+SHIPPED = ("", "openrtm", "ros2")
+"""Folders of the search path in which files know each other by their names alone."""
+
+
+def find(path: str, asked: str, load: Load) -> tuple[str, Source] | None:
+    """The file that an `#include` means, and the name under which it was found.
+
+    Parameters
+    ----------
+    path
+        As the `#include` writes it.
+    asked
+        The name under which the file around it was found: its folder comes first.
+    """
+    for candidate in dict.fromkeys(_candidates(path, asked)):
+        source = load(candidate)
+        if source is not None:
+            return candidate, source
+    return None
+
+
+def _candidates(path: str, asked: str) -> Iterator[str]:
+    folder = PurePosixPath(asked).parent
+    for start in (*(() if folder.is_absolute() else (str(folder),)), *SHIPPED):
+        candidate = _normal(f"{start}/{path}" if start not in ("", ".") else path)
+        if candidate is not None:
+            yield candidate
+
+
+def _normal(path: str) -> str | None:
+    """The path without `.` and `..`; None where it leaves the search path, or is no name of a file."""
+    if path.startswith(("/", "~")) or "\\" in path or ":" in path or not path.isprintable():
+        return None
+    parts: list[str] = []
+    for part in path.split("/"):
+        if part == ".." and not parts:
+            return None
+        if part == "..":
+            parts.pop()
+        elif part not in ("", "."):
+            parts.append(part)
+    return "/".join(parts) or None

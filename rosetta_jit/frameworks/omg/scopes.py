@@ -60,13 +60,7 @@ class Scope:
         return full
 
     def declare(self, name: Name, entry: Entry) -> Entry:
-        """Add a declaration.
-
-        Raises
-        ------
-        LookupProblem
-            Its name has another meaning here already.
-        """
+        """Add a declaration; raises LookupProblem where its name has another meaning here already."""
         key = name.text.lower()
         first = self.entries.get(key)
         if first is not None:

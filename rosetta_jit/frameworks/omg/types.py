@@ -60,13 +60,7 @@ class TypeMaker:
     declare: Callable[[Scope, Aggregate | Enum], Type]
 
     def type(self, scope: Scope, spec: TypeSpec, *, free: bool, in_sequence: bool = False) -> Type:
-        """The type that some words mean.
-
-        Raises
-        ------
-        LookupProblem
-            They mean none.
-        """
+        """The type that some words mean; raises LookupProblem where they mean none."""
         match spec:
             case Basic(word):
                 return SCALARS[word]

@@ -159,13 +159,7 @@ class Judging:
 
 
 def declared(answer: dict[str, Any], places: Places) -> Schema:
-    """The schema of what `compiler.declarations` answers.
-
-    Raises
-    ------
-    SchemaError
-        With what is no plain data, up to `MAX_PROBLEMS`.
-    """
+    """The schema of what `compiler.declarations` answers; raises SchemaError with what is no plain data, up to `MAX_PROBLEMS`."""
     judging = Judging(places, known=frozenset(item["name"] for item in (*answer["enums"], *answer["records"])))
     for item in answer["enums"]:
         judging.enum(item)

@@ -94,13 +94,7 @@ class _Reading:
 
 
 def read_elements(source: Source) -> list[Element]:
-    """The types of a registry, in order.
-
-    Raises
-    ------
-    SchemaError
-        If it is no registry.
-    """
+    """The types of a registry, in order; raises SchemaError if it is no registry."""
     parser = expat.ParserCreate("UTF-8")
     reading = _Reading(source, parser)
     parser.StartElementHandler = reading.start

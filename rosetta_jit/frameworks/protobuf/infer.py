@@ -13,7 +13,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import DecodeError, SchemaError
-from rosetta_jit.frameworks.protobuf import infer_diagnostics as words
+from rosetta_jit.frameworks.protobuf import diagnostics as words
 from rosetta_jit.frameworks.protobuf.limits import MAX_INFERRED_DEPTH, MAX_INFERRED_FIELDS
 from rosetta_jit.startup.dataclass import dataclass
 

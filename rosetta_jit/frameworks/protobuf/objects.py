@@ -27,13 +27,7 @@ PARTIAL: frozenset[str | None] = frozenset({"protobuf-partial"})
 
 
 def whole(family: Family, object_type: Any) -> Whole | None:
-    """How messages of a class are handed over, if it is one of protobuf's.
-
-    Raises
-    ------
-    TypeError
-        If it is of another type than the holders.
-    """
+    """How messages of a class are handed over, if it is one of protobuf's; raises TypeError if it is of another type than the holders."""
     if not _is_protobuf(object_type):
         return None
     _check(family, object_type)

@@ -7,23 +7,22 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.ros import diagnostics as say
-from rosetta_jit.frameworks.ros.interfaces import parts
-from rosetta_jit.frameworks.ros.limits import MAX_MESSAGES, MAX_PROBLEMS
+from rosetta_jit.frameworks.ros.limits import MAX_DEPTH, MAX_MESSAGES, MAX_PROBLEMS
 from rosetta_jit.frameworks.ros.names import SUFFIX, Declared, declared_in, places, split
-from rosetta_jit.frameworks.ros.order import dependencies_first
 from rosetta_jit.frameworks.ros.reading import read
 from rosetta_jit.frameworks.ros.sections import sections
+from rosetta_jit.model.limits import MAX_SLOTS
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.ros.dialect import Dialect
+    from rosetta_jit.frameworks.ros.dialect import Dialect, Interface
     from rosetta_jit.frameworks.ros.sections import Section
     from rosetta_jit.frameworks.ros.tree import Definition, Field, TypeName
     from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,3 +121,81 @@ class _Gathering:
         """Whether there is a file of the other IDL in which the message can be declared."""
         suffix = self.dialect.foreign
         return bool(suffix) and any(self.load(each.removesuffix(SUFFIX) + suffix) is not None for each in places)
+
+
+def parts(whole: Section, dialect: Dialect, problems: list[Diagnostic]) -> list[Section]:
+    """The definitions of a service or an action, which may not have another number of parts than its kind has."""
+    interface, source = dialect.interfaces[whole.kind], whole.source
+    dashes = list(dialect.dashes.finditer(source.text, whole.start, whole.end))
+    if len(dashes) != len(interface.parts) - 1:
+        place = dashes[len(interface.parts) - 1] if len(dashes) >= len(interface.parts) else None
+        span = Span(source, place.start(), place.end()) if place else Span(source, whole.start, whole.start)
+        problems.append(say.wrong_parts(span, whole.kind, len(dashes), len(interface.parts) - 1))
+        return []
+    starts, ends = [whole.start, *(each.end() for each in dashes)], [*(each.start() for each in dashes), whole.end]
+    names = [each.format(whole.short) for each in interface.parts]
+    written = [replace(whole, short=name, start=start, end=end, kind="msg") for name, start, end in zip(names, starts, ends, strict=True)]
+    return [*written, *_added(whole, interface, _local(whole, interface, dialect))]
+
+
+def _added(whole: Section, interface: Interface, local: Mapping[str, str]) -> Iterator[Section]:
+    """What stands in no file: texts of their own, which a report about them shows."""
+    for name, text in interface.added.items():
+        own = Source(whole.source.name, text.format(whole.short))
+        short, span = name.format(whole.short), Span(own, 0, 0)
+        yield replace(whole, source=own, short=short, start=0, end=len(own.text), named=span, kind="msg", local=local)
+
+
+def _local(whole: Section, interface: Interface, dialect: Dialect) -> Mapping[str, str]:
+    names = [each.format(whole.short) for each in (*interface.parts, *interface.added)]
+    return {name: dialect.message(whole.package, name, whole.folder) for name in names}
+
+
+def dependencies_first(found: Mapping[str, Definition], problems: list[Diagnostic]) -> tuple[Definition, ...]:
+    """The definitions in an order in which each comes after those of its fields, as far as these are found."""
+    needs = {name: {each.type.base for each in _nested(definition)} & found.keys() for name, definition in found.items()}
+    users: dict[str, list[str]] = {name: [] for name in found}
+    for name, needed in needs.items():
+        for each in needed:
+            users[each].append(name)
+    open_ = {name: len(needed) for name, needed in needs.items()}
+    ready = [name for name, count in open_.items() if not count]
+    for name in ready:  # grows while it is read
+        for user in users[name]:
+            open_[user] -= 1
+            if not open_[user]:
+                ready.append(user)
+    if len(ready) < len(found):
+        problems.append(_cycle(found, {name for name, count in open_.items() if count}))
+        return ()
+    ordered = tuple(found[name] for name in ready)
+    _measure(ordered, problems)
+    return ordered
+
+
+def _nested(definition: Definition) -> list[Field]:
+    return [each for each in definition.fields if not each.type.builtin]
+
+
+def _cycle(found: Mapping[str, Definition], among: set[str]) -> Diagnostic:
+    """The report of one cycle: every one of those messages has a field of another one of them."""
+    name, path = next(each for each in found if each in among), list[str]()
+    field = None
+    while name not in path:
+        path.append(name)
+        field = next(each for each in _nested(found[name]) if each.type.base in among)
+        name = field.type.base
+    assert field is not None
+    return say.cycle(field.type.span, [*path[path.index(name) :], name])
+
+
+def _measure(ordered: tuple[Definition, ...], problems: list[Diagnostic]) -> None:
+    depths: dict[str, int] = {}
+    sizes: dict[str, int] = {}
+    for each in ordered:
+        inner = [field.type.base for field in _nested(each) if field.type.base in depths]
+        depths[each.name] = 1 + max((depths[name] for name in inner), default=0)
+        sizes[each.name] = len(each.fields) - len(inner) + sum(sizes[name] for name in inner)
+        if depths[each.name] > MAX_DEPTH or sizes[each.name] > MAX_SLOTS:
+            problems.append(say.too_deep(each.span, each.name, MAX_DEPTH, MAX_SLOTS))
+            return

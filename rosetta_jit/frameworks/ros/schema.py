@@ -11,9 +11,8 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.ros.gather import gather
 from rosetta_jit.frameworks.ros.limits import MAX_PROBLEMS
 from rosetta_jit.frameworks.ros.names import declared_in
-from rosetta_jit.frameworks.ros.reading import read
+from rosetta_jit.frameworks.ros.reading import read, unit_in
 from rosetta_jit.frameworks.ros.sections import sections
-from rosetta_jit.frameworks.ros.units import unit_in
 from rosetta_jit.model.types import Array, Bytes, Field, NamedConstant, Optional, Ref, Schema, String, Struct
 
 if TYPE_CHECKING:
@@ -31,13 +30,7 @@ if TYPE_CHECKING:
 
 
 def gathered(source: Source, load: Load, dialect: Dialect) -> Gathered:
-    """The definitions of a source and of all that it needs.
-
-    Raises
-    ------
-    SchemaError
-        With everything that is wrong in any of the texts.
-    """
+    """The definitions of a source and of all that it needs; raises SchemaError with everything that is wrong in any of the texts."""
     problems: list[Diagnostic] = []
     found = gather(source, load, dialect, problems)
     _refuse(problems)
@@ -45,13 +38,7 @@ def gathered(source: Source, load: Load, dialect: Dialect) -> Gathered:
 
 
 def definition_of(source: Source, dialect: Dialect) -> tree.Definition:
-    """The first definition of a message's file, by itself.
-
-    Raises
-    ------
-    SchemaError
-        With everything that is wrong in it.
-    """
+    """The first definition of a message's file, by itself; raises SchemaError with everything that is wrong in it."""
     problems: list[Diagnostic] = []
     found = sections(source, declared_in(source.name, dialect), dialect, problems)
     definitions = [read(each, dialect, problems) for each in found[:1]]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.ros import definition_of
 from rosetta_jit.frameworks.ros import diagnostics as say
-from rosetta_jit.frameworks.ros.units import unit_in
+from rosetta_jit.frameworks.ros.reading import unit_in
 from rosetta_jit.source import Source
 
 if TYPE_CHECKING:
@@ -46,13 +46,7 @@ def with_messages(load: Load, dialect: Dialect, texts: Mapping[str, str] | None 
 
 
 def idl_text(definition: Definition, dialect: Dialect) -> str:
-    """A definition in IDL.
-
-    Raises
-    ------
-    SchemaError
-        It has values that IDL has no literals for.
-    """
+    """A definition in IDL; raises SchemaError where it has values that IDL has no literals for."""
     *modules, name = definition.name.split("/")
     includes = sorted({each.type.base for each in definition.fields if not each.type.builtin} - {definition.name})
     constants = "".join(_constant(each) for each in definition.constants)

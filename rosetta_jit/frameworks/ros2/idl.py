@@ -10,16 +10,19 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.omg.idl import parse as parse_declarations
 from rosetta_jit.frameworks.ros import Dialect, Interface, Rule, gathered, schema_of
+from rosetta_jit.frameworks.ros.sections import HEADER, SEPARATOR
 from rosetta_jit.frameworks.ros2.adapter import idl_text, with_messages
-from rosetta_jit.frameworks.ros2.concatenated import in_order, is_concatenated
 from rosetta_jit.frameworks.ros2.empty import DUMMY
 from rosetta_jit.model.types import Bool, Field, Float, Int, String
 from rosetta_jit.source import Source
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
     from rosetta_jit.frameworks.ros import Gathered
     from rosetta_jit.model.types import Schema
     from rosetta_jit.parsing.idl import Load
+
 
 SCALARS = {
     "bool": Bool("bool"),
@@ -129,3 +132,38 @@ def parse_idl(source: Source, load: Load) -> Schema:
     if is_concatenated(source.text):
         return parse(source, load)
     return parse_declarations(source, with_messages(load, ROS2))
+
+
+NO_NAMES = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)|\"(?:[^\"\\]|\\.)*(?:\"|\Z)", re.DOTALL)
+"""Comments and strings, of which the last may have no end."""
+WORD = re.compile(r"\w+")
+
+
+def is_concatenated(text: str) -> bool:
+    """Whether a text is several files, as MCAP's schema encoding ros2idl has them: in any order, and not all with their `#include`s.
+
+    Such a text begins with a line of `=` and one that names what follows: https://mcap.dev/spec/registry#ros2idl.
+    """
+    line = SEPARATOR.search(text)
+    return line is not None and not text[: line.start()].strip() and HEADER.match(text, line.end()) is not None
+
+
+def in_order(files: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """The files, each behind those whose types it mentions: IDL knows a name once it is declared."""
+    declaring: dict[str, list[str]] = {}
+    for name in files:
+        declaring.setdefault(name.removesuffix(".idl").rpartition("/")[2], []).append(name)
+    whole: dict[str, bool] = {}
+    for name in files:
+        waiting = [name]
+        while waiting:
+            current = waiting[-1]
+            if current not in whole:
+                whole[current] = False
+                mentioned = dict.fromkeys(WORD.findall(NO_NAMES.sub(" ", files[current])))
+                waiting += [each for word in mentioned for each in declaring.get(word, ()) if each not in whole]
+                continue
+            waiting.pop()
+            if not whole[current]:
+                whole[current] = True
+                yield current, files[current]

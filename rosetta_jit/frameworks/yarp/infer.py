@@ -7,19 +7,21 @@ from typing import TYPE_CHECKING
 from rosetta_jit.errors import DecodeError, SchemaError
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.bottle import read
-from rosetta_jit.frameworks.yarp.detect import read_any
 from rosetta_jit.frameworks.yarp.draft import draft
 from rosetta_jit.frameworks.yarp.limits import MAX_PLACES
 from rosetta_jit.frameworks.yarp.names import TYPE_NAME
 from rosetta_jit.frameworks.yarp.shape import Clash, Fixed, Many, join_all, join_lists, join_places, shape
-from rosetta_jit.frameworks.yarp.tags import DIALECTS
+from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4, YARP2012, vocab
+from rosetta_jit.frameworks.yarp.tree import Dict, List, Value
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosetta_jit.frameworks.yarp.shape import Shape
-    from rosetta_jit.frameworks.yarp.tree import List
+    from rosetta_jit.frameworks.yarp.tags import Dialect
+    from rosetta_jit.frameworks.yarp.tree import Item
+
 
 ANY = "yarp"
 """The encoding that is any of the dialects."""
@@ -127,3 +129,63 @@ def _top(common: _Common) -> Fixed | Many:
             return common.elements
         case _:
             raise AssertionError("what has neither was refused when it was united")
+
+
+def detect(data: bytes) -> Dialect:
+    """The dialect of a message; raises DecodeError where it is a bottle in none.
+
+    Nothing on the wire says so. What decides, in this order: in which dialects the message is a bottle at all, to its last
+    byte (tag 10 stands for eight bytes in YARP 3 and for four in YARP 4); a NUL after every string, which only 2012 writes;
+    and in an image the high half of the quantum word. A message that means the same in all of them is called YARP 3.
+    """
+    return read_any(data)[0]
+
+
+def read_any(data: bytes) -> tuple[Dialect, List]:
+    """The dialect of a message, and its tree.
+
+    Raises
+    ------
+    DecodeError
+        Where it is a bottle in no dialect: the error of the reading that came furthest.
+    """
+    readings: list[tuple[Dialect, List]] = []
+    failures: list[DecodeError] = []
+    for dialect in (YARP3, YARP4, YARP2012):
+        try:
+            readings.append((dialect, read(data, dialect)))
+        except DecodeError as failure:
+            failures.append(failure)
+    if not readings:
+        raise max(failures, key=lambda failure: failure.offset)
+    return _likeliest(readings)
+
+
+def _likeliest(readings: list[tuple[Dialect, List]]) -> tuple[Dialect, List]:
+    *_, last = readings
+    if last[0] is YARP2012 and _has_string(last[1]):
+        return last
+    dialect, bottle = readings[0]
+    if _plain_quantum(bottle):
+        return next(((known, tree) for known, tree in readings if known is YARP4), readings[0])
+    return dialect, bottle
+
+
+def _has_string(item: Item) -> bool:
+    """A string was read with its NUL: 2012's reading has refused any other."""
+    match item:
+        case Value(tag):
+            return tag == "string"
+        case List(items):
+            return any(_has_string(inner) for inner in items)
+        case Dict(content):
+            return _has_string(content)
+
+
+def _plain_quantum(bottle: List) -> bool:
+    """The message is an image, and its quantum word has no flag in the high half (yarp.md 3.5)."""
+    match bottle.items:
+        case (Value("vocab32", name), Value("vocab32"), List((_, _, Value("int32", int(quantum)), _, _)), Value("blob")):
+            return name == vocab(b"mat") and quantum >> 16 == 0
+        case _:
+            return False

@@ -109,13 +109,7 @@ class File:
 
 
 def parse(words: list[Word]) -> File:
-    """The file that some words are.
-
-    Raises
-    ------
-    SchemaError
-        At the first word that the grammar does not allow.
-    """
+    """The file that some words are; raises SchemaError at the first word that the grammar does not allow."""
     return _Reading(words).file()
 
 

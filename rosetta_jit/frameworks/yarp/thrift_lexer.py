@@ -35,13 +35,7 @@ class Word:
 
 
 def words_of(source: Source) -> list[Word]:
-    """All words of a text, and one for its end.
-
-    Raises
-    ------
-    SchemaError
-        At the first character that begins no word.
-    """
+    """All words of a text, and one for its end; raises SchemaError at the first character that begins no word."""
     words: list[Word] = []
     at = 0
     while at < len(source.text):

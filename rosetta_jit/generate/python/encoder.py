@@ -41,13 +41,7 @@ class InParts:
 
 
 def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str, ...]) -> InParts:
-    """The encoder of a unit.
-
-    Raises
-    ------
-    NotInParts
-        It cannot be printed so.
-    """
+    """The encoder of a unit; raises NotInParts where it cannot be printed so."""
     if len(kernel.bodies) != 1:
         raise NotInParts
     loads, written, texts = set[str](), dict(KNOWN), dict[str, list[str]]()

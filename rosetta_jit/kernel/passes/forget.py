@@ -50,12 +50,12 @@ def forget(kernel: Kernel) -> Kernel:
     """The kernel without what it writes and never reads. What a size kernel writes the encoder reads, which runs on the same lanes."""
     if not kernel.hidden or kernel.direction == "size":
         return kernel
-    told = {site.detail_lane for site in kernel.sites if site.detail_lane is not None}
+    detail_lanes = {site.detail_lane for site in kernel.sites if site.detail_lane is not None}
     shared = [stmt for routine in kernel.routines for stmt, _ in statements(routine.body)]
 
     def block(body: Block) -> Block:
         every = [*shared, *(stmt for stmt, _ in statements(body))]
-        return _block(body, _read(range(kernel.lanes, len(kernel.strides)), told, every))
+        return _block(body, _read(range(kernel.lanes, len(kernel.strides)), detail_lanes, every))
 
     return with_bodies(kernel, tuple(map(block, kernel.bodies)))
 
@@ -64,8 +64,8 @@ def _block(block: Block, read: _Read) -> Block:
     return tuple(with_blocks(stmt, partial(_block, read=read)) for stmt in block if not read.is_forgotten(stmt))
 
 
-def _read(hidden: range, told: set[int], every: Iterable[Stmt]) -> _Read:
-    found = _Read(hidden, set(told), defaultdict(set), set(told))
+def _read(hidden: range, detail_lanes: set[int], every: Iterable[Stmt]) -> _Read:
+    found = _Read(hidden, set(detail_lanes), defaultdict(set), set(detail_lanes))
     for stmt in every:
         sources, targets = _addresses(stmt)
         found.whole.update(sources)

@@ -159,9 +159,9 @@ def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Con
             assigned.setdefault(stmt.name, []).append(read)
         for name in read:
             users.setdefault(name, set()).update((stmt.name,) if isinstance(stmt, Assign) else bound_names(stmt))
-    told = {name for expr in said for name in locals_in(expr)} - (set[str]() if measure is None else locals_in(measure))
+    named = {name for expr in said for name in locals_in(expr)} - (set[str]() if measure is None else locals_in(measure))
     variables = [name for name in assigned if name in known]
-    return {Guess(name, 2, 1) for name in variables if name in told or not all(map(_made_of(name, users).intersection, assigned[name]))}
+    return {Guess(name, 2, 1) for name in variables if name in named or not all(map(_made_of(name, users).intersection, assigned[name]))}
 
 
 def _made_of(name: str, users: Mapping[str, set[str]]) -> set[str]:

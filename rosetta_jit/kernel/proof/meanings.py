@@ -127,7 +127,7 @@ class Terms:
                 return self._operation(number, op, self.sum(left), right, cast("list[tuple[int, int]]", ends))
             case ("low bits", str(type_), Linear() as value) if not self._as_bits:
                 return _low_bits(self.sum(value), it, limits(cast("Scalar", type_)), z3.Int(f"turns{number}"))
-            case ("told", str()) | ("register", int()):
+            case ("host", str()) | ("register", int()):
                 return self.range(number)
             case _:
                 return z3.BoolVal(val=True)

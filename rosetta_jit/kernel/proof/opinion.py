@@ -110,16 +110,16 @@ class _Judge:
         solver = _solver()
         solver.add(z3.Not(terms.claimed(obligation.formula)))
         premises = [(premise, atoms_in(premise.formula)) for premise in chain(obligation.premises)]
-        waiting, told = atoms_in(obligation.formula), set[int]()
+        waiting, seen = atoms_in(obligation.formula), set[int]()
         while True:
-            told |= waiting
+            seen |= waiting
             solver.add(*map(terms.meaning, sorted(waiting)))
             solver.add(*(terms.range(atom) for atom in sorted(waiting) if atom < obligation.claimed_atoms))
             near = [(premise, atoms) for premise, atoms in premises if not atoms.isdisjoint(waiting)]
             premises = [(premise, atoms) for premise, atoms in premises if atoms.isdisjoint(waiting)]
             solver.add(*(terms.said(premise.formula) for premise, _ in near))
             found = solver.check()
-            waiting = set[int]().union(*(atoms for _, atoms in near), *map(terms.operands, waiting)) - told
+            waiting = set[int]().union(*(atoms for _, atoms in near), *map(terms.operands, waiting)) - seen
             if found == z3.unsat:
                 return Opinion("proved")
             if not waiting:

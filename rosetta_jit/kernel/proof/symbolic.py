@@ -114,13 +114,7 @@ def unknown(scope: Scope, type_: ir.Scalar) -> Value:
 
 
 def evaluate(scope: Scope, expr: ir.Expr) -> Typed:
-    """Type and value of an expression.
-
-    Raises
-    ------
-    UnprovenError
-        An obligation in it cannot be shown.
-    """
+    """Type and value of an expression; raises UnprovenError where an obligation in it cannot be shown."""
     match expr:
         case ir.Local(type_, name):
             found = scope.locals.get(name)
@@ -145,7 +139,7 @@ def evaluate(scope: Scope, expr: ir.Expr) -> Typed:
             check_lane(scope, lane)
             return "i64", (scope.used if isinstance(expr, ir.Used) else scope.capacity)[lane]
         case ir.HostValue(what) | ir.Register(what):
-            kind = "told" if isinstance(expr, ir.HostValue) else "register"
+            kind = "host" if isinstance(expr, ir.HostValue) else "register"
             return "i64", scope.facts.named((kind, what), *limits("i64"))
         case ir.Unary():
             return _unary(scope, expr)

@@ -41,12 +41,7 @@ NOTHING = Facts()
 
 
 def are_same(left: Polynomial, right: Polynomial, facts: Facts = NOTHING) -> bool:
-    """Whether two numbers are the same.
-
-    Raises
-    ------
-    TooComplexError
-    """
+    """Whether two numbers are the same; raises TooComplexError."""
     if left == right:
         return True
     rest = reduced(subtract(left, right), facts)
@@ -54,12 +49,7 @@ def are_same(left: Polynomial, right: Polynomial, facts: Facts = NOTHING) -> boo
 
 
 def reduced(polynomial: Polynomial, facts: Facts) -> Polynomial:
-    """A number without quotients and remainders of what is known.
-
-    Raises
-    ------
-    TooComplexError
-    """
+    """A number without quotients and remainders of what is known; raises TooComplexError."""
     return _reduced(_reduced(_put(polynomial, facts.equal), facts), facts)
 
 

@@ -154,12 +154,7 @@ def _is_short(axis: Axis) -> bool:
 
 
 def element_of(view: View, number: Expr) -> Expr:
-    """The element of a number, of a view that is in one order.
-
-    Raises
-    ------
-    LayoutError
-    """
+    """The element of a number, of a view that is in one order; raises LayoutError."""
     if len(view.axes) != 1 or view.axes[0].listed is not None:
         raise LayoutError(words.asked_in_order(view.array.span))
     return element_at(view, [number])

@@ -44,12 +44,7 @@ class Filter:
 
 
 def filter_of(rule: Assignment, number: str, kept: str) -> Filter:
-    """What a rule with `where` does with each element, in a loop over ``number``, where ``kept`` counts.
-
-    Raises
-    ------
-    LayoutError
-    """
+    """What a rule with `where` does with each element, in a loop over ``number``, where ``kept`` counts; raises LayoutError."""
     assert rule.where is not None
     is_whole = isinstance(rule.value, Path | Call) and not any(map(has_each, open_parts(rule.value))) and not has_each(rule.place)
     sources = [*sources_in(rule.where), *([rule.value] if is_whole and isinstance(rule.value, Path | Call) else sources_in(rule.value))]

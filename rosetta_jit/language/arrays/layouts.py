@@ -112,12 +112,7 @@ class View:
 
 
 def view_of(expr: Path | Call) -> View:
-    """What a path to many elements, or a function of one, stands for.
-
-    Raises
-    ------
-    LayoutError
-    """
+    """What a path to many elements, or a function of one, stands for; raises LayoutError."""
     if isinstance(expr, Path):
         return _of_path(expr)
     if expr.function not in ARGUMENTS:

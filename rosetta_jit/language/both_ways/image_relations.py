@@ -32,12 +32,7 @@ class Image:
     measures: tuple[Related, ...]
 
     def solved(self, type_of: TypeOf) -> Solution:
-        """The image that has these pixels and measures.
-
-        Raises
-        ------
-        NoInverseError
-        """
+        """The image that has these pixels and measures; raises NoInverseError."""
         known = {call: until(rule.value, rule.place, call, type_of) for rule, _ in self.measures if (call := measure_in(rule)) is not None}
         found = solve(_told(self.pixels[0].value, known), self.pixels[0].place, type_of)
         if fields_of(found.value, "wire"):

@@ -60,12 +60,7 @@ class NoInverseError(Exception):
 
 
 def solve(expr: Expr, value: Expr, type_of: TypeOf) -> Solution:
-    """The field of an expression that has exactly one, so that the expression is ``value``.
-
-    Raises
-    ------
-    NoInverseError
-    """
+    """The field of an expression that has exactly one, so that the expression is ``value``; raises NoInverseError."""
     while not isinstance(expr, Path | Len):
         expr, value = _step(expr, value, type_of)
     return Solution(expr, value)

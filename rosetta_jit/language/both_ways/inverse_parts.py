@@ -64,12 +64,7 @@ class _Term:
 
 
 def part(expr: Expr, value: Expr, type_of: TypeOf) -> Parted:
-    """The fields of an expression, so that it is ``value``.
-
-    Raises
-    ------
-    NoInverseError
-    """
+    """The fields of an expression, so that it is ``value``; raises NoInverseError."""
     found = _part(expr, value, type_of)
     if any(function_of(each) is not None for each in parts(expr)):
         found = Parted(tuple(nearest(each, type_of) for each in found.settings), found.digits)
@@ -250,12 +245,7 @@ def plain(call: Call) -> Call:
 
 
 def put_together(first: Expr, its: Expr, second: Expr, rest: Expr, type_of: TypeOf) -> tuple[Solution, Digit | None]:
-    """The field whose one part is in ``first`` and whose other is in ``second``, so that they have these values.
-
-    Raises
-    ------
-    NoInverseError
-    """
+    """The field whose one part is in ``first`` and whose other is in ``second``, so that they have these values; raises NoInverseError."""
     call, other = taken_part(first), taken_part(second)
     assert call is not None
     assert other is not None

@@ -159,8 +159,8 @@ def key_of(place: Field, loops: Loops) -> tuple[Key, dict[str, Name]]:
     used: dict[str, Loop] = {}
     for step in path.steps:
         if isinstance(step, Index | Keyed):
-            told = step.index if isinstance(step, Index) else step.value
-            used |= {name: variables[name] for name in _names(told) if name in variables}
+            expr = step.index if isinstance(step, Index) else step.value
+            used |= {name: variables[name] for name in _names(expr) if name in variables}
     names = {name: Name(f"#{number}") for number, name in enumerate(used)}
     plain = with_indices(path, lambda index: renamed(index, names))
     ranges = tuple((loop.start, loop.stop) for loop in used.values())

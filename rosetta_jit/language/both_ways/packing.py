@@ -148,9 +148,9 @@ class Packing:
         return (replace(rule, start=start, stop=stop, body=body),) if body else ()
 
     def relation(self, rule: Relation, loops: Loops) -> tuple[Rule, ...]:
-        told = next((part for part in parts(rule.value) if isinstance(part, Call) and _changes(part)), None)
-        if told is not None:
-            self.problems.append(words.changes(told.span, told.function))
+        changing = next((part for part in parts(rule.value) if isinstance(part, Call) and _changes(part)), None)
+        if changing is not None:
+            self.problems.append(words.changes(changing.span, changing.function))
             return ()
         place = with_known_indices(rule.place, self.known, loops)
         if isinstance(flag := flag_of(rule), tuple) and self.known.flag(flag[1], loops) is not None:
@@ -287,9 +287,9 @@ class Packing:
         left: list[_Owed] = []
         for owed in self.owed:
             other = owed.rule.otherwise if owed.holds else owed.rule.then
-            told = folded(told_by_setting(owed.rule.condition, self.known, block, loops, other=other))
-            condition = folded(self.known.replaced(told, loops))
-            is_other_way = isinstance(told, Literal) and told.value is not owed.holds
+            settled = folded(told_by_setting(owed.rule.condition, self.known, block, loops, other=other))
+            condition = folded(self.known.replaced(settled, loops))
+            is_other_way = isinstance(settled, Literal) and settled.value is not owed.holds
             if fields_of(condition, "wire") or is_other_way:
                 left.append(owed)
             else:

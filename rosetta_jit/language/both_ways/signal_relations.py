@@ -34,12 +34,7 @@ class Frame:
     relations: tuple[Related, ...]
 
     def solved(self, type_of: TypeOf) -> Solution:
-        """The bytes that have these signals.
-
-        Raises
-        ------
-        NoInverseError
-        """
+        """The bytes that have these signals; raises NoInverseError."""
         size = self.length(type_of)
         arguments: list[Expr] = [Literal(size, self.whole.span)]
         for rule, _ in self.relations:
@@ -49,12 +44,7 @@ class Frame:
         return solve(self.whole, Call("signal_bytes", tuple(arguments), self.whole.span), type_of)
 
     def length(self, type_of: TypeOf) -> int:
-        """How many bytes the frame has.
-
-        Raises
-        ------
-        NoInverseError
-        """
+        """How many bytes the frame has; raises NoInverseError."""
         type_ = type_of(self.whole)
         length = type_.length if isinstance(type_, Array | Bytes) else None
         signals = [_signal(call) for rule, _ in self.relations if (call := signal_in(rule)) is not None]

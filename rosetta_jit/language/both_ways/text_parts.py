@@ -31,12 +31,7 @@ class NumbersOfText:
     relations: tuple[Related, ...]
 
     def solved(self, type_of: TypeOf) -> Solution:
-        """The text that has these numbers.
-
-        Raises
-        ------
-        NoInverseError
-        """
+        """The text that has these numbers; raises NoInverseError."""
         whole: Expr | None = None
         for rule, _ in self.relations:
             call = _numbered_part(rule)

@@ -30,19 +30,9 @@ class Together(Protocol):
         ...
 
     def solved(self, type_of: TypeOf) -> Solution:
-        """The value of which they all hold.
-
-        Raises
-        ------
-        NoInverseError
-        """
+        """The value of which they all hold; raises NoInverseError."""
         ...
 
     def length(self, type_of: TypeOf) -> int | None:
-        """How long the value is, where they tell.
-
-        Raises
-        ------
-        NoInverseError
-        """
+        """How long the value is, where they tell; raises NoInverseError."""
         ...

@@ -34,12 +34,7 @@ class TooManyWaysError(Exception):
 
 
 def ways(rules: tuple[Rule, ...], problems: list[Diagnostic]) -> Ways:
-    """Every way through a block that does not end in a rejection.
-
-    Raises
-    ------
-    TooManyWaysError
-    """
+    """Every way through a block that does not end in a rejection; raises TooManyWaysError."""
     found: Ways = [()]
     for rule in rules:
         parts = _ways_of(rule, problems)

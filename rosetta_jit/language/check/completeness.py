@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.language.algebra.polynomial import Polynomial, TooComplexError, number
 from rosetta_jit.language.check.block_paths import TooManyWaysError, ways
-from rosetta_jit.language.check.cases import contradictions, contradictions_in_elements, implied
-from rosetta_jit.language.check.coverage import coverage
+from rosetta_jit.language.check.coverage import contradictions, contradictions_in_elements, coverage, implied
 from rosetta_jit.language.check.written_places import Write, enter, writes_of
 from rosetta_jit.language.limits import MAX_CHECKED_WAYS
 from rosetta_jit.language.places import field_names, places_in
@@ -55,8 +54,8 @@ def _check_way(way: tuple[Rule, ...], rules: TypedRules, target: Message, missin
     problems: list[Diagnostic] = []
     broken = set(rules.broken)
     writes = writes_of(way, problems, broken)
-    told = frozenset(field_names(place) for place in places_in(rules.rules))
-    checker = _Checker(target, missing, broken, problems, told)
+    assigned = frozenset(field_names(place) for place in places_in(rules.rules))
+    checker = _Checker(target, missing, broken, problems, assigned)
     checker.struct(_Where("", (), 0), target.root, writes)
     return problems
 
@@ -117,19 +116,19 @@ class _Checker:
     missing: Missing
     broken: set[tuple[str, ...]]
     problems: list[Diagnostic]
-    told: frozenset[tuple[str, ...]]
+    assigned: frozenset[tuple[str, ...]]
 
     def struct(self, where: _Where, struct: Struct, writes: list[Write]) -> None:
         by_field = _by_field(writes)
-        told = self.implied(where, struct, by_field)
+        implied_fields = self.implied(where, struct, by_field)
         for field in struct.fields:
-            if field.name not in told:
+            if field.name not in implied_fields:
                 self.field(where.field(field.name), field, by_field.get(field.name, []))
         self.problems.extend(contradictions(where.text, struct, by_field, self.target))
 
     def implied(self, where: _Where, struct: Struct, by_field: dict[str, list[Write]], step: int = 0) -> set[str]:
         """Discriminators that no rule sets, and that a case implies."""
-        return {name for name in implied(struct, by_field, step) if (*where.fields, name) not in self.told}
+        return {name for name in implied(struct, by_field, step) if (*where.fields, name) not in self.assigned}
 
     def field(self, where: _Where, field: Field, writes: list[Write]) -> None:
         if field.constant is not None:
@@ -203,10 +202,10 @@ class _Checker:
             return
         whole = [write for write in writes if len(write.steps) == 1]
         by_field = _by_field(parts, 1)
-        told = self.implied(where, struct, by_field, 2)
+        implied_fields = self.implied(where, struct, by_field, 2)
         self.problems.extend(contradictions_in_elements(where.element().text, struct, parts, where.level, self.target))
         for field in struct.fields:
-            if field.name in told:
+            if field.name in implied_fields:
                 continue
             name = where.element().field(field.name)
             mine = whole + by_field.get(field.name, [])
@@ -214,8 +213,8 @@ class _Checker:
                 self.field(name, field, [])
                 continue
             teller = field.type.discriminator if isinstance(field.type, Union) else ""
-            owed = self.must_be_set(field) or teller in told
-            filled = where.element().field(teller) if teller in told else name
+            owed = self.must_be_set(field) or teller in implied_fields
+            filled = where.element().field(teller) if teller in implied_fields else name
             for group in self.fill(filled, where.level, extent, mine, optional=not owed):
                 self.part(name, field, group)
 

@@ -119,12 +119,7 @@ def _is_constant(spot: Spot) -> bool:
 
 
 def _sorted(before: TopologicalSorter[Node]) -> Iterator[int]:
-    """The rules in the order that they have, where that is one.
-
-    Raises
-    ------
-    CycleError
-    """
+    """The rules in the order that they have, where that is one; raises CycleError."""
     before.prepare()
     ready: list[int] = []
     while before.is_active():

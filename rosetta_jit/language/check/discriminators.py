@@ -54,8 +54,8 @@ def discriminators_of(rules: tuple[Rule, ...], message: Message) -> dict[Names, 
                 if isinstance(type_, Struct):
                     if id(type_) not in unions:
                         unions[id(type_)] = type_, [each for each in type_.fields if isinstance(each.type, Union)]
-                    told = _told(*unions[id(type_)], step.field, message, names, named)
-                    found |= {(*names, each): discriminator for each, discriminator in told}
+                    nested = _told(*unions[id(type_)], step.field, message, names, named)
+                    found |= {(*names, each): discriminator for each, discriminator in nested}
                 names, type_ = (*names, step.field.name), message.value_type(step.field.type)
             elif isinstance(type_, Array | Bytes | Map):
                 type_ = message.value_type(element_type(type_))

@@ -148,13 +148,7 @@ class SearchPath:
         return None if refusal(name) or _is_absolute(name) else self.find(name)
 
     def open(self, path: str | os.PathLike[str]) -> Source:
-        """The mapping that the user names, as `named` finds it.
-
-        Raises
-        ------
-        MappingError
-            There is none, or it cannot be read.
-        """
+        """The mapping that the user names, as `named` finds it; raises MappingError where there is none, or it cannot be read."""
         name = os.fspath(path)
         try:
             found = self.named(name)

@@ -30,12 +30,7 @@ class ExecutionPath:
 
 
 def execution_paths(rules: tuple[Rule, ...]) -> list[ExecutionPath]:
-    """Every execution path of a direction that is not rejected.
-
-    Raises
-    ------
-    UnfollowedError
-    """
+    """Every execution path of a direction that is not rejected; raises UnfollowedError."""
     found = [ExecutionPath((), ())]
     for rule in rules:
         parts = _paths_of(rule)

@@ -14,8 +14,7 @@ from rosetta_jit.catalogue import groups
 from rosetta_jit.language.folding import folded
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_CHOSEN
-from rosetta_jit.language.parameters.list_rules import spread
-from rosetta_jit.language.parameters.several_places import one_by_one
+from rosetta_jit.language.parameters.several_places import one_by_one, spread
 from rosetta_jit.language.parameters.values import SCALARS, accepted, written
 from rosetta_jit.model.expr import Call, Choice, Given, Item, List, Literal, Name
 from rosetta_jit.model.mapping import For, Several, When

@@ -1,8 +1,11 @@
-"""Rules for several places: `.roll, .pitch, .yaw = euler(.q)` as one rule a place.
+"""Rules for several places, and rules that assign a list, as one rule a place.
 
-The value is a group of as many numbers (`language.groups`), of which each place gets one; or a list, of which each gets an item; or it is
-computed from the parts of a text, `number(split(.t, ","))`, of which each place gets one. For both
+Of `.roll, .pitch, .yaw = euler(.q)` the value is a group of as many numbers (`language.groups`), of which each place gets one; or a list,
+of which each gets an item; or it is computed from the parts of a text, `number(split(.t, ","))`, of which each place gets one. For both
 directions a group stays whole, for it is turned round as a whole: a `Relation` with a list of places.
+
+`.names = ["yaw", "roll"]` is `len(.names) = 2`, `.names[0] = "yaw"` and `.names[1] = "roll"`. A long list of constants, and one whose
+length is not known, is assigned in a loop.
 """
 
 from __future__ import annotations
@@ -13,14 +16,16 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import groups as words
 from rosetta_jit.catalogue.derive import OTHER_PARTS
 from rosetta_jit.language.groups import component, group_functions, group_of
-from rosetta_jit.model.expr import Binary, Call, List, Literal
-from rosetta_jit.model.mapping import Assign, Default, Reject, Relation, When
+from rosetta_jit.language.limits import MAX_SINGLE
+from rosetta_jit.model.expr import Binary, Call, Given, Index, Item, Len, List, Literal, Name, Path
+from rosetta_jit.model.mapping import Assign, Default, For, Reject, Relation, SetLength, When
+from rosetta_jit.model.types import Array, Int
 from rosetta_jit.model.walk import parts, rebuilt
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule, Several
+    from rosetta_jit.model.mapping import Assignment, Rule, Several
 
 
 def one_by_one(rule: Several, problems: list[Diagnostic]) -> tuple[Rule, ...]:
@@ -64,3 +69,50 @@ def _other_parts(split: Call, count: int) -> Rule:
     """A rejection of texts with another number of parts than there are places."""
     other = Binary("!=", replace(split, function="parts"), Literal(count, split.span), split.span)
     return When(other, (Reject(OTHER_PARTS, split.span),), (), split.span)
+
+
+def spread(rule: Rule, variables: tuple[str, ...]) -> tuple[Rule, ...]:
+    """The rules that a rule with a list stands for; ``variables`` are those of the loops around it."""
+    match rule:
+        case Assign(place=Path() as place, value=(List() | Given(type=Array())) as value):
+            return _spread(rule, place, value, variables)
+        case Relation(place=Path() as place, value=(List() | Given(type=Array())) as value):
+            return _spread(rule, place, value, variables)
+        case _:
+            return (rule,)
+
+
+def _spread(rule: Assignment | Relation, place: Path, value: List | Given, variables: tuple[str, ...]) -> tuple[Rule, ...]:
+    match value:
+        case List(items) if len(items) > MAX_SINGLE and all(isinstance(item, Literal) for item in items):
+            count: Expr = Literal(len(items), value.span)
+            return (_length(rule, place, count), *_loop(rule, place, value, count, variables))
+        case List(items):
+            single = [_item(rule, place, Literal(number, item.span), item, variables) for number, item in enumerate(items)]
+            return (_length(rule, place, Literal(len(items), value.span)), *(found for each in single for found in each))
+        case Given(name):
+            count = Given(f"len({name})", (), Int(64), value.span)
+            return (_length(rule, place, count), *_loop(rule, place, value, count, variables))
+
+
+def _loop(rule: Assignment | Relation, place: Path, value: List | Given, count: Expr, variables: tuple[str, ...]) -> tuple[Rule, ...]:
+    variable = next(name for name in ("item", *(f"item_{number}" for number in range(2, 100))) if name not in variables)
+    index = Name(variable, value.span)
+    if isinstance(value, Given):
+        element = value.type.element if isinstance(value.type, Array) else value.type
+        item: Expr = Given(value.name, (index,), element, value.span)
+    else:
+        item = Item(value, index, value.span)
+    body = _item(rule, place, index, item, (*variables, variable))
+    return (For(variable, Literal(0, value.span), count, body, rule.span),)
+
+
+def _item(rule: Assignment | Relation, place: Path, index: Expr, value: Expr, variables: tuple[str, ...]) -> tuple[Rule, ...]:
+    element = replace(place, steps=(*place.steps, Index(index, place.span)))
+    return spread(replace(rule, place=element, value=value), variables)
+
+
+def _length(rule: Assignment | Relation, place: Path, count: Expr) -> Rule:
+    if isinstance(rule, Relation):
+        return Relation(Len(place, place.span), count, rule.span)
+    return SetLength(place, count, rule.span)

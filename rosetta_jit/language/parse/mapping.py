@@ -48,13 +48,7 @@ BLOCKS = ("RULES", "UNPACK_RULES", "PACK_RULES")
 
 
 def parse(source: Source) -> Mapping:
-    """Read a mapping file.
-
-    Raises
-    ------
-    MappingError
-        All syntax errors that were found, each with its place.
-    """
+    """Read a mapping file; raises MappingError with all syntax errors that were found, each with its place."""
     if len(source.text) > MAX_CHARACTERS:
         raise MappingError((words.file_too_large(source.name, MAX_CHARACTERS),))
     text = " " + source.text[1:] if source.text.startswith("\ufeff") else source.text  # a byte order mark, as some editors write it

@@ -105,4 +105,4 @@ def _is_in(problem: Diagnostic, place: Span) -> bool:
 @cache
 def grammar() -> Grammar:
     """The parser of mappings."""
-    return parser_of(GRAMMAR, told=MISTAKES)
+    return parser_of(GRAMMAR, mistake_tokens=MISTAKES)

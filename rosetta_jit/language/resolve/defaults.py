@@ -5,18 +5,19 @@ What the schema requires is there (proto2): with its default, else 0 or empty.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.language.functions.texts import is_textual
 from rosetta_jit.language.limits import MAX_DEFAULT_DEPTH, MAX_DEFAULTS
-from rosetta_jit.language.resolve.absent_texts import written
-from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, Place
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Optional, String, Struct
+from rosetta_jit.language.typed import INT64, Access, Assign, Call, Choice, Const, Default, FieldStep, Has, LenOf, Place
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Optional, String, Struct, Union
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Rule
+    from rosetta_jit.language.typed import Expr, Rule
     from rosetta_jit.model.types import Field, Schema, Type
     from rosetta_jit.source import Span
 
@@ -26,12 +27,7 @@ class ManyDefaultsError(Exception):
 
 
 def default_rules(place: Place, message: Message, span: Span | None) -> list[Rule]:
-    """Assignments of the defaults at and below a place; the rest is left alone.
-
-    Raises
-    ------
-    ManyDefaultsError
-    """
+    """Assignments of the defaults at and below a place; the rest is left alone; raises ManyDefaultsError."""
     found: list[Rule] = []
     for rule in _rules(place, message, span):
         found.append(rule)
@@ -91,18 +87,56 @@ def _has_defaults(struct: Struct, message: Message, depth: int = 0) -> bool:
     return False
 
 
-def has_array(type_: Type, schema: Schema, *, told: bool, seen: frozenset[str] = frozenset()) -> bool:
-    """Whether there are always elements in a type: as many as other fields have ``told``, or as the type fixes."""
+def has_array(type_: Type, schema: Schema, *, counted: bool, seen: frozenset[str] = frozenset()) -> bool:
+    """Whether there are always elements in a type: as many as other fields have ``counted``, or as the type fixes."""
     match schema.resolve(type_):
         case Array(length=length, element=element):
-            return length is not None and (isinstance(length, int) != told or has_array(element, schema, told=told, seen=seen))
+            return length is not None and (isinstance(length, int) != counted or has_array(element, schema, counted=counted, seen=seen))
         case Bytes(length=length):
-            return length is not None and isinstance(length, int) != told
+            return length is not None and isinstance(length, int) != counted
         case Struct(name=name, fields=fields) if name not in seen:
-            return any(has_array(field.type, schema, told=told, seen=seen | {name}) for field in fields)
+            return any(has_array(field.type, schema, counted=counted, seen=seen | {name}) for field in fields)
         case _:
             return False
 
 
 def _below(place: Place, field: Field, message: Message) -> Place:
     return Place(place.side, (*place.steps, FieldStep(field)), message.value_type(field.type), place.span)
+
+
+def text_there(place: Place, span: Span | None) -> Expr:
+    """What reading a place gives; anything but a text with a default is read as it is."""
+    access = Access(place, place.type, span)
+    default = default_of(place)
+    return access if not default else _chosen(access, written(default, span), span)
+
+
+def length_there(place: Place, span: Span | None) -> Expr:
+    """How many bytes, or elements, reading a place gives."""
+    length, default = LenOf(place, INT64, span), default_of(place)
+    return length if not default else _chosen(length, Const(len(default), INT64, span), span)
+
+
+def default_of(place: Place) -> bytes:
+    """The bytes of a text that is absent, where it can be."""
+    match place.type, place.steps:
+        case ((String() | Bytes()), (*around, FieldStep(field))) if is_textual(place.type) and not field.required:
+            case_of = around[-1].field.type if around and isinstance(around[-1], FieldStep) else None
+            can_lack = isinstance(field.type, Optional) or isinstance(case_of, Union)
+            known = field.default.encode() if isinstance(field.default, str) else field.default
+            return known if can_lack and isinstance(known, bytes) else b""
+        case _:
+            return b""
+
+
+def written(text: bytes, span: Span | None) -> Expr:
+    """Bytes as an expression: a text that is written down, or one whose characters are the bytes."""
+    try:
+        return Const(text.decode(), String(), span)
+    except UnicodeDecodeError:
+        latin = Const(text.decode("latin-1"), String(), span)
+        return Call("bytes", (latin, Const("latin-1", String(), span)), Bytes(), span)
+
+
+def _chosen(there: Access | LenOf, otherwise: Expr, span: Span | None) -> Choice:
+    return Choice(((Has(there.place, span=span), there),), replace(otherwise, span=span), "", there.type, span)

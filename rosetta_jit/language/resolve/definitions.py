@@ -28,13 +28,7 @@ def arguments_in(function: GroupFunction) -> tuple[str, ...]:
 
 @cache
 def definitions_of(name: str) -> tuple[tuple[str, Expr], ...]:
-    """The definitions of a function, in order.
-
-    Raises
-    ------
-    MappingError
-        They are wrong.
-    """
+    """The definitions of a function, in order; raises MappingError where they are wrong."""
     function = group_functions()[name]
     values: dict[str, Type] = dict.fromkeys(arguments_in(function), FLOAT64)
     problems: list[Diagnostic] = []

@@ -21,8 +21,8 @@ from rosetta_jit.language.functions.decisions import type_choice, type_compariso
 from rosetta_jit.language.functions.texts import concatenation, is_textual
 from rosetta_jit.language.functions.user_functions import type_host_call
 from rosetta_jit.language.groups import group_of
-from rosetta_jit.language.resolve.absent_texts import length_there, text_there
 from rosetta_jit.language.resolve.coerced_values import type_coerced, type_nearest
+from rosetta_jit.language.resolve.defaults import length_there, text_there
 from rosetta_jit.language.resolve.groups import type_component
 from rosetta_jit.language.resolve.key_search import is_found, type_search
 from rosetta_jit.language.resolve.list_items import compared_text, type_listed

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.language.functions.decisions import type_comparison
 from rosetta_jit.language.limits import MAX_KEY_SHOWN
-from rosetta_jit.language.resolve.absent_texts import text_there
+from rosetta_jit.language.resolve.defaults import text_there
 from rosetta_jit.language.resolve.list_items import compared_text
 from rosetta_jit.language.scope import Broken, element_type, resolve_path
 from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, FieldStep, IndexStep, LenOf, Local, Place, Search

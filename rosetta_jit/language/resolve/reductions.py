@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue import functions as words
 from rosetta_jit.catalogue import layouts
-from rosetta_jit.catalogue import reductions as words
 from rosetta_jit.language.arrays.counts import LayoutError
 from rosetta_jit.language.arrays.element_loops import element_of
 from rosetta_jit.language.arrays.layouts import view_of

@@ -213,7 +213,7 @@ class _Block:
             return None
         if isinstance(rule, model.Ignore):
             return typed.Ignore(place, rule.span)
-        if has_array(place.type, scope.messages[scope.target].schema, told=True):
+        if has_array(place.type, scope.messages[scope.target].schema, counted=True):
             scope.problems.append(about_rest.no_default(rule.span, describe(place.type)))
             self.broken.append(field_names(place))
             return None

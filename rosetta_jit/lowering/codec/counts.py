@@ -1,22 +1,23 @@
-"""Counts of elements and bytes: read and checked, or written."""
+"""Counts of elements and bytes: read and checked, written, or computed from other fields as a wire schema says."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, Convert
+from rosetta_jit.kernel.ir import Binary, Compare, Convert, Expr, Get
 from rosetta_jit.kernel.terms import add, index, mul, type_of
-from rosetta_jit.lowering.codec.computed import evaluate
+from rosetta_jit.lowering.arithmetic import align, binary
 from rosetta_jit.lowering.codec.fields import scalar_name
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import integer
+from rosetta_jit.model import expr
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr, Scalar
+    from rosetta_jit.kernel.ir import Scalar
     from rosetta_jit.lowering.codec.fields import Fields
     from rosetta_jit.lowering.writer import Where, Writer
-    from rosetta_jit.model import expr
     from rosetta_jit.wire.codec import Count
+
 
 LIMITS = {"i8": 1 << 7, "u8": 1 << 8, "i16": 1 << 15, "u16": 1 << 16, "i32": 1 << 31, "u32": 1 << 32}
 """The first count that a number on the wire cannot carry."""
@@ -96,3 +97,25 @@ def agrees(writer: Writer, fields: Fields, found: Expr | None, value: expr.Expr,
 def as_scalar(scalar: Scalar, value: Expr) -> Expr:
     """A value as a scalar of the wire."""
     return value if type_of(value) == scalar else Convert(scalar, value)
+
+
+def evaluate(value: expr.Expr, fields: Fields, writer: Writer, where: Where) -> Expr:
+    """The value as an int64. Paths start at the message and name numbers that come before, or are given."""
+    match value:
+        case expr.Literal(int(number)):
+            return index(number)
+        case expr.Path(_, steps):
+            path = tuple(step.name for step in steps if isinstance(step, expr.Member))
+            found = fields.get(path)
+            assert found is not None, path
+            return integer(writer.let("told", found) if isinstance(found, Get) else found)  # the proof looks at each reading anew
+        case expr.Len(path):
+            return fields.stored(tuple(step.name for step in path.steps if isinstance(step, expr.Member))).size
+        case expr.Unary(_, operand):
+            return binary(writer, "-", index(0), evaluate(operand, fields, writer, where), where)
+        case expr.Binary(operator, left, right):
+            return binary(writer, operator, evaluate(left, fields, writer, where), evaluate(right, fields, writer, where), where)
+        case expr.Call("align", (number, quantum)):
+            return align(writer, evaluate(number, fields, writer, where), evaluate(quantum, fields, writer, where), where)
+        case _:
+            raise AssertionError(value)

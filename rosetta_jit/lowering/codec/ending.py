@@ -32,7 +32,7 @@ def end(writer: Writer, encoding: Encoding) -> None:
     if encoding.spare:
         _at_most(writer, encoding.spare)
         return
-    told = index(0) if ending is None else _skip(writer, ending)
+    stated = index(0) if ending is None else _skip(writer, ending)
     if ending is None and not 0 < most < ANY:
         writer.expect(
             Compare("eq", writer.position, END), "trailing", MESSAGE, f"{LEFT_OVER}; {REMEDY} leaves them alone" if most else LEFT_OVER
@@ -40,15 +40,15 @@ def end(writer: Writer, encoding: Encoding) -> None:
         return
     with writer.nested() as longer:
         _at_most(writer, most)
-        _zeros(writer, 1 if ending is None else ending.untold, told, f"{LEFT_OVER}; {REMEDY} forgives up to {most}")
+        _zeros(writer, 1 if ending is None else ending.unstated, stated, f"{LEFT_OVER}; {REMEDY} forgives up to {most}")
     writer.emit(If(Compare("lt", writer.position, END), block(longer)))
 
 
 def _skip(writer: Writer, ending: Ending) -> Expr:
     """Exactly as much padding as is announced, whatever its bytes are; gives its size."""
-    told = add(BEGIN, ending.told)
-    writer.require(WIDTH["u8"], MESSAGE, at=told)
-    size = writer.let("padding", Binary("and", integer(Load("u8", told)), index(BITS)))
+    place = add(BEGIN, ending.size_byte)
+    writer.require(WIDTH["u8"], MESSAGE, at=place)
+    size = writer.let("padding", Binary("and", integer(Load("u8", place)), index(BITS)))
     writer.require(size, MESSAGE, "the padding that its header announces is not there")
     writer.advance(size)
     return size
@@ -59,11 +59,11 @@ def _at_most(writer: Writer, size: int) -> None:
     writer.expect(Compare("ge", add(writer.position, size), END), "trailing", MESSAGE, f"more than {size} bytes are left over")
 
 
-def _zeros(writer: Writer, untold: int, told: Expr, detail: str) -> None:
+def _zeros(writer: Writer, multiple: int, stated: Expr, detail: str) -> None:
     """All that is left over are zeros up to the next multiple of so many bytes, and no other padding was announced."""
-    padding = writer.let("zeros", distance(writer, untold))
+    padding = writer.let("zeros", distance(writer, multiple))
     whole = Compare("eq", add(writer.position, padding), END)
-    writer.expect(Binary("and", Compare("eq", told, index(0)), whole), "trailing", MESSAGE, detail)
+    writer.expect(Binary("and", Compare("eq", stated, index(0)), whole), "trailing", MESSAGE, detail)
     number = Local("i64", writer.fresh("i"))
     with writer.nested() as body:
         at = writer.let("at", add(writer.position, number))
@@ -77,7 +77,7 @@ def _pad(writer: Writer, ending: Ending) -> None:
         return
     behind = writer.position
     align(writer, ending.align)
-    if writer.direction == "encode" and ending.untold == 1:
-        told = add(BEGIN, ending.told)
-        writer.require(WIDTH["u8"], MESSAGE, "no room for the message", at=told)
-        writer.emit(Store(told, Convert("u8", Binary("sub", writer.position, behind))))
+    if writer.direction == "encode" and ending.unstated == 1:
+        place = add(BEGIN, ending.size_byte)
+        writer.require(WIDTH["u8"], MESSAGE, "no room for the message", at=place)
+        writer.emit(Store(place, Convert("u8", Binary("sub", writer.position, behind))))

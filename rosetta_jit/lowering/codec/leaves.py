@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import add, index, mul, type_of
-from rosetta_jit.lowering.codec.computed import evaluate
-from rosetta_jit.lowering.codec.counts import LIMITS, agrees, as_scalar, read_count, write_count
+from rosetta_jit.lowering.codec.counts import LIMITS, agrees, as_scalar, evaluate, read_count, write_count
 from rosetta_jit.lowering.codec.fields import scalar_name
 from rosetta_jit.lowering.writer import Where, Writer, integer
 from rosetta_jit.wire.codec import Align, Blob, Computed, Constant, Number, Padding, Table, Utf16

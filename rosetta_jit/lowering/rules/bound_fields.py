@@ -42,7 +42,7 @@ class _Here:
 
     @property
     def scope(self) -> _Here:
-        """An element of which nothing has come is an array in an array: its length is told further out."""
+        """An element of which nothing has come is an array in an array: its length is stated further out."""
         return self if self.passing or self.outer is None else self.outer.scope
 
 
@@ -126,7 +126,7 @@ class BoundFields:
         if self.direction == "decode":
             self.put(path, here)
         elif self.direction == "encode" and here.outer is None:
-            yield from self.told(path, here)
+            yield from self.deciding(path, here)
 
     def put(self, path: wire.Path, here: _Here) -> None:
         """A number that has come."""
@@ -205,12 +205,12 @@ class BoundFields:
         alternatives = [codec for _, codec in choice.alternatives]
         if self.direction != "decode":
             if choice.labels:
-                yield from self.told(choice.path, here)
+                yield from self.deciding(choice.path, here)
             if not choice.labels and not choice.when_empty:
                 alternatives = alternatives[:1]
             elif here.outer is None:
                 for path in (path for codec in alternatives for path in numbers_of_counts(codec)):
-                    yield from self.told(path, here)
+                    yield from self.deciding(path, here)
             if choice.when_empty and not choice.labels:
                 yield from self.counted(choice.path, here)
                 alternatives = [alternatives[choice.when_empty], alternatives[0]]
@@ -224,13 +224,13 @@ class BoundFields:
         for part in parts(value):
             match part:
                 case expr.Path():
-                    yield from self.told(names_of(part), here)
+                    yield from self.deciding(names_of(part), here)
                 case expr.Len(path):
                     yield from self.counted(names_of(path), here)
                 case _:
                     pass
 
-    def told(self, path: wire.Path, here: _Here) -> Iterator[Obstacle]:
+    def deciding(self, path: wire.Path, here: _Here) -> Iterator[Obstacle]:
         """A number that says something of what follows."""
         key = here.path + path
         if key in self.numbers or path in here.passing:

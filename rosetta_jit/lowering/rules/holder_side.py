@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Expr, Get, If, Place, Select, SetField, Used
+from rosetta_jit.kernel.ir import Address, Assign, Binary, Compare, Const, Expr, Get, If, Place, Select, SetField, Switch, Used
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.discriminators import discriminator_of
@@ -17,9 +17,9 @@ from rosetta_jit.language.places import field_names
 from rosetta_jit.language.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.arithmetic import inside
 from rosetta_jit.lowering.codec.fields import OTHER_CASE, has_gaps, member_of, negated, presence_bit, scalar_name
-from rosetta_jit.lowering.rules.discriminators import chosen_case
 from rosetta_jit.lowering.rules.initial_values import initialise, initialise_each
-from rosetta_jit.lowering.writer import block
+from rosetta_jit.lowering.writer import block, integer
+from rosetta_jit.model.initial_values import selected
 from rosetta_jit.model.layout import Number, Row, Span, Variant
 from rosetta_jit.model.types import Array, Bytes, Field, String, Struct
 from rosetta_jit.startup.dataclass import dataclass
@@ -33,8 +33,9 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.writer import Writer
     from rosetta_jit.model.initial_values import InitialValues
     from rosetta_jit.model.layout import Member
-    from rosetta_jit.model.types import Constant
+    from rosetta_jit.model.types import Constant, Union
     from rosetta_jit.wire.codec import Path
+
 
 Key = tuple[object, ...]
 """A place by names and the expressions of its indices."""
@@ -314,3 +315,14 @@ def _got(fields: HolderFields, path: Path) -> Expr:
 
 def _number(default: Constant | None) -> int | float:
     return default if isinstance(default, int | float) else 0
+
+
+def chosen_case(union: Union, value: Expr, writer: Writer) -> Expr:
+    """The number of the case that a value selects."""
+    if isinstance(value, Const):
+        return index(selected(union, int(value.value)))
+    found = writer.var("case", index(0 if union.default is None else union.default + 1))
+    numbers = ((label, number) for number, labels in enumerate(union.labels, 1) for label in labels)
+    cases = tuple((label, (Assign(found.name, index(number)),)) for label, number in numbers)
+    writer.emit(Switch(writer.let("label", integer(value)), cases, ()))
+    return found

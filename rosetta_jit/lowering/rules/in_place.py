@@ -41,7 +41,7 @@ def obstacle(
         return Obstacle((), "messages that contain themselves have no fixed number of places")
     if direction != "decode":
         for place in (rule.place for rule in rules_within(rules) if isinstance(rule, typed.Default)):
-            if has_array(place.type, schema, told=False):
+            if has_array(place.type, schema, counted=False):
                 return Obstacle(wire_key(place)[0], "it is left alone, and must have elements nevertheless")
     return next((found for attempt in attempts for found in _obstacles(attempt, rules, direction)), None)
 

@@ -1,15 +1,20 @@
-"""Reductions: one value of many. What is wrong with their elements is checked before them, where a value is asked for."""
+"""Values that need a look at each element of an array: reductions, and the number of the element that has a key.
+
+What is wrong with the elements of a reduction is checked before them, where a value is asked for.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.kernel.ir import Compare, Const
+from rosetta_jit.kernel.ir import Compare, Const, For, If, Local, Select
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language.function import functions
+from rosetta_jit.language.places import shown_fields
 from rosetta_jit.lowering.codec.fields import scalar_name
 from rosetta_jit.lowering.elements import Elements
+from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 
@@ -39,3 +44,33 @@ def zero_of(reduce: typed.Reduce) -> Const:
     assert isinstance(reduce.type, Bool | Enum | Float | Int)
     scalar = scalar_name(scalar_of(reduce.type))
     return Const(scalar, value=False if scalar == "bool" else 0.0 if scalar in ("f32", "f64") else 0)
+
+
+NONE, SEVERAL = -1, -2
+"""What is found instead of a number."""
+
+
+def number_in(search: typed.Search, values: Evaluation) -> Expr:
+    """The number of the element; an error of kind ``index`` unless there is one, where that is required."""
+    if not search.required:
+        return _looked_for(search, values)
+    found = values.of(replace(search, required=False))
+    array = shown_fields(search.place.steps)
+    for wrong, what in ((NONE, "has no element"), (SEVERAL, "has more than one element")):
+        is_right = Compare("ne", found, index(wrong))
+        values.writer.expect(is_right, "index", values.where, f"`{array}` {what} {search.wanted}", line=values.line)
+    return found
+
+
+def _looked_for(search: typed.Search, values: Evaluation) -> Local:
+    writer = values.writer
+    count = values.source.count(search.place, values)
+    found, number = writer.var("found", index(NONE)), Local("i64", writer.fresh("element"))
+    with values.source.forgetting(), writer.nested() as body:
+        inner = values.with_local(search.variable.name, number)
+        holds = inner.of(search.condition)
+        with writer.nested() as hit:
+            writer.assign(found, Select(Compare("eq", found, index(NONE)), number, index(SEVERAL)))
+        writer.emit(If(holds, block(hit)))
+    writer.emit(For(number.name, count, block(body)))
+    return found

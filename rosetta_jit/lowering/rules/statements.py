@@ -16,14 +16,13 @@ from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, If, IsText, Local, W
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import binary
-from rosetta_jit.lowering.calls import lowered
+from rosetta_jit.lowering.evaluation import lowered
 from rosetta_jit.lowering.made_arrays import UINT8
-from rosetta_jit.lowering.rules.copies import copy, is_endless
 from rosetta_jit.lowering.rules.filters import filtered
 from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
 from rosetta_jit.lowering.rules.look_ahead import look_ahead
 from rosetta_jit.lowering.rules.packed_values import place_of, units_of
-from rosetta_jit.lowering.rules.putting import Putting
+from rosetta_jit.lowering.rules.putting import Putting, copy, is_endless
 from rosetta_jit.lowering.rules.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.rules.state import remember
 from rosetta_jit.lowering.rules.wire_side import WireSide, wire_key

@@ -14,16 +14,15 @@ from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.function import functions
 from rosetta_jit.language.walk import parts
 from rosetta_jit.lowering.arithmetic import COMPARISONS, binary, differ
-from rosetta_jit.lowering.calls import lowered
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
+from rosetta_jit.lowering.evaluation import lowered
 from rosetta_jit.lowering.rules.host_calls import called
-from rosetta_jit.lowering.rules.key_search import number_in
 from rosetta_jit.lowering.rules.look_ahead import look_ahead_of
 from rosetta_jit.lowering.rules.nearest import nearest
-from rosetta_jit.lowering.rules.reductions import reduced
+from rosetta_jit.lowering.rules.reductions import number_in, reduced
 from rosetta_jit.lowering.rules.rejections import reject_with
 from rosetta_jit.lowering.rules.state import remembered
-from rosetta_jit.lowering.texts.comparison import is_text
+from rosetta_jit.lowering.texts.search import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int

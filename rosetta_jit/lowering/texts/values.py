@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 from rosetta_jit.kernel.ir import Binary, Compare, Const, If, IsText, Used, Wire
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
-from rosetta_jit.lowering.calls import lowered
+from rosetta_jit.lowering.evaluation import lowered
 from rosetta_jit.lowering.texts.views import LOST, TRUE, Quoted, Text, View, joined, lane_of, placed, sound
 from rosetta_jit.lowering.writer import block
 

@@ -30,13 +30,7 @@ def refused(wanted: str, array: pa.Array, path: str) -> ValuesError:
 
 
 def solid(array: pa.Array, path: str) -> pa.Array:
-    """The array, in which nothing is null.
-
-    Raises
-    ------
-    ValuesError
-        Something is.
-    """
+    """The array, in which nothing is null; raises ValuesError where something is."""
     if array.null_count:
         number = int(np.argmin(array.is_valid().to_numpy(zero_copy_only=False)))
         raise ValuesError(path, f"value {number} is null, and the field cannot be absent")

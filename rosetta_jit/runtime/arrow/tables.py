@@ -52,13 +52,7 @@ def flat(table: pa.Table) -> pa.Table:
 
 
 def with_errors(table: pa.Table, name: str, errors: Mapping[int, DecodeError], numbers: Iterable[int]) -> pa.Table:
-    """A table with one column more: the errors of messages of such numbers, as text.
-
-    Raises
-    ------
-    ValueError
-        If a field has that name.
-    """
+    """A table with one column more: the errors of messages of such numbers, as text; raises ValueError if a field has that name."""
     if name in table.schema.names:
         raise ValueError(f"errors={name!r} is the name of a column: give the column of errors another one")
     texts = [str(errors[number]) if number in errors else None for number in numbers]

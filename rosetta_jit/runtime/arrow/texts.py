@@ -26,13 +26,7 @@ class NoTextError(ValueError):
 
 
 def text_array(type_: String, data: NDArray[Any], places: Indices, validity: pa.Buffer | None) -> pa.Array:
-    """Strings of a type, whose bytes or code units lie one behind the other.
-
-    Raises
-    ------
-    NoTextError
-        One is no text.
-    """
+    """Strings of a type, whose bytes or code units lie one behind the other; raises NoTextError where one is no text."""
     codec = UTF_16 if type_.encoding == "utf-16" else "utf-8"
     try:
         octets, ends = _as_utf8(data, places) if codec == UTF_16 else (data, places)

@@ -109,13 +109,7 @@ def _moment(record: Record) -> _Moment | None:
 
 
 def moment_columns(record: Record, array: pa.Array, path: str) -> dict[str, pa.Array]:
-    """Timestamps as the fields of a struct.
-
-    Raises
-    ------
-    ValuesError
-        If the struct is no time, or has no unit that is small enough.
-    """
+    """Timestamps as the fields of a struct; raises ValuesError if the struct is no time, or has no unit that is small enough."""
     moment = _moment(record)
     if moment is None:
         raise ValuesError(path, f"{record.struct or 'the record'} is no time, found a column of {array.type}")

@@ -7,25 +7,25 @@ on the way. Whatever is not known for certain is noted, by the path on which the
 from __future__ import annotations
 
 import builtins
+import dis
 import enum
 from dataclasses import field
+from itertools import takewhile
 from types import CodeType, FunctionType, ModuleType
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 
 from rosetta_jit.catalogue import uncertain as words
 from rosetta_jit.runtime.functions import kinds
-from rosetta_jit.runtime.functions.bytecode import named
 from rosetta_jit.runtime.functions.known import is_known, is_known_module
 from rosetta_jit.runtime.limits import MAX_FUNCTION_DEPTH, MAX_FUNCTION_VALUES, MAX_FUNCTIONS
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
-    from rosetta_jit.runtime.functions.bytecode import Named
 
 _ABSENT = object()
 
@@ -65,13 +65,7 @@ def content_of(given: object, name: str) -> Content:
 
 
 def python_function(given: object) -> FunctionType:
-    """The function that Python runs: itself, or what numba's `njit` was put on.
-
-    Raises
-    ------
-    TypeError
-        It is neither.
-    """
+    """The function that Python runs: itself, or what numba's `njit` was put on; raises TypeError where it is neither."""
     found = getattr(given, "py_func", given)
     if not isinstance(found, FunctionType):
         raise TypeError(f"a mapping calls Python functions, and those of numba's njit; {type(given).__name__} is neither")
@@ -232,3 +226,46 @@ def _structure(value: Any) -> tuple[object, ...] | None:
     if type(value) is slice:
         return "slice", value.start, value.stop, value.step
     return kinds.set_of_plain(cast("frozenset[object]", value)) if type(value) is frozenset else None
+
+
+ATTRIBUTES = frozenset(("LOAD_ATTR", "LOAD_METHOD"))
+SILENT = frozenset(("EXTENDED_ARG", "CACHE", "NOP"))
+"""Instructions that may stand between a value and the attribute that is taken of it."""
+
+LOCAL = frozenset(("MAKE_CELL", "LOAD_CLOSURE", "STORE_DEREF", "DELETE_DEREF", "STORE_ATTR"))
+"""Instructions that have a name and reach nothing outside by it."""
+
+_NAMING = frozenset((*dis.hasname, *dis.hasfree))
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """One use of a name: of a global, of a cell of the closure, or in an instruction that is not known."""
+
+    kind: Literal["global", "cell", "strange"]
+    name: str
+    attributes: tuple[str, ...] = ()
+
+
+def named(code: CodeType) -> Iterator[Named]:
+    """All uses of names, in code and in the code within it.
+
+    `pkg.consts.K * SCALE` names the global `pkg` with the attributes `consts` and `K`, and the global `SCALE`. A name that an unknown
+    instruction uses is given as `strange`.
+    """
+    instructions = [each for each in dis.get_instructions(code) if each.opname not in SILENT]
+    for position, instruction in enumerate(instructions):
+        if instruction.opcode in _NAMING:
+            yield from _use(instructions, position)
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from named(constant)
+
+
+def _use(instructions: Sequence[dis.Instruction], position: int) -> Iterator[Named]:
+    operation, name = instructions[position].opname, str(instructions[position].argval)
+    if operation in ("LOAD_GLOBAL", "LOAD_DEREF"):
+        following = takewhile(lambda each: each.opname in ATTRIBUTES, instructions[position + 1 :])
+        yield Named("global" if operation == "LOAD_GLOBAL" else "cell", name, tuple(str(each.argval) for each in following))
+    elif operation not in ATTRIBUTES and operation not in LOCAL:
+        yield Named("strange", name)

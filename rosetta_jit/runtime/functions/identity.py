@@ -43,13 +43,7 @@ class Identity:
 
 
 def identify(given: object, name: str) -> Identity:
-    """Look at a function, before it is compiled.
-
-    Raises
-    ------
-    TypeError
-        It is neither a Python function nor one of numba's njit.
-    """
+    """Look at a function, before it is compiled; raises TypeError where it is neither a Python function nor one of numba's njit."""
     content, around = content_of(given, name), _around()
     before = tuple(words.compiled_before(path) for path, each in content.dispatchers if not _is_as_now(each, around))
     uncertain = tuple(dict.fromkeys((*content.uncertain, *before, *around.uncertain)))

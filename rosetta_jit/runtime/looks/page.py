@@ -23,7 +23,7 @@ from rosetta_jit.runtime.limits import (
     MAX_PAGE_ROWS,
 )
 from rosetta_jit.runtime.looks.brief import brief, present_fields
-from rosetta_jit.runtime.looks.png import png
+from rosetta_jit.runtime.looks.pixels import png
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -1,13 +1,14 @@
-"""Pixels out of the bytes of an image, as frameworks describe them: rows with padding, channels in some order, planes."""
+"""Pixels out of the bytes of an image, as frameworks describe them: rows with padding, channels in some order, planes; and as PNG."""
 
 from __future__ import annotations
 
+import struct
+import zlib
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rosetta_jit.runtime.limits import MAX_SHOWN_SIDE
-from rosetta_jit.runtime.looks.png import eight_bits
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike, NDArray
@@ -56,3 +57,35 @@ def shown(pixels: NDArray[Any], order: tuple[int, ...]) -> Any:
         taken = taken[:, :, :1]
     taken = taken if taken.dtype == np.uint8 else eight_bits(taken)
     return taken[:, :, 0] if taken.shape[2] == 1 else taken
+
+
+SIGNATURE = b"\x89PNG\r\n\x1a\n"
+COLOR_TYPES = {1: 0, 3: 2, 4: 6}
+"""Grey, RGB and RGBA by the number of channels."""
+FASTEST = 1
+
+
+def png(pixels: NDArray[np.uint8]) -> bytes:
+    """An image of shape (height, width) or (height, width, channels) with 1, 3 or 4 channels of 8 bits, as PNG.
+
+    PNG specification, third edition: 5.3 chunks, 11.2 IHDR, IDAT and IEND.
+    """
+    height, width = pixels.shape[:2]
+    channels = pixels.shape[2] if pixels.ndim == 3 else 1
+    rows = np.zeros((height, 1 + width * channels), np.uint8)  # each row begins with its filter: 0, none
+    rows[:, 1:] = pixels.reshape(height, -1)
+    header = struct.pack(">2I5B", width, height, 8, COLOR_TYPES[channels], 0, 0, 0)
+    return SIGNATURE + _chunk(b"IHDR", header) + _chunk(b"IDAT", zlib.compress(rows.tobytes(), FASTEST)) + _chunk(b"IEND", b"")
+
+
+def _chunk(kind: bytes, data: bytes) -> bytes:
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+def eight_bits(values: NDArray[Any]) -> NDArray[np.uint8]:
+    """Numbers of any kind as grey values between their least and their greatest; what is no number is black."""
+    numbers = np.where(np.isfinite(values), values, np.nan).astype(np.float64)
+    known = numbers[~np.isnan(numbers)]
+    if not known.size or known.min() == known.max():
+        return np.zeros(values.shape, np.uint8)
+    return np.nan_to_num((numbers - known.min()) * (255.0 / (known.max() - known.min()))).astype(np.uint8)

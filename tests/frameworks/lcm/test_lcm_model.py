@@ -9,7 +9,7 @@ import pytest
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.lcm.fingerprint import enum_hash
 from rosetta_jit.frameworks.lcm.idl import parse
-from rosetta_jit.frameworks.lcm.numbers import floating, integer
+from rosetta_jit.frameworks.lcm.schema import floating, integer
 from rosetta_jit.frameworks.lcm.shape import written_sizes
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Ref, String

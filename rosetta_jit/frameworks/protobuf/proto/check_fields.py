@@ -1,4 +1,4 @@
-"""Labels, groups, maps, oneofs, enums, defaults and `packed`: what a field may be in its version of the language."""
+"""Labels, groups, maps, oneofs, enums, defaults and `packed`: what a field or an extension may be in its version of the language."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
+from rosetta_jit.frameworks.protobuf.proto.check_numbers import containing, in_order
 from rosetta_jit.frameworks.protobuf.proto.constants import WrongValueError, constant, enum_number, spelled
 from rosetta_jit.frameworks.protobuf.proto.declarations import fields_in
-from rosetta_jit.frameworks.protobuf.proto.options import flag
+from rosetta_jit.frameworks.protobuf.proto.options import OPTIONS, flag
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS, is_packable
 from rosetta_jit.frameworks.protobuf.proto.tree import EDITIONS, Field, MapType, Name, Oneof
 
@@ -17,8 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredField
+    from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredExtension, DeclaredField
     from rosetta_jit.frameworks.protobuf.proto.tree import Option, Version
+
 
 NO_KEYS = frozenset(("double", "float", "bytes"))
 """Scalars that a map cannot have as keys."""
@@ -145,3 +147,47 @@ def _can_pack(field: Field, declared: Declarations) -> bool:
         return False
     word = field.type.text
     return word == "" or word[1:] in declared.enums or (word in SCALARS and is_packable(word))
+
+
+OPTION_MESSAGES = frozenset(f".google.protobuf.{name}" for name in OPTIONS)
+
+
+def check_extensions(declared: Declarations) -> Iterator[Diagnostic]:
+    """Every extension, and every message that takes extensions alone."""
+    users: dict[tuple[str, int], str] = {}
+    ranges = {full: in_order(entry.message.extensions) for full, entry in declared.messages.items()}
+    for extension in declared.extensions.values():
+        extendee, field = extension.extendee.text, extension.field
+        yield from _shape(extension, declared)
+        if not extendee:
+            continue
+        if not containing(ranges[extendee[1:]], field.number):
+            yield say.no_extension_number(field.number_span, field.number, extendee[1:])
+        first = users.setdefault((extendee, field.number), extension.full)
+        if first != extension.full:
+            yield say.repeated_extension(field.number_span, field.number, extendee[1:], first)
+    for entry in declared.messages.values():
+        if entry.message.members and flag(entry.message.options, "message_set_wire_format"):
+            yield say.message_set_field(entry.message.name)
+
+
+def _shape(extension: DeclaredExtension, declared: Declarations) -> Iterator[Diagnostic]:
+    field = extension.field
+    if isinstance(field.type, MapType):
+        yield say.map_extension(field.type.span)
+    elif field.label == "required" and extension.entry.version == "proto2":
+        yield say.required_extension(field.label_span)
+    extendee = extension.extendee.text
+    if extendee and extension.entry.version == "proto3" and extendee not in OPTION_MESSAGES:
+        yield say.extension_in_proto3(extension.extendee)
+    target = declared.messages.get(extendee[1:])
+    if target and flag(target.message.options, "message_set_wire_format") and not _is_item(extension, declared):
+        yield say.message_set_item(field.name)
+
+
+def _is_item(extension: DeclaredExtension, declared: Declarations) -> bool:
+    """Whether an extension can stand in a MessageSet: an optional message can."""
+    type_, entry = extension.field.type, extension.entry
+    singular = not entry.repeated and entry.features.field_presence != "LEGACY_REQUIRED"
+    prefixed = entry.features.message_encoding == "LENGTH_PREFIXED"
+    return isinstance(type_, Name) and singular and prefixed and type_.text[1:] in declared.messages

@@ -23,12 +23,7 @@ class WrongValueError(ValueError):
 
 
 def constant(type_: Scalar, value: Value) -> Constant:
-    """The constant of a scalar type.
-
-    Raises
-    ------
-    WrongValueError
-    """
+    """The constant of a scalar type; raises WrongValueError."""
     match type_, value:
         case Bool(), Word("true" | "false" as word):
             return word == "true"
@@ -47,12 +42,7 @@ def constant(type_: Scalar, value: Value) -> Constant:
 
 
 def enum_number(numbers: Mapping[str, int], value: Value) -> int:
-    """The number of the value of an enum that a word names.
-
-    Raises
-    ------
-    WrongValueError
-    """
+    """The number of the value of an enum that a word names; raises WrongValueError."""
     match value:
         case Word(text) if text in numbers:
             return numbers[text]

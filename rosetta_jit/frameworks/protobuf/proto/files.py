@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.limits import MAX_FILES
 from rosetta_jit.frameworks.protobuf.proto.file_set import FileSet
 from rosetta_jit.frameworks.protobuf.proto.reading import read
-from rosetta_jit.frameworks.protobuf.proto.wellknown import well_known
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -80,3 +80,22 @@ def _is_new(import_: Import, file: File, stack: list[_Open], problems: list[Diag
         problems.append(of_file.repeated_import(import_.span, import_.path))
         return False
     return True
+
+
+FOLDER = "google/protobuf/"
+WELL_KNOWN = frozenset(
+    ("any", "api", "descriptor", "duration", "empty", "field_mask", "source_context", "struct", "timestamp", "type", "wrappers")
+)
+
+
+def well_known(path: str) -> File | None:
+    """One of protobuf's own files, from the Python package; None where it has no such file."""
+    name = path.removeprefix(FOLDER).removesuffix(".proto")
+    if name not in WELL_KNOWN or path != f"{FOLDER}{name}.proto":
+        return None
+    from google.protobuf.descriptor_pb2 import FileDescriptorProto
+
+    from rosetta_jit.frameworks.protobuf.proto.descriptor_reading import read_files
+
+    module = import_module(f"google.protobuf.{name}_pb2")
+    return read_files([FileDescriptorProto.FromString(module.DESCRIPTOR.serialized_pb)], [])[0]

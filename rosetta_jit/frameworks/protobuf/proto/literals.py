@@ -30,22 +30,12 @@ def number(text: str) -> int | float | None:
 
 
 def string(text: str) -> bytes:
-    """The bytes between the quotes of a string token, escapes replaced.
-
-    Raises
-    ------
-    EscapeError
-    """
+    """The bytes between the quotes of a string token, escapes replaced; raises EscapeError."""
     return unescape(text[1:-1])
 
 
 def unescape(text: str) -> bytes:
-    """Replace C escapes; everything else is UTF-8.
-
-    Raises
-    ------
-    EscapeError
-    """
+    """Replace C escapes; everything else is UTF-8; raises EscapeError."""
     out = bytearray()
     end = 0
     for match in ESCAPE.finditer(text):

@@ -160,12 +160,7 @@ def _told(parts: tuple[str, ...], value: Value) -> Iterator[tuple[str, ...]]:
 
 
 def values(type_: str, value: Value, declared: Declarations) -> Iterator[Constant]:
-    """The value of an option of some type, where it is one scalar.
-
-    Raises
-    ------
-    WrongValueError
-    """
+    """The value of an option of some type, where it is one scalar; raises WrongValueError."""
     if type_ in SCALARS:
         yield constant(SCALARS[type_], value)
     elif type_[1:] in declared.enums:

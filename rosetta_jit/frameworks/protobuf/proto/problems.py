@@ -12,13 +12,7 @@ if TYPE_CHECKING:
 
 
 def refuse(problems: list[Diagnostic]) -> None:
-    """Raise what was found, file by file and in the order of the text.
-
-    Raises
-    ------
-    SchemaError
-        Where anything was found.
-    """
+    """Raise SchemaError with what was found, file by file and in the order of the text, where anything was."""
     if problems:
         raise SchemaError(tuple(sorted(problems[:MAX_REPORTED], key=_place)))
 

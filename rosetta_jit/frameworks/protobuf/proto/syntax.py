@@ -61,7 +61,7 @@ def span_of(source: Source, token: Token) -> Span:
 @cache
 def grammar() -> Grammar:
     """The parser; made once a process, at the first file."""
-    return parser_of(GRAMMAR, start=START, told=MISTAKES)
+    return parser_of(GRAMMAR, start=START, mistake_tokens=MISTAKES)
 
 
 def _tokens(source: Source) -> Iterator[Token]:

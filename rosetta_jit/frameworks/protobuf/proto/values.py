@@ -8,9 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, cast
 
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
-from rosetta_jit.frameworks.protobuf.limits import MAX_NAME
+from rosetta_jit.frameworks.protobuf.limits import MAX_COMMENT, MAX_NAME
 from rosetta_jit.frameworks.protobuf.proto import literals, syntax
-from rosetta_jit.frameworks.protobuf.proto.comments import leading_comment
 from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Entry, Listing, Name, Option, Value, Version, Word
 from rosetta_jit.parsing.lalr import Token, Tree
 from rosetta_jit.source import Source, Span
@@ -20,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
+
 
 Node = Tree
 
@@ -160,3 +160,36 @@ def ends(node: Node) -> tuple[Token, Token]:
             pending += top.children[::-step]
         tokens.append(top)
     return tokens[0], tokens[1]
+
+
+def leading_comment(text: str, start: int) -> str:
+    """The text of the comment that ends where the declaration at ``start`` begins; empty where there is none."""
+    begin = max(0, start - MAX_COMMENT)
+    before = text[begin:start]
+    body = before.rstrip()
+    if before[len(body) :].count("\n") > 1:
+        return ""
+    lines = body.split("\n")
+    if lines[-1].lstrip().startswith("//"):
+        return _line_comments(lines)
+    if body.endswith("*/"):
+        return _block_comment(body)
+    return ""
+
+
+def _line_comments(lines: list[str]) -> str:
+    kept: list[str] = []
+    for line in reversed(lines):
+        stripped = line.strip()
+        if not stripped.startswith("//"):
+            break
+        kept.append(stripped.lstrip("/").strip())
+    return "\n".join(reversed(kept)).strip()
+
+
+def _block_comment(body: str) -> str:
+    start = body.rfind("/*")
+    # A comment behind a statement, on its line, is about that statement.
+    if start < 0 or body[:start].rpartition("\n")[2].strip():
+        return ""
+    return "\n".join(line.strip().lstrip("*").strip() for line in body[start + 2 : -2].split("\n")).strip()

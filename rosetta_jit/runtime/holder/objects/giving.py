@@ -46,13 +46,7 @@ class Givers:
         self._makers: dict[int, ByClass] = {}
 
     def fill(self, value: object, holder: Any) -> None:
-        """Give an object the values of a holder.
-
-        Raises
-        ------
-        ValuesError
-            If it lacks an attribute, or no class is known for a message in it.
-        """
+        """Give an object the values of a holder; raises ValuesError if it lacks an attribute, or no class is known for a message in it."""
         whole = self._family.wholes[type(value)]
         if whole is not None:
             whole.fill(value, holder)
@@ -224,14 +218,14 @@ class Givers:
             found = cast("Any", type(old) if old is not None else known)
             if found is None:
                 raise ValuesError(path, f"no class is known for {record.struct}: name it in `types`")
-            getters, told = shown.access_.getters, shown.access_.getters[entry.name](shown)
-            case = unions.case_of(record, choice, told)
+            getters, selector = shown.access_.getters, shown.access_.getters[entry.name](shown)
+            case = unions.case_of(record, choice, selector)
             value = None
             if case is not None:
                 value = self._value(case.node, found, shapes.annotation(found, case.name), f"{path}.{case.name}")(
                     getters[case.name](shown), None
                 )
-            return unions.made(found, told, value)
+            return unions.made(found, selector, value)
 
         return given
 
@@ -252,13 +246,7 @@ class Givers:
 
 
 def _spelled(object_type: type, names: tuple[str, ...], path: str) -> str:
-    """What a class calls an attribute.
-
-    Raises
-    ------
-    ValuesError
-        If it has none: a value would be lost.
-    """
+    """What a class calls an attribute; raises ValuesError if it has none: a value would be lost."""
     own = shapes.declared(object_type)
     known = next((name for name in names if name in own or hasattr(object_type, name)), None)
     if known is None and not (shapes.has_dict(object_type) and not shapes.fields_of(object_type)):

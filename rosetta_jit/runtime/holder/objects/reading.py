@@ -56,13 +56,13 @@ def plain_record(record: Record, value: Any, family: HolderFamily, path: str = "
 
 def _of_union(record: Record, entry: Entry, choice: Choice, value: object, family: HolderFamily, path: str, depth: int) -> dict[str, Any]:
     discriminator, inner = unions.parts_of(value, path)
-    told = number(discriminator)
-    case = unions.case_of(record, choice, told) if isinstance(told, int) else None
-    found = {entry.name: told}
+    selector = number(discriminator)
+    case = unions.case_of(record, choice, selector) if isinstance(selector, int) else None
+    found = {entry.name: selector}
     if case is not None:
         found[case.name] = plain(case.node, inner, family, f"{path}.{case.name}", depth + 1)
     elif inner is not None:
-        raise ValuesError(path, f"the discriminator {told!r} selects no case, and there is a value")
+        raise ValuesError(path, f"the discriminator {selector!r} selects no case, and there is a value")
     return found
 
 

@@ -212,13 +212,7 @@ def _slots(object_type: type) -> tuple[str, ...]:
 
 
 def _version(object_type: type) -> int:
-    """The version of a class: CPython gives it another one whenever it changes.
-
-    Raises
-    ------
-    TypeError
-        If it has none.
-    """
+    """The version of a class: CPython gives it another one whenever it changes; raises TypeError if it has none."""
     hasattr(object_type, "__slots__")  # a lookup is what gives it one
     version = _version_now(object_type)
     if not version:

@@ -38,13 +38,7 @@ def case_of(record: Record, choice: Choice, discriminator: Any) -> Entry | None:
 
 
 def parts_of(value: object, path: str) -> tuple[Any, Any]:
-    """Discriminator and value of an object.
-
-    Raises
-    ------
-    ValuesError
-        If it has no such attributes.
-    """
+    """Discriminator and value of an object; raises ValuesError if it has no such attributes."""
     for discriminator, case in ATTRIBUTES:
         if hasattr(value, discriminator) and hasattr(value, case):
             return getattr(value, discriminator), getattr(value, case)
