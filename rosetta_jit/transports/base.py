@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections import deque
 from dataclasses import field
-from time import monotonic
+from time import monotonic, time_ns
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.errors import TransportError
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.transports.address import Option
 
+    Bytes = bytes | memoryview
     Deliver = Callable[["Message"], object]
     Lost = Callable[[str, int], object]
     Answer = Callable[["Message"], "bytes | bytearray | memoryview | None"]
@@ -88,7 +89,15 @@ class Source(End):
 
     Iterating ends when the source is closed, or where the channel has an end (a pipe, a file). Messages that nobody takes
     wait, at most ``queue`` of them; then the oldest is dropped, and counted as `queue full`.
+
+    Attributes
+    ----------
+    plain : callable or None
+        Takes the bytes of messages, and the time when they were sent or else received, in place of the callback: for bridges, which need
+        nothing else. It may change while messages come.
     """
+
+    plain: Callable[[Bytes, int], object] | None = None
 
     def __init__(self, address: str, deliver: Deliver | None, lost: Lost | None, *, queue: int = QUEUE) -> None:
         super().__init__(address, lost)
@@ -105,10 +114,32 @@ class Source(End):
         self.messages += 1
         self.bytes += len(message.data)
         try:
-            self._deliver(message)
+            if self.plain is not None:
+                self.plain(message.data, message.sent or message.time)
+            else:
+                self._deliver(message)
         except Exception as error:  # noqa: BLE001 - the user's code: it must not end the thread that serves all connections
-            self.lose("the callback failed")
-            threading.excepthook(threading.ExceptHookArgs((type(error), error, error.__traceback__, threading.current_thread())))
+            self._callback_failed(error)
+
+    def taker(self, channel: str, type_: str | None = None, attributes: Mapping[str, Any] | None = None) -> Callable[[Bytes], object]:
+        """What takes the bytes of messages that are alike in all else; for transports. As `arrived`, and quicker."""
+
+        def take(data: Bytes) -> None:
+            self.messages += 1
+            self.bytes += len(data)
+            try:
+                if self.plain is not None:
+                    self.plain(data, time_ns())
+                else:
+                    self._deliver(Message(data, channel, type_, time_ns(), None, attributes))
+            except Exception as error:  # noqa: BLE001 - as above
+                self._callback_failed(error)
+
+        return take
+
+    def _callback_failed(self, error: Exception) -> None:
+        self.lose("the callback failed")
+        threading.excepthook(threading.ExceptHookArgs((type(error), error, error.__traceback__, threading.current_thread())))
 
     def opened(self, close: Callable[[], None]) -> Source:
         """Say what closes it; for transports."""
