@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rosetta_jit.transports.address import Option
 
     Bytes = bytes | memoryview
+    Sendable = bytes | bytearray | memoryview
     Deliver = Callable[["Message"], object]
     Lost = Callable[[str, int], object]
     Answer = Callable[["Message"], "bytes | bytearray | memoryview | None"]
@@ -202,7 +203,16 @@ class Source(End):
 
 
 class Sink(End):
-    """Where messages are sent; a context manager. Transports derive from it."""
+    """Where messages are sent; a context manager. Transports derive from it.
+
+    Attributes
+    ----------
+    at_once : callable or None
+        The shortest way of a message, where a transport has one: sends bytes to the only peer, if it takes them now. False where more is to
+        be done, which `send` does: then nothing was sent or counted.
+    """
+
+    at_once: Callable[[Sendable], bool] | None = None
 
     def send(self, data: bytes | bytearray | memoryview, *, time: int | None = None, attributes: Mapping[str, Any] | None = None) -> bool:
         """Send one message. It never waits for a peer longer than the transport's options say.

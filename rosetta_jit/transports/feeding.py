@@ -116,24 +116,21 @@ class Feed:
         self._end += count
         if type(self._want) is not Frames:
             self._pieces()
-        if type(self._want) is Frames:
-            self._messages(self._want)
-        return True
-
-    def _messages(self, frames: Frames) -> None:
-        """Hand on the messages that have come whole."""
-        take, buffer, size_at, head = frames.take, self._buffer, frames.length.unpack_from, frames.length.size
-        start, end = self._start, self._end
+            if type(self._want) is not Frames:
+                return True
+        frames, buffer, start, end = self._want, self._buffer, self._start, self._end
+        head, take = frames.length.size, frames.take
         while end - start >= head and not self.done:
-            (size,) = size_at(buffer, start)
+            (size,) = frames.length.unpack_from(buffer, start)
             if size > frames.most:
                 raise too_large(size, frames.most)
             start += head
             if end - start < size:
-                return
+                break
             self._start = stop = start + size
             take(buffer[start:stop])
             start = stop
+        return True
 
     def _pieces(self) -> None:
         """Hand on to the generator what it asks for, as far as that has come."""

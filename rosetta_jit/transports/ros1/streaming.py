@@ -247,6 +247,15 @@ class RosSink(Sink):
             self.passed(len(data))
         return taken
 
+    def at_once(self, data: bytes | bytearray | memoryview) -> bool:
+        """Send to the only subscriber, where nothing is kept for later ones."""
+        size, streams = len(data), tuple(self._streams)
+        if len(streams) != 1 or self._latch or size > self._most or self._closed or not streams[0].send(LENGTH.pack(size), data):
+            return False
+        self.messages += 1
+        self.bytes += size
+        return True
+
     def flush(self, timeout: float = 5.0) -> bool:
         until = monotonic() + timeout
         return all(each.wait(max(until - monotonic(), 0), empty=True) for each in tuple(self._streams))

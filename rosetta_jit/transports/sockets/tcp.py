@@ -130,7 +130,7 @@ class TcpSink(Sink):
         self._most: int = options["max_message"]
         self._length = LENGTHS.get(self._frame, LENGTHS["u64"])
         self._largest = min(self._most, 256**self._length.size - 1) if self._frame in LENGTHS else -1
-        """Bytes that a message may have to be sent to the only peer by the shortest way; once it is closed, none has so few."""
+        """Bytes that a message may have to be sent by `at_once`; once this is closed, none has so few."""
         self._wait = options["timeout"] if options["wait"] else 0
         self._linger: float = options["linger"]
         self._closed = False
@@ -138,15 +138,6 @@ class TcpSink(Sink):
 
     def send(self, data: bytes | bytearray | memoryview, *, time: int | None = None, attributes: Mapping[str, Any] | None = None) -> bool:
         del time, attributes
-        size, streams = len(data), self._links.streams
-        if len(streams) == 1 and size <= self._largest and streams[0].send(self._length.pack(size), data):
-            self.messages += 1
-            self.bytes += size
-            return True
-        return self._send(data)
-
-    def _send(self, data: bytes | bytearray | memoryview) -> bool:
-        """Send to several, or to one that may not take it."""
         if self._closed:
             raise TransportError("closed", self.address, "this sink is closed")
         parts = framed(self._frame, data, self._most, self.address)
@@ -163,6 +154,15 @@ class TcpSink(Sink):
         if taken:
             self.passed(len(data))
         return taken
+
+    def at_once(self, data: bytes | bytearray | memoryview) -> bool:
+        """Send to the only connection."""
+        size, streams = len(data), self._links.streams
+        if len(streams) != 1 or size > self._largest or not streams[0].send(self._length.pack(size), data):
+            return False
+        self.messages += 1
+        self.bytes += size
+        return True
 
     def flush(self, timeout: float = 5.0) -> bool:
         return self._links.flush(timeout)
