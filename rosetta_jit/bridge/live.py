@@ -75,7 +75,6 @@ class LiveRoute:
         self.problem = "not open yet"
         self._say = say
         self._sink: Sink | None = None
-        self._at_once: Callable[[Bytes], bool] | None = None
         self._caller: Caller | None = None
         self._interval_ns = 0 if route.rate is None else int(1e9 / route.rate)
         self._due_ns = 0
@@ -91,7 +90,6 @@ class LiveRoute:
 
     def open(self, sink: Sink | None, caller: Caller | None) -> None:
         """Begin: the target is there."""
-        self._at_once = None if sink is None else sink.at_once
         self._sink, self._caller = sink, caller
 
     @property
@@ -134,8 +132,8 @@ class LiveRoute:
             return
         if made is None:
             return
-        if self._caller is None and not self._waiting and not self._held:
-            if self._at_once is not None and self._at_once(made):
+        if self._sink is not None and not self._waiting and not self._held:
+            if self._sink.at_once(made):
                 counts.passed(len(made), perf_counter_ns() - begun)
                 return
             if self._send(made, time, begun):

@@ -13,6 +13,7 @@ from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
 from rosetta_jit.transports.end import End
 from rosetta_jit.transports.limits import MAX_QUEUE_BYTES
+from rosetta_jit.transports.message import Message
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from rosetta_jit.transports.address import Option
 
     Bytes = bytes | memoryview
-    Sendable = bytes | bytearray | memoryview
     Deliver = Callable[["Message"], object]
     Lost = Callable[[str, int], object]
     Answer = Callable[["Message"], "bytes | bytearray | memoryview | None"]
@@ -30,59 +30,6 @@ ANSWER_FAILED = "the answer failed"
 
 QUEUE = 1000
 """Messages that wait for who iterates over a source, where nobody says how many."""
-
-
-class Message:
-    """One message as it came.
-
-    Attributes
-    ----------
-    data : bytes or memoryview
-        Its bytes. A memoryview is valid until the callback that got the message returns: see `keep`.
-    channel : str
-        Which channel it came over: a subscription may be for several.
-    type : str or None
-        The type's name, where the middleware tells it.
-    time : int
-        When it was received, in nanoseconds since 1970.
-    sent : int or None
-        When it was sent, where the middleware tells it, in nanoseconds since 1970.
-    attributes : mapping
-        What else the middleware tells: the envelope of YARP, event ids and causes of RSB, the attachment of zenoh.
-    """
-
-    __slots__ = ("attributes", "channel", "data", "sent", "time", "type")
-
-    def __init__(
-        self,
-        data: bytes | memoryview,
-        channel: str,
-        type: str | None = None,  # noqa: A002 - it is what everybody calls it
-        time: int = 0,
-        sent: int | None = None,
-        attributes: Mapping[str, Any] | None = None,
-    ) -> None:
-        self.data = data
-        self.channel = channel
-        self.type = type
-        self.time = time
-        self.sent = sent
-        self.attributes = NOTHING if attributes is None else attributes
-
-    def keep(self) -> Message:
-        """The same with bytes of its own, which stay valid."""
-        if not isinstance(self.data, bytes):
-            self.data = bytes(self.data)
-        return self
-
-    def __repr__(self) -> str:
-        return (
-            f"Message({len(self.data)} bytes, {self.channel!r}, type={self.type!r}, time={self.time}, attributes={dict(self.attributes)!r})"
-        )
-
-
-NOTHING: Mapping[str, Any] = {}
-"""The attributes of messages without any."""
 
 
 class Source(End):
@@ -203,16 +150,7 @@ class Source(End):
 
 
 class Sink(End):
-    """Where messages are sent; a context manager. Transports derive from it.
-
-    Attributes
-    ----------
-    at_once : callable or None
-        The shortest way of a message, where a transport has one: sends bytes to the only peer, if it takes them now. False where more is to
-        be done, which `send` does: then nothing was sent or counted.
-    """
-
-    at_once: Callable[[Sendable], bool] | None = None
+    """Where messages are sent; a context manager. Transports derive from it."""
 
     def send(self, data: bytes | bytearray | memoryview, *, time: int | None = None, attributes: Mapping[str, Any] | None = None) -> bool:
         """Send one message. It never waits for a peer longer than the transport's options say.
@@ -237,6 +175,11 @@ class Sink(End):
             It is larger than ``max_message``, or the sink is closed.
         """
         raise NotImplementedError
+
+    def at_once(self, data: bytes | bytearray | memoryview) -> bool:
+        """Send by the shortest way, to the only peer. False where more is to be done, as `send` does: then nothing was sent or counted."""
+        del data
+        return False
 
     def flush(self, timeout: float = 5.0) -> bool:
         """Wait until all that was taken is on its way; False where that takes longer than so many seconds."""

@@ -85,7 +85,9 @@ class Feed:
     def __init__(self, machine: Machine) -> None:
         self._buffer = memoryview(bytearray(FIRST_BYTES))
         self.size = FIRST_BYTES
-        self._start = self._end = self._searched = 0
+        self._start: int = 0
+        self._end: int = 0
+        self._searched: int = 0
         self._machine = machine
         self.done = False
         self._want: int | Until | Frames = 0
@@ -114,11 +116,12 @@ class Feed:
         if self.done:  # what comes after the end is dropped
             return True
         self._end += count
-        if type(self._want) is not Frames:
+        if not isinstance(self._want, Frames):
             self._pieces()
-            if type(self._want) is not Frames:
+            if not isinstance(self._want, Frames):
                 return True
         frames, buffer, start, end = self._want, self._buffer, self._start, self._end
+        size: int
         head, take = frames.length.size, frames.take
         while end - start >= head and not self.done:
             (size,) = frames.length.unpack_from(buffer, start)
@@ -137,7 +140,7 @@ class Feed:
         send = self._machine.send
         while not self.done:
             want = self._want
-            if type(want) is Frames:
+            if isinstance(want, Frames):
                 return
             if isinstance(want, int):
                 stop = self._start + want
