@@ -90,6 +90,12 @@ class RouteCounts:
         self._lock = threading.Lock()
         self._before = (monotonic(), 0, 0, 0)
 
+    def passed(self, size: int, nanoseconds: int) -> None:
+        """Count a message that went, and how long it took from its arrival."""
+        self.sent += 1
+        self.bytes_out += size
+        self.latencies.add(nanoseconds)
+
     def drop(self, reason: str, count: int = 1) -> bool:
         """Count messages that do not go on; whether this is worth a line, as it is at the first, the tenth, the hundredth …"""
         return self._count(self.dropped, reason, count)

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
     from rosetta_jit.bridge.configuration import Route
     from rosetta_jit.bridge.translating import Translator
-    from rosetta_jit.transports.base import Caller, Message, Sink
+    from rosetta_jit.transports.base import Bytes, Caller, Sink
 
     Say = Callable[[str], object]
-    Waiting = tuple[bytes, int | None, int]
+    Waiting = tuple[bytes, int, int]
 
 AGAIN_S = 0.002
 """How long the queue's thread waits before it offers a message again; twice as long each time, up to `MOST_S`."""
@@ -39,10 +39,11 @@ class Inlet:
     def __init__(self, live: LiveRoute, wire: str) -> None:
         self.live, self.wire = live, wire
         self.lost, self.begin_anew = live.lost, live.begin_anew
+        self.keeps = True
 
-    def deliver(self, message: Message) -> None:
+    def deliver(self, data: Bytes, time: int) -> None:
         """Take a message from the wire's source."""
-        self.live.deliver(message, self.wire)
+        self.live.deliver(data, time, self.wire)
 
 
 class LiveRoute:
@@ -57,6 +58,8 @@ class LiveRoute:
 
     Attributes
     ----------
+    keeps : bool
+        Whether its mappings keep something from one message to the next: then they begin anew with another session of the source.
     problem : str
         Why it does not run; empty while it does.
     """
@@ -66,6 +69,7 @@ class LiveRoute:
     def __init__(self, route: Route, translate: Translator, say: Say) -> None:
         self.route = route
         self.translate = translate
+        self.keeps = translate.keeps
         self._program = None if route.rate is not None else translate.program
         self.counts = RouteCounts()
         self.problem = "not open yet"
@@ -113,22 +117,28 @@ class LiveRoute:
         """Messages that wait for the target; none once it is closed: they are counted as dropped."""
         return 0 if self._given_up else len(self._waiting) + self._held
 
-    def deliver(self, message: Message, wire: str = "") -> None:
-        """Take a message from the source, or from that of one of several wires; send what it becomes, or let that wait."""
+    def deliver(self, data: Bytes, time: int, wire: str = "") -> None:
+        """Take a message from the source, or from that of one of several wires; send what it becomes, or let that wait.
+
+        The time is that when it was sent, or else received, in nanoseconds since 1970.
+        """
         begun, counts = perf_counter_ns(), self.counts
         counts.taken += 1
-        counts.bytes_in += len(message.data)
+        counts.bytes_in += len(data)
         try:
-            data = self.translate(message.data, wire, self._is_due) if self._program is None else self._program(message.data)
+            made = self.translate(data, wire, self._is_due) if self._program is None else self._program(data)
         except MessageError as error:
             self._failed(error)
             return
-        if data is None:
+        if made is None:
             return
-        time = message.sent or message.time or None
-        if self._caller is None and not self._waiting and not self._held and self._send(data, time, begun):
-            return
-        self._wait((bytes(data), time, begun))
+        if self._sink is not None and not self._waiting and not self._held:
+            if self._sink.at_once(made):
+                counts.passed(len(made), perf_counter_ns() - begun)
+                return
+            if self._send(made, time, begun):
+                return
+        self._wait((bytes(made), time, begun))
 
     def _is_due(self) -> bool:
         """Whether the route's rate lets a message go on now; where it does not, one is counted as dropped."""
@@ -154,14 +164,14 @@ class LiveRoute:
         if self.counts.fail(cause):
             self._say(f"{self.route.name}: {self.counts.failed[cause] or 'many'} failed: {cause}")
 
-    def _send(self, data: bytes | memoryview, time: int | None, begun: int) -> bool:
+    def _send(self, data: Bytes, time: int, begun: int) -> bool:
         """Offer a message to the target; whether it took it."""
         sink = self._sink
         assert sink is not None
         with self._sending:
             self._sender, self._refused = threading.get_ident(), 0
             try:
-                taken = sink.send(data, time=time)
+                taken = sink.send(data, time=time or None)
             except TransportError as error:
                 self._sender = 0
                 if not self._given_up:
@@ -172,14 +182,8 @@ class LiveRoute:
             if taken and self._refused:  # by some of several peers, to which it is not sent again
                 self.lost(self._refusal, self._refused)
         if taken:
-            self._passed(data, begun)
+            self.counts.passed(len(data), perf_counter_ns() - begun)
         return taken
-
-    def _passed(self, data: bytes | memoryview, begun: int) -> None:
-        counts = self.counts
-        counts.sent += 1
-        counts.bytes_out += len(data)
-        counts.latencies.add(perf_counter_ns() - begun)
 
     # --- the queue -------------------------------------------------------------------------------------------------------
 
@@ -256,7 +260,7 @@ class LiveRoute:
         except TransportError as error:
             self.lost(f"{error.kind}: {error.detail}")
         else:
-            self._passed(data, begun)
+            self.counts.passed(len(data), perf_counter_ns() - begun)
 
     _until = 0.0
 

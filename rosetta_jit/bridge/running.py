@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
     from rosetta_jit.bridge.configuration import Configuration, Rpc
-    from rosetta_jit.transports.base import Message, Source
+    from rosetta_jit.transports.base import Bytes, Message, Source
     from rosetta_jit.transports.end import End
 
     Live = LiveRoute | LiveService
@@ -48,13 +48,27 @@ class _Shared:
         self.routes: tuple[LiveRoute | Inlet, ...] = (first,)
         self._sessions = 1
 
-    def deliver(self, message: Message) -> None:
+    def opened(self, source: Source) -> None:
+        self.source = source
+        self.bring_to(*self.routes)
+
+    def bring_to(self, *routes: LiveRoute | Inlet) -> None:
+        """Bring messages to these routes from now on; straight to a single one that keeps nothing, as it need not begin anew."""
+        self.routes = routes
+        if self.source is not None:
+            self.source.plain = routes[0].deliver if len(routes) == 1 and not routes[0].keeps else self.deliver
+
+    def take(self, message: Message) -> None:
+        """Take one that came before the source was known."""
+        self.deliver(message.data, message.sent or message.time)
+
+    def deliver(self, data: Bytes, time: int) -> None:
         if self.source is not None and self.source.sessions > self._sessions:
             self._sessions = self.source.sessions
             for route in self.routes:
                 route.begin_anew()
         for route in self.routes:
-            route.deliver(message)
+            route.deliver(data, time)
 
     def close(self) -> None:
         if self.source is not None:
@@ -174,7 +188,7 @@ class Running:
         with self._lock:
             for key, shared in [*self._sources.items()]:
                 left = tuple(each for each in shared.routes if each.live is not gone)
-                shared.routes = left
+                shared.bring_to(*left)
                 if not left:
                     shared.close()
                     del self._sources[key]
@@ -264,7 +278,7 @@ class Running:
             key = address, tuple(sorted(options.items()))
             if not self._joins(key, inlet):
                 shared = _Shared(inlet)
-                shared.source = subscribe(address, shared.deliver, lost=shared.lost, **options)
+                shared.opened(subscribe(address, shared.take, lost=shared.lost, **options))
                 with self._lock:
                     first = self._sources.setdefault(key, shared)
                 if first is not shared:  # another route was quicker
@@ -278,7 +292,7 @@ class Running:
             if shared is None:
                 return False
             if not any(known.live is inlet.live and known.wire == inlet.wire for known in shared.routes):
-                shared.routes = (*shared.routes, inlet)
+                shared.bring_to(*shared.routes, inlet)
             return True
 
 

@@ -30,9 +30,12 @@ class Translator(Protocol):
     ----------
     program
         What does the same to a message where the route has no rate, in one call of compiled code; None where more is to be done than that.
+    keeps
+        Whether anything is kept from one message to the next.
     """
 
     program: Callable[[Any], bytes] | None
+    keeps: bool
 
     def __call__(self, message: Any, wire: str = "", is_due: Callable[[], bool] = always) -> bytes | memoryview | None:
         """What goes on behind a message of a wire; None where nothing does.
@@ -66,6 +69,7 @@ class Unchanged:
     """Bytes pass as they are."""
 
     program: Callable[[Any], bytes] | None = None
+    keeps = False
 
     def __call__(self, message: Any, wire: str = "", is_due: Callable[[], bool] = always) -> bytes | memoryview | None:
         """The message."""
@@ -92,7 +96,8 @@ class Bridged:
     def __init__(self, bridge: Bridge) -> None:
         self._bridge = bridge
         self._turn = threading.Lock() if any(bridge.state.values()) else None
-        self.program: Callable[[Any], bytes] | None = bridge if self._turn is None else None
+        self.keeps = self._turn is not None
+        self.program: Callable[[Any], bytes] | None = None if self.keeps else bridge
 
     def __call__(self, message: Any, wire: str = "", is_due: Callable[[], bool] = always) -> bytes | memoryview | None:
         """What the message becomes."""
@@ -135,6 +140,7 @@ class Joined:
     """
 
     program: Callable[[Any], bytes] | None = None
+    keeps = True
 
     def __init__(self, decoders: Decoders, encode: Encoder, on: str) -> None:
         self._decoders, self._encode, self._on = decoders, encode, on

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections import deque
 from dataclasses import field
-from time import monotonic
+from time import monotonic, time_ns
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.errors import TransportError
@@ -13,12 +13,14 @@ from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
 from rosetta_jit.transports.end import End
 from rosetta_jit.transports.limits import MAX_QUEUE_BYTES
+from rosetta_jit.transports.message import Message
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from rosetta_jit.transports.address import Option
 
+    Bytes = bytes | memoryview
     Deliver = Callable[["Message"], object]
     Lost = Callable[[str, int], object]
     Answer = Callable[["Message"], "bytes | bytearray | memoryview | None"]
@@ -30,65 +32,20 @@ QUEUE = 1000
 """Messages that wait for who iterates over a source, where nobody says how many."""
 
 
-class Message:
-    """One message as it came.
-
-    Attributes
-    ----------
-    data : bytes or memoryview
-        Its bytes. A memoryview is valid until the callback that got the message returns: see `keep`.
-    channel : str
-        Which channel it came over: a subscription may be for several.
-    type : str or None
-        The type's name, where the middleware tells it.
-    time : int
-        When it was received, in nanoseconds since 1970.
-    sent : int or None
-        When it was sent, where the middleware tells it, in nanoseconds since 1970.
-    attributes : mapping
-        What else the middleware tells: the envelope of YARP, event ids and causes of RSB, the attachment of zenoh.
-    """
-
-    __slots__ = ("attributes", "channel", "data", "sent", "time", "type")
-
-    def __init__(
-        self,
-        data: bytes | memoryview,
-        channel: str,
-        type: str | None = None,  # noqa: A002 - it is what everybody calls it
-        time: int = 0,
-        sent: int | None = None,
-        attributes: Mapping[str, Any] | None = None,
-    ) -> None:
-        self.data = data
-        self.channel = channel
-        self.type = type
-        self.time = time
-        self.sent = sent
-        self.attributes = NOTHING if attributes is None else attributes
-
-    def keep(self) -> Message:
-        """The same with bytes of its own, which stay valid."""
-        if not isinstance(self.data, bytes):
-            self.data = bytes(self.data)
-        return self
-
-    def __repr__(self) -> str:
-        return (
-            f"Message({len(self.data)} bytes, {self.channel!r}, type={self.type!r}, time={self.time}, attributes={dict(self.attributes)!r})"
-        )
-
-
-NOTHING: Mapping[str, Any] = {}
-"""The attributes of messages without any."""
-
-
 class Source(End):
     """Messages that arrive at an address; a context manager, and an iterable where no callback gets them.
 
     Iterating ends when the source is closed, or where the channel has an end (a pipe, a file). Messages that nobody takes
     wait, at most ``queue`` of them; then the oldest is dropped, and counted as `queue full`.
+
+    Attributes
+    ----------
+    plain : callable or None
+        Takes the bytes of messages, and the time when they were sent or else received, in place of the callback: for bridges, which need
+        nothing else. It may change while messages come.
     """
+
+    plain: Callable[[Bytes, int], object] | None = None
 
     def __init__(self, address: str, deliver: Deliver | None, lost: Lost | None, *, queue: int = QUEUE) -> None:
         super().__init__(address, lost)
@@ -105,10 +62,32 @@ class Source(End):
         self.messages += 1
         self.bytes += len(message.data)
         try:
-            self._deliver(message)
+            if self.plain is not None:
+                self.plain(message.data, message.sent or message.time)
+            else:
+                self._deliver(message)
         except Exception as error:  # noqa: BLE001 - the user's code: it must not end the thread that serves all connections
-            self.lose("the callback failed")
-            threading.excepthook(threading.ExceptHookArgs((type(error), error, error.__traceback__, threading.current_thread())))
+            self._callback_failed(error)
+
+    def taker(self, channel: str, type_: str | None = None, attributes: Mapping[str, Any] | None = None) -> Callable[[Bytes], object]:
+        """What takes the bytes of messages that are alike in all else; for transports. As `arrived`, and quicker."""
+
+        def take(data: Bytes) -> None:
+            self.messages += 1
+            self.bytes += len(data)
+            try:
+                if self.plain is not None:
+                    self.plain(data, time_ns())
+                else:
+                    self._deliver(Message(data, channel, type_, time_ns(), None, attributes))
+            except Exception as error:  # noqa: BLE001 - as above
+                self._callback_failed(error)
+
+        return take
+
+    def _callback_failed(self, error: Exception) -> None:
+        self.lose("the callback failed")
+        threading.excepthook(threading.ExceptHookArgs((type(error), error, error.__traceback__, threading.current_thread())))
 
     def opened(self, close: Callable[[], None]) -> Source:
         """Say what closes it; for transports."""
@@ -196,6 +175,11 @@ class Sink(End):
             It is larger than ``max_message``, or the sink is closed.
         """
         raise NotImplementedError
+
+    def at_once(self, data: bytes | bytearray | memoryview) -> bool:
+        """Send by the shortest way, to the only peer. False where more is to be done, as `send` does: then nothing was sent or counted."""
+        del data
+        return False
 
     def flush(self, timeout: float = 5.0) -> bool:
         """Wait until all that was taken is on its way; False where that takes longer than so many seconds."""

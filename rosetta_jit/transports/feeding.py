@@ -1,4 +1,4 @@
-"""Protocols as generators that ask for bytes: `head = yield 8`, `line = yield Until(delimiter, most)`.
+"""Protocols as generators that ask for bytes: `head = yield 8`, `line = yield Until(delimiter, most)`, `yield Frames(length, take, most)`.
 
 A generator knows no socket, so that a test feeds it a captured stream in pieces of any size. The memoryviews that it gets are valid until
 it asks again.
@@ -12,8 +12,9 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
+    from struct import Struct
 
-    Machine = Generator["int | Until", memoryview, None]
+    Machine = Generator["int | Until | Frames", memoryview, None]
 
 LOOK_BYTES = 1024
 """That are looked through at a time for a delimiter: many short lines may have come at once."""
@@ -46,8 +47,26 @@ class Until:
     between: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class Frames:
+    """All messages from here to the end of the stream, each behind its length: a function gets them, and the generator nothing more.
+
+    A message costs one call of ``take``; a generator that asks for length and message takes as long as all else between socket and message.
+    Between two messages the stream may end. A message of more than ``most`` bytes is a failure.
+    """
+
+    length: Struct
+    take: Callable[[memoryview], object]
+    most: int
+
+
 class ProtocolError(Exception):
     """The peer sent what the protocol does not have; it costs the peer its connection."""
+
+
+def too_large(size: int, most: int) -> ProtocolError:
+    """The error for a message above the limit."""
+    return ProtocolError(f"a message of {size} bytes, more than max_message={most}")
 
 
 class Feed:
@@ -66,10 +85,12 @@ class Feed:
     def __init__(self, machine: Machine) -> None:
         self._buffer = memoryview(bytearray(FIRST_BYTES))
         self.size = FIRST_BYTES
-        self._start = self._end = self._searched = 0
+        self._start: int = 0
+        self._end: int = 0
+        self._searched: int = 0
         self._machine = machine
         self.done = False
-        self._want: int | Until = 0
+        self._want: int | Until | Frames = 0
         try:
             self._want = next(machine)
         except StopIteration:
@@ -83,32 +104,44 @@ class Feed:
         ProtocolError
             The peer is wrong.
         """
-        count = read_into(self.room())
-        if count and not self.done:  # what comes after the end is dropped
-            self.filled(count)
-        return count > 0
-
-    def room(self) -> memoryview:
-        """Where the next bytes are to be put; `filled` says how many."""
         if self._start == self._end:
             self._start = self._end = self._searched = 0
-            return self._buffer
-        if self._end == self.size:
-            self._make_room()
-        return self._buffer[self._end :]
-
-    def filled(self, count: int) -> None:
-        """So many bytes were put into the room: hand on what is complete.
-
-        Raises
-        ------
-        ProtocolError
-            The peer is wrong.
-        """
+            count = read_into(self._buffer)
+        else:
+            if self._end == self.size:
+                self._make_room()
+            count = read_into(self._buffer[self._end :])
+        if not count:
+            return False
+        if self.done:  # what comes after the end is dropped
+            return True
         self._end += count
+        if not isinstance(self._want, Frames):
+            self._pieces()
+            if not isinstance(self._want, Frames):
+                return True
+        frames, buffer, start, end = self._want, self._buffer, self._start, self._end
+        size: int
+        head, take = frames.length.size, frames.take
+        while end - start >= head and not self.done:
+            (size,) = frames.length.unpack_from(buffer, start)
+            if size > frames.most:
+                raise too_large(size, frames.most)
+            start += head
+            if end - start < size:
+                break
+            self._start = stop = start + size
+            take(buffer[start:stop])
+            start = stop
+        return True
+
+    def _pieces(self) -> None:
+        """Hand on to the generator what it asks for, as far as that has come."""
         send = self._machine.send
         while not self.done:
             want = self._want
+            if isinstance(want, Frames):
+                return
             if isinstance(want, int):
                 stop = self._start + want
                 if stop > self._end:
@@ -125,21 +158,26 @@ class Feed:
                 self.done = True
 
     def feed(self, data: bytes | memoryview) -> None:
-        """Hand on bytes that lie elsewhere; as `filled`."""
+        """Hand on bytes that lie elsewhere; as `receive`."""
         rest = memoryview(data)
-        while rest:
-            room = self.room()
+
+        def read_into(room: memoryview) -> int:
+            nonlocal rest
             count = min(len(room), len(rest))
             room[:count] = rest[:count]
             rest = rest[count:]
-            self.filled(count)
+            return count
+
+        while rest:
+            self.receive(read_into)
 
     @property
     def is_between(self) -> bool:
         """Whether the stream may end here: no message has begun."""
         if self.done:
             return True
-        return self._start == self._end and (isinstance(self._want, Between) or (isinstance(self._want, Until) and self._want.between))
+        may_end = isinstance(self._want, Between | Frames) or (isinstance(self._want, Until) and self._want.between)
+        return may_end and self._start == self._end
 
     def close(self) -> None:
         """Let the generator end."""
@@ -166,10 +204,19 @@ class Feed:
         left = self._end - self._start
         buffer = self._buffer
         if left > len(buffer) // 2:
-            wanted = self._want if isinstance(self._want, int) else 0
-            buffer = memoryview(bytearray(max(2 * len(buffer), min(wanted, 4 * len(buffer)))))
+            buffer = memoryview(bytearray(max(2 * len(buffer), min(self._wanted(), 4 * len(buffer)))))
             self.size = len(buffer)
         if left:
             buffer[:left] = self._buffer[self._start : self._end]
         self._searched = max(self._searched - self._start, 0)
         self._buffer, self._start, self._end = buffer, 0, left
+
+    def _wanted(self) -> int:
+        """Bytes that are to come before anything is handed on, as far as that is known."""
+        match self._want:
+            case int():
+                return self._want
+            case Frames(length=length) if self._end - self._start >= length.size:
+                return length.size + int(length.unpack_from(self._buffer, self._start)[0])
+            case _:
+                return 0

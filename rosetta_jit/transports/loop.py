@@ -128,9 +128,9 @@ class Loop:
         os.read(self._wake_read, 4096)
 
     def _run(self) -> None:
-        poll, watched = self._epoll.poll, self._watched
+        poll, watched, soon, later = self._epoll.poll, self._watched, self._soon, self._later
         while True:
-            for number, events in poll(self._pause(), EVENTS):
+            for number, events in poll(self._pause() if soon or later else -1, EVENTS):
                 ready = watched.get(number)
                 if ready is not None:
                     try:
@@ -138,9 +138,10 @@ class Loop:
                     except Exception as error:  # noqa: BLE001 - as of `_guarded`, whose call takes its time
                         _report(error)
             self._awake = False
-            self._call_due()
-            for _ in range(len(self._soon)):
-                function, arguments = self._soon.popleft()
+            if later:
+                self._call_due()
+            for _ in range(len(soon)):
+                function, arguments = soon.popleft()
                 _guarded(function, *arguments)
 
     def _pause(self) -> float:

@@ -55,6 +55,7 @@ class Stream:
         sock.setblocking(False)
         _tune(sock)
         self.socket = sock
+        self._receive = sock.recv_into
         self.peer = _name(sock)
         self.cut = False
         self.unsent: Counter[End | None] = Counter()
@@ -111,7 +112,8 @@ class Stream:
                 if sent == size:
                     return True
             if not loop().reserve(size - sent):
-                if sent:
+                if sent:  # half of it: nothing may follow
+                    self._finishing = True
                     loop().soon(self.end, "what waits for all peers together takes too much memory")
                 return False
             rest = memoryview(b"".join(parts))[sent:]
@@ -198,7 +200,7 @@ class Stream:
         feed = self._feed
         assert feed is not None
         try:
-            if not feed.receive(self.socket.recv_into):
+            if not feed.receive(self._receive):
                 self.end()
                 return
             if feed.size != self._held and not self.closed:

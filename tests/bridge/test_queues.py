@@ -35,6 +35,9 @@ class Refuses:
     def __init__(self):
         self.takes, self.got, self.lost, self.connections = False, [], None, 0
 
+    def at_once(self, _):
+        return False
+
     def send(self, data, **_):
         if self.takes:
             self.got.append(bytes(data))
@@ -61,17 +64,17 @@ def test_what_is_dropped_when_the_queue_is_full(run, monkeypatch, full, kept):
     source = free_port()
     bridge, said = run(route(source, 1, "queue = 4", f'full = "{full}"'))
     live = next(iter(bridge.live.values()))
-    live.deliver(message(0))
+    live.deliver(b"\0", 1)
     until(lambda: live._held)  # the queue's thread has it
     for number in range(1, 9):
-        live.deliver(message(number))
+        live.deliver(bytes([number]), 1)
     assert live.waiting == 5
     assert live.counts.dropped == {"queue full (nobody listens)": 4}
     assert any("1 dropped: queue full" in line for line in said)
     target.takes = True
     until(lambda: len(target.got) == 5)
     assert target.got == [bytes([number]) for number in ([0, *kept] if full == "oldest" else kept)]
-    live.deliver(message(99))
+    live.deliver(bytes([99]), 1)
     assert target.got[-1] == bytes([99])  # at once: nothing waits
 
 
@@ -79,18 +82,12 @@ def test_a_queue_holds_few_large_messages(run, monkeypatch):
     monkeypatch.setattr("rosetta_jit.bridge.live.MAX_QUEUE_BYTES", 5)
     bridge, _ = run(route(free_port(), f"{free_port()}?wait=no", "queue = 4"))
     live = next(iter(bridge.live.values()))
-    live.deliver(message(0))
+    live.deliver(b"\0", 1)
     until(lambda: live._held)
     for each in (b"12", b"34", b"5", b"67", b"123456789"):
-        live.deliver(message(0, each))
+        live.deliver(each, 1)
     assert [item[0] for item in live._waiting] == [b"123456789"]
     assert sum(live.counts.dropped.values()) == 4
-
-
-def message(number, data=b""):
-    from rosetta_jit.transports.base import Message
-
-    return Message(data or bytes([number]), "a", time=1)
 
 
 def test_a_message_that_is_refused_for_ever_holds_up_no_others(run, monkeypatch):
@@ -104,7 +101,7 @@ def test_a_message_that_is_refused_for_ever_holds_up_no_others(run, monkeypatch)
     bridge, _ = run(route(free_port(), 1, "timeout = 0.1"))
     live = next(iter(bridge.live.values()))
     for number in range(4, 8):
-        live.deliver(message(number))
+        live.deliver(bytes([number]), 1)
     until(lambda: len(target.got) == 3)
     assert target.got == [b"\x04", b"\x06", b"\x07"]
     assert sum(live.counts.dropped.values()) == 1
@@ -134,7 +131,7 @@ def test_what_was_not_sent_is_counted(run, monkeypatch):
     bridge, said = run(route(free_port(), 1))
     live = next(iter(bridge.live.values()))
     for number in range(3):
-        live.deliver(message(number))
+        live.deliver(bytes([number]), 1)
     bridge.stop(0.1)
     assert sum(live.counts.dropped.values()) == 3
     assert any("nobody listens" in line for line in said)
@@ -167,7 +164,7 @@ def test_many_targets_that_take_nothing_are_closed_side_by_side(run):
     targets = [free_port() for _ in range(8)]
     bridge, _ = run("".join(route(free_port(), each, f'name = "{each}"') for each in targets))
     for each in bridge.live.values():
-        loop().soon(each.deliver, message(0))  # where messages arrive, nobody waits for a target
+        loop().soon(each.deliver, b"\0", 1)  # where messages arrive, nobody waits for a target
     until(lambda: all(each.waiting for each in bridge.live.values()))
     begun = time.monotonic()
     bridge.stop(0.5)

@@ -9,6 +9,7 @@ import struct
 import rosetta_jit as rj
 from rosetta_jit.transports import loop as loops
 from rosetta_jit.transports.base import Message, Server, Source
+from rosetta_jit.transports.stream import Stream
 from tests.transports.free import free_port, until
 
 
@@ -79,6 +80,29 @@ def test_what_waits_for_all_peers_together_takes_bounded_memory(monkeypatch):
             assert sink.lost["the peer is too slow"] > 10
         until(lambda: not sink.connections)
         assert loops.loop().sending_bytes == before
+
+
+def test_nothing_follows_half_a_message_that_takes_too_much_memory(monkeypatch):
+    """What follows would be taken for its other half."""
+    ours, theirs = socket.socketpair()
+    theirs.setblocking(False)
+    got, taken = bytearray(), []
+
+    def work():
+        stream = Stream(ours, lambda _: iter(()), lambda *_: None)
+        monkeypatch.setattr(loops, "MAX_SENDING_BYTES", loops.loop().sending_bytes)
+        taken.append(stream.send(b"x" * (8 << 20)))
+        got.extend(theirs.recv(8 << 20))
+        taken.append(stream.send(b"next"))
+
+    loops.loop().run(work)
+    assert taken == [False, False]
+    assert 0 < len(got) < 8 << 20
+    theirs.setblocking(True)
+    while piece := theirs.recv(1 << 20):
+        got.extend(piece)
+    assert set(got) == {ord("x")}
+    theirs.close()
 
 
 def test_reasons_are_few_short_and_printable():

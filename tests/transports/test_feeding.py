@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import struct
 import time
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from rosetta_jit.transports.feeding import SOME, Between, Feed, ProtocolError, Until
+from rosetta_jit.transports.feeding import SOME, Between, Feed, Frames, ProtocolError, Until
 
 
 def fed(asked, pieces):
@@ -87,3 +88,73 @@ def test_where_a_stream_may_end():
         ([4], [], False),
     ):
         assert fed(asked, pieces)[1].is_between == may
+
+
+LENGTH = struct.Struct("<H")
+
+
+def framed(*messages):
+    return b"".join(LENGTH.pack(len(each)) + each for each in messages)
+
+
+def reader(got, most=1000):
+    """What reads a greeting of two bytes, and frames behind it."""
+
+    def machine():
+        got.append(bytes((yield 2)))
+        yield Frames(LENGTH, lambda data: got.append(bytes(data)), most)
+
+    return Feed(machine())
+
+
+@settings(suppress_health_check=[HealthCheck.too_slow])
+@given(st.lists(st.binary(max_size=60), max_size=8), st.integers(1, 50))
+def test_frames_arrive_whole_wherever_a_read_ends(messages, size):
+    got = []
+    feed, stream = reader(got), b"hi" + framed(*messages)
+    for at in range(0, len(stream), size):
+        feed.feed(stream[at : at + size])
+    assert got == [b"hi", *messages]
+    assert feed.is_between
+    feed.feed(framed(b"abc")[:-1])
+    assert not feed.is_between
+    assert got == [b"hi", *messages]
+
+
+def test_a_large_frame_grows_the_buffer_as_it_comes_and_no_more_than_it_takes():
+    got = []
+    length = struct.Struct("<I")
+
+    def machine():
+        yield Frames(length, lambda data: got.append(len(data)), 1 << 24)
+
+    feed = Feed(machine())
+    feed.feed(length.pack(1 << 22) + bytes(1000))
+    assert feed.size == 1 << 16
+    feed.feed(bytes((1 << 22) - 1000) + length.pack(3) + b"abc")
+    assert got == [1 << 22, 3]
+    assert feed.size <= 1 << 23
+
+
+def test_a_frame_above_the_limit_is_refused_behind_those_before_it():
+    got = []
+    with pytest.raises(ProtocolError, match="a message of 1001 bytes, more than max_message=1000"):
+        reader(got).feed(b"hi" + framed(b"good", bytes(1001)))
+    assert got == [b"hi", b"good"]
+
+
+def test_who_closes_while_it_takes_a_frame_gets_no_other_one():
+    got = []
+
+    def take(data):
+        got.append(bytes(data))
+        feed.close()
+
+    def machine():
+        yield Frames(LENGTH, take, 1000)
+
+    feed = Feed(machine())
+    feed.feed(framed(b"one", b"two"))
+    feed.feed(framed(b"three"))
+    assert got == [b"one"]
+    assert feed.is_between

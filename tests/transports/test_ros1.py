@@ -107,6 +107,24 @@ def test_messages_reach_subscribers_of_before_and_after(at):
         assert (sink.flush(), dict(sink.lost), dict(early.lost)) == (True, {}, {})
 
 
+def test_what_has_one_subscriber_goes_the_shortest_way(at):
+    with rj.publish(at("/chat", STRING)) as sink, rj.publish(at("/kept", f"{STRING}&latch=yes")) as latched:
+        assert not sink.at_once(text(b"nobody"))
+        with rj.subscribe(at("/chat", "&name=/one")) as one, rj.subscribe(at("/kept", "&name=/one")) as late:
+            until(lambda: sink.connections and latched.connections)
+            assert sink.at_once(text(b"hello"))
+            assert one.take(5).data == text(b"hello")
+            assert (sink.messages, sink.bytes) == (1, len(text(b"hello")))
+            assert not sink.at_once(bytes(sink._most + 1))
+            assert not latched.at_once(text(b"hello"))  # it has to be kept for later ones
+            with rj.subscribe(at("/chat", "&name=/two")):
+                until(lambda: sink.connections == 2)
+                assert not sink.at_once(text(b"both"))
+            assert late.take(0.05) is None
+        assert (sink.messages, dict(sink.lost), dict(latched.lost)) == (1, {}, {})
+    assert not sink.at_once(text(b"closed"))
+
+
 def test_another_type_is_refused_and_said(at):
     with rj.publish(at("/chat", STRING)) as sink:
         for more in ("&md5=00000000000000000000000000000000", "&type=std_msgs/Int8"):

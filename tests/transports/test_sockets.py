@@ -148,6 +148,33 @@ def test_what_waits_when_the_sender_closes_is_counted():
         server.accept()[0].close()
 
 
+def test_what_has_one_peer_goes_the_shortest_way():
+    port = free_port()
+    with rj.publish(f"tcp:{port}?listen=yes&frame=u16&max_message=1M") as sink:
+        assert not sink.at_once(b"nobody")
+        with rj.subscribe(f"tcp:{port}?listen=no&frame=u16") as one:
+            until(lambda: sink.connections)
+            assert sink.at_once(b"a")
+            assert sink.at_once(bytes(65535))
+            assert not sink.at_once(bytes(65536))  # such a length has no place in the frame
+            assert [len(one.take(5).data) for _ in range(2)] == [1, 65535]
+            assert (sink.messages, sink.bytes, dict(sink.lost)) == (2, 65536, {})
+            with rj.subscribe(f"tcp:{port}?listen=no&frame=u16"):
+                until(lambda: sink.connections == 2)
+                assert not sink.at_once(b"both")
+    assert not sink.at_once(b"closed")
+
+
+@pytest.mark.parametrize("frame", ["line", "varint"])
+def test_what_has_no_length_of_fixed_size_goes_the_usual_way(frame):
+    port = free_port()
+    with rj.publish(f"tcp:{port}?listen=yes&frame={frame}") as sink, rj.subscribe(f"tcp:{port}?listen=no&frame={frame}") as source:
+        until(lambda: sink.connections)
+        assert not sink.at_once(b"abc")
+        assert sink.send(b"abc")
+        assert source.take(5).data == b"abc"
+
+
 def test_a_sender_waits_for_a_reader_that_comes_later():
     port = free_port()
     with rj.publish(f"tcp:{port}") as sink:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from time import monotonic, time_ns
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from rosetta_jit.errors import TransportError
-from rosetta_jit.transports.base import Message, Sink, Source
+from rosetta_jit.transports.base import Sink, Source
 from rosetta_jit.transports.conversation import connected
 from rosetta_jit.transports.feeding import Between
 from rosetta_jit.transports.limits import MAX_CONNECTIONS
@@ -138,7 +138,7 @@ class Subscription:
             raise refuse(stream, f"the publisher refuses: {fields['error'][:300]}")
         if wrong := disagreement(self._wanted, fields):
             raise refuse(stream, wrong)
-        source, topic, type_ = self._source, self.name, fields.get("type")
+        source = self._source
         told = {
             "callerid": fields.get("callerid", ""),
             "md5": fields.get("md5sum", ""),
@@ -150,7 +150,7 @@ class Subscription:
         if len(self._seen) < MAX_CONNECTIONS:
             self._seen.add(publisher)
         source.connections = len(self._streams)
-        yield from messages(lambda data: source.arrived(Message(data, topic, type_, time_ns(), None, told)), self._most)
+        yield from messages(source.taker(self.name, fields.get("type"), told), self._most)
 
     def _gone(self, uri: str, why: str) -> None:
         stream = self._streams.pop(uri, None)
@@ -246,6 +246,15 @@ class RosSink(Sink):
         if taken:
             self.passed(len(data))
         return taken
+
+    def at_once(self, data: bytes | bytearray | memoryview) -> bool:
+        """Send to the only subscriber, where nothing is kept for later ones."""
+        size, streams = len(data), tuple(self._streams)
+        if len(streams) != 1 or self._latch or size > self._most or self._closed or not streams[0].send(LENGTH.pack(size), data):
+            return False
+        self.messages += 1
+        self.bytes += size
+        return True
 
     def flush(self, timeout: float = 5.0) -> bool:
         until = monotonic() + timeout

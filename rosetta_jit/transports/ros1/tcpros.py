@@ -12,7 +12,7 @@ from __future__ import annotations
 import struct
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.transports.feeding import Between, ProtocolError
+from rosetta_jit.transports.feeding import Between, Frames, ProtocolError
 from rosetta_jit.transports.limits import MAX_HEADER_BYTES
 
 if TYPE_CHECKING:
@@ -63,12 +63,7 @@ def messages(take: Callable[[memoryview], object], most: int) -> Machine:
     ProtocolError
         One is larger than ``most`` bytes.
     """
-    unpack = LENGTH.unpack
-    while True:
-        (size,) = unpack((yield _BETWEEN))
-        if size > most:
-            raise ProtocolError(f"a message of {size} bytes, more than max_message={most}")
-        take((yield size))
+    yield Frames(LENGTH, take, most)
 
 
 def disagreement(wanted: Mapping[str, str], found: Mapping[str, str]) -> str:

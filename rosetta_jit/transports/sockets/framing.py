@@ -6,7 +6,7 @@ import struct
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import TransportError
-from rosetta_jit.transports.feeding import Between, ProtocolError, Until
+from rosetta_jit.transports.feeding import Between, Frames, ProtocolError, Until, too_large
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -67,18 +67,8 @@ def varint(number: int) -> bytes:
     return bytes(out)
 
 
-def too_large(size: int, most: int) -> ProtocolError:
-    """The error for a message above the limit."""
-    return ProtocolError(f"a message of {size} bytes, more than max_message={most}")
-
-
 def _lengths(length: struct.Struct, take: Callable[[memoryview], object], most: int) -> Machine:
-    head, unpack = Between(length.size), length.unpack
-    while True:
-        (size,) = unpack((yield head))
-        if size > most:
-            raise too_large(size, most)
-        take((yield size))
+    yield Frames(length, take, most)
 
 
 def _varints(take: Callable[[memoryview], object], most: int) -> Machine:

@@ -8,11 +8,11 @@ import select
 import stat
 import threading
 from collections import deque
-from time import monotonic, sleep, time_ns
+from time import monotonic, sleep
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
-from rosetta_jit.transports.base import Message, Sink, Source
+from rosetta_jit.transports.base import Sink, Source
 from rosetta_jit.transports.feeding import Feed, ProtocolError
 from rosetta_jit.transports.limits import MAX_WAITING_BYTES
 from rosetta_jit.transports.loop import loop
@@ -48,13 +48,10 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
 
 
 def _read(number: int, stopped: int, channel: str, source: Source, options: Mapping[str, Any]) -> None:
-    def take(data: memoryview) -> None:
-        source.arrived(Message(data, channel, None, time_ns()))
-
     def read_into(room: memoryview) -> int:
         return os.readv(number, [room])
 
-    feed = Feed(messages(options["frame"], take, options["max_message"]))
+    feed = Feed(messages(options["frame"], source.taker(channel), options["max_message"]))
     poll = select.poll()
     poll.register(number, select.POLLIN)
     poll.register(stopped, select.POLLHUP)

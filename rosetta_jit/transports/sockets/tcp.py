@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from time import time_ns
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
-from rosetta_jit.transports.base import Message, Sink, Source
+from rosetta_jit.transports.base import Sink
 from rosetta_jit.transports.connecting import Dialer, Listener
 from rosetta_jit.transports.limits import MAX_CONNECTIONS
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.sockets.endpoints import targets
-from rosetta_jit.transports.sockets.framing import framed, messages
+from rosetta_jit.transports.sockets.framing import LENGTHS, framed, messages
 from rosetta_jit.transports.stream import Stream, finish_all
 
 if TYPE_CHECKING:
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.transports.address import Address
-    from rosetta_jit.transports.base import Lost
+    from rosetta_jit.transports.base import Lost, Source
     from rosetta_jit.transports.end import End
     from rosetta_jit.transports.feeding import Machine
 
@@ -110,11 +109,7 @@ class Links:
 
 def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> None:
     """Receive over all connections."""
-    channel, frame, most = address.rest, options["frame"], options["max_message"]
-
-    def take(data: memoryview) -> None:
-        source.arrived(Message(data, channel, None, time_ns()))
-
+    take, frame, most = source.taker(address.rest), options["frame"], options["max_message"]
     if frame == "none":
         raise TransportError("protocol", str(address), "a stream needs frames: `none` is for what is sent, or for udp")
     links = Links(address, source, lambda _: messages(frame, take, most), listen=options["listen"] != "no")
@@ -133,6 +128,9 @@ class TcpSink(Sink):
         super().__init__(str(address), lost)
         self._frame: str = options["frame"]
         self._most: int = options["max_message"]
+        self._length = LENGTHS.get(self._frame, LENGTHS["u64"])
+        self._largest = min(self._most, 256**self._length.size - 1) if self._frame in LENGTHS else -1
+        """Bytes that a message may have to be sent by `at_once`; once this is closed, none has so few."""
         self._wait = options["timeout"] if options["wait"] else 0
         self._linger: float = options["linger"]
         self._closed = False
@@ -157,12 +155,21 @@ class TcpSink(Sink):
             self.passed(len(data))
         return taken
 
+    def at_once(self, data: bytes | bytearray | memoryview) -> bool:
+        """Send to the only connection."""
+        size, streams = len(data), self._links.streams
+        if len(streams) != 1 or size > self._largest or not streams[0].send(self._length.pack(size), data):
+            return False
+        self.messages += 1
+        self.bytes += size
+        return True
+
     def flush(self, timeout: float = 5.0) -> bool:
         return self._links.flush(timeout)
 
     def close(self) -> None:
         if not self._closed:
-            self._closed = True
+            self._closed, self._largest = True, -1
             self._links.close(self._linger)
 
     def _first(self) -> tuple[Stream, ...]:
