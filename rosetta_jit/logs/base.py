@@ -139,7 +139,10 @@ class Wanted:
 
 
 class Reader(Protocol):
-    """An open log. What is wrong with it is told to ``tell`` when it is noticed, once each; what can be read is given nevertheless."""
+    """An open log. What is wrong with it is told to ``tell`` when it is noticed, once each; what can be read is given nevertheless.
+
+    A reader may also have ``works_ahead``, a bool: whether threads of its own work ahead while its blocks are used.
+    """
 
     @property
     def connections(self) -> Mapping[int, Connection]:

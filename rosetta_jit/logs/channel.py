@@ -10,7 +10,6 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import DecodeError, LogError
-from rosetta_jit.logs.ahead import ahead
 from rosetta_jit.logs.base import Wanted
 from rosetta_jit.logs.moments import nanoseconds, shown
 from rosetta_jit.logs.parts import CLOCKS, Collector, nothing
@@ -123,7 +122,7 @@ class Channel:
     ) -> Iterator[Part]:
         """The messages, decoded some megabytes at a time into one batch that is filled again and again. State begins anew."""
         self.decoder.reset()
-        blocks = ahead(self._blocks(start, end, pieces), lambda each: each.data.size)
+        blocks = self._log.blocks_ahead(self._wanted(start, end, pieces))
         yield from Collector(self.decoder, on_error, expected=self.count).parts(blocks)
 
     def decoded(self, block: Block, rows: Rows, on_error: OnError = "raise") -> Batch:
@@ -154,7 +153,10 @@ class Channel:
             raise DecodeError(error.kind, path, f"{error.detail} (a message of {self.topic}, logged {when})", error.offset) from None
 
     def _blocks(self, start: Moment | None = None, end: Moment | None = None, pieces: range | None = None) -> Iterator[Block]:
-        return self._log.blocks(Wanted(self.numbers, nanoseconds(start), nanoseconds(end), pieces))
+        return self._log.blocks(self._wanted(start, end, pieces))
+
+    def _wanted(self, start: Moment | None, end: Moment | None, pieces: range | None) -> Wanted:
+        return Wanted(self.numbers, nanoseconds(start), nanoseconds(end), pieces)
 
     @property
     def numbers(self) -> frozenset[int]:

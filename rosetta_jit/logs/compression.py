@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bz2
 from sys import getrefcount
+from threading import Lock, local
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 
     Bytes = NDArray[np.uint8]
 
+UNCOMPRESSED = "", "none"
+"""What logs call the compression of chunks that are not compressed."""
+
 STEP = 1 << 16
 """Bytes that are decompressed at once where a stream is damaged, so that those before the damage are kept."""
 
@@ -27,24 +31,27 @@ MOST_OF_LZ4 = 256
 
 
 class Scratch:
-    """Memory that is used for one chunk after another: fresh memory would take as long as reading into it."""
+    """Memory that is used for one chunk after another: fresh memory would take as long as reading into it. Threads may share it."""
 
     def __init__(self) -> None:
         self._contents, self._records = list["Bytes"](), list["Bytes"]()
-        self._zstd: Any = None
+        self._lock, self._of_thread = Lock(), local()
 
     def zstd(self, zstandard: Any) -> Any:
-        """What decompresses one frame after another: to make it takes as long as to decompress some kilobytes."""
-        self._zstd = self._zstd or zstandard.ZstdDecompressor(max_window_size=MAX_RECORD_BYTES)
-        return self._zstd
+        """What decompresses one frame after another in this thread: to make it takes as long as to decompress some kilobytes."""
+        if not hasattr(self._of_thread, "zstd"):
+            self._of_thread.zstd = zstandard.ZstdDecompressor(max_window_size=MAX_RECORD_BYTES)
+        return self._of_thread.zstd
 
     def room(self, size: int) -> Bytes:
         """So many bytes for the content of a chunk."""
-        return _unused(self._contents, size)
+        with self._lock:
+            return _unused(self._contents, size)
 
     def record(self, size: int) -> Bytes:
         """The same for a chunk as it is in the file, which is its content where it is not compressed."""
-        return _unused(self._records, size)
+        with self._lock:
+            return _unused(self._records, size)
 
 
 def _unused(memory: list[Bytes], size: int) -> Bytes:
@@ -73,7 +80,7 @@ def decompressed(name: str, compression: str, body: memoryview, size: int, scrat
     LogError
         The package is missing that decompresses it; ``name`` is the log's.
     """
-    if compression in ("", "none"):
+    if compression in UNCOMPRESSED:
         found, wrong = np.frombuffer(body, np.uint8), ""
     elif compression not in _STREAMS:
         return np.empty(0, np.uint8), f"it is compressed as {compression!r}, which is not known"

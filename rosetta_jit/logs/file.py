@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
+from rosetta_jit.logs.ahead import ahead
 from rosetta_jit.logs.base import Wanted
 
 if TYPE_CHECKING:
@@ -94,6 +95,11 @@ class LogFile:
                 yield block
             elif kept.any():
                 yield type(block)(block.data, rows.only(kept), block.piece)
+
+    def blocks_ahead(self, wanted: Wanted | None = None) -> Iterator[Block]:
+        """The same; while a block is used, threads read and decompress the next ones."""
+        blocks = self.blocks(wanted)
+        return blocks if getattr(self._reader, "works_ahead", False) else ahead(blocks, lambda each: each.data.size)
 
     def close(self) -> None:
         """Close the file."""

@@ -16,21 +16,24 @@ from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias
 import numpy as np
 
 from rosetta_jit.catalogue import logs as words
-from rosetta_jit.logs.base import Block, Piece
-from rosetta_jit.logs.checksum import crc32
-from rosetta_jit.logs.compression import Scratch, decompressed
+from rosetta_jit.logs.base import Block
+from rosetta_jit.logs.compression import Scratch
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
+from rosetta_jit.logs.segments import Chunk, Region
+from rosetta_jit.logs.side_by_side import side_by_side
+from rosetta_jit.logs.unpacking import bytes_of_work, nothing, unpacked
 from rosetta_jit.logs.walking import Why, walk
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Generator, Iterator, Sequence
 
     from numpy.typing import NDArray
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.base import Wanted
     from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.unpacking import Content, Packed
     from rosetta_jit.logs.walking import Rows, Stop
 
 WINDOW = 4 << 20
@@ -44,49 +47,23 @@ PEEK = 4096
 
 
 @dataclass(frozen=True, slots=True)
-class Chunk:
-    """Where a chunk is, and what is known of it before it is read.
+class Found:
+    """A segment by its number, as it is in the file.
 
     Attributes
     ----------
-    times
-        Of its first and its last message.
-    counts
-        How many messages of which channel it has; None where that is not known, and the count where the channel alone is.
+    size
+        Of its chunk, as that says itself.
+    is_true
+        Whether there is a chunk, and no larger one than the index says; of a region, that is so.
+    sealed
+        The chunk's content before it is decompressed; a `Content` where nothing is left to do.
     """
 
-    at: int
+    number: int
     size: int
-    times: tuple[int, int] | None = None
-    counts: Mapping[int, int | None] | None = None
-
-    @property
-    def piece(self) -> Piece:
-        """What others know of it."""
-        return Piece(self.size, self.times, frozenset(self.counts) if self.counts else None)
-
-
-@dataclass(frozen=True, slots=True)
-class Region:
-    """A stretch of records that no index covers."""
-
-    at: int
-    end: int
-
-    @property
-    def piece(self) -> Piece:
-        """What others know of it: nothing but its size."""
-        return Piece(self.end - self.at)
-
-
-@dataclass(frozen=True, slots=True)
-class Packed:
-    """What a chunk says of its content. A checksum of None is not checked."""
-
-    compression: str
-    size: int
-    body: memoryview
-    crc: int | None = None
+    is_true: bool
+    sealed: Packed | Content
 
 
 Kind: TypeAlias = Literal["message", "definition", "chunk", "index", "other", "end", "damaged"]
@@ -143,42 +120,55 @@ class Records:
         """
         scratch = Scratch()
         chosen = range(len(segments)) if wanted.pieces is None else range(len(segments))[wanted.pieces.start : wanted.pieces.stop]
-        for number in chosen:
-            segment = segments[number]
-            if not segment.piece.has(wanted):
-                continue
-            record, is_true = self._record(segment, scratch)
-            if not is_true:
+        numbers = (number for number in chosen if segments[number].piece.has(wanted))
+        found = (self._found(number, segments[number], scratch) for number in numbers)
+
+        def content_of(each: Found) -> Content:
+            return unpacked(each.sealed, self._storage.name, segments[each.number].at, scratch, check=self._check)
+
+        for each, content in side_by_side(found, content_of, lambda each: bytes_of_work(each.sealed)):
+            segment = segments[each.number]
+            if each.is_true:
+                blocks = self._segment(segment, each, content, wanted, scratch, end)
+            else:
                 self._tell(words.index_lies(self._storage.name, segment.at))
                 own = range(segment.at, segments[chosen.stop].at if chosen.stop < len(segments) else end)
-                blocks = self._region(self._true_place(segments[:number]), end, wanted, scratch, own)
-                yield from (replace(each, piece=number) for each in blocks)
+                blocks = self._region(self._true_place(segments[: each.number]), end, wanted, scratch, own)
+            del content  # its memory is free when its messages are read
+            yield from (replace(block, piece=each.number) for block in blocks)
+            if not each.is_true:
                 return
-            yield from (replace(each, piece=number) for each in self._segment(segment, record, wanted, scratch, end))
 
-    def _record(self, segment: Chunk | Region, scratch: Scratch) -> tuple[memoryview, bool]:
-        """The bytes of a chunk, and whether there is one, and no larger one than the index says; of a region nothing, which is true."""
+    def works_ahead(self, segments: Sequence[Chunk | Region]) -> bool:
+        """Whether threads unpack chunks before `blocks` comes to them: where they are compressed, as the first one is."""
+        first = next((each.at for each in segments if isinstance(each, Chunk)), None)
+        return first is not None and bytes_of_work(self._sealed(memoryview(self._storage.read(first, PEEK)), first)) > 0
+
+    def _found(self, number: int, segment: Chunk | Region, scratch: Scratch) -> Found:
+        """A segment, whose chunk is read, and not yet decompressed."""
         if isinstance(segment, Region):
-            return memoryview(b""), True
+            return Found(number, 0, True, nothing())
         size = segment.size
         if size > MOST_AT_ONCE:  # an index of a bag tells where chunks begin, not where they end
             _, head = self._head(segment.at, size)
             if head.kind != "chunk" or head.size > size:
-                return memoryview(b""), False
+                return Found(number, 0, False, nothing())
             size = head.size
         record = self._storage.read_into(segment.at, scratch.record(size))
         head = self._grammar.head(bytes(record[:PEEK])) if len(record) > 9 else Head("damaged")
-        return record, head.kind == "chunk" and head.size <= segment.size
+        is_true = head.kind == "chunk" and head.size <= segment.size
+        return Found(number, head.size, is_true, self._sealed(record, segment.at) if is_true else nothing())
 
-    def _segment(self, segment: Chunk | Region, record: memoryview, wanted: Wanted, scratch: Scratch, end: int) -> Iterator[Block]:
+    def _segment(
+        self, segment: Chunk | Region, found: Found, content: Content, wanted: Wanted, scratch: Scratch, end: int
+    ) -> Iterator[Block]:
         """The messages of a segment that is where the index says; its last record may end in the next one, if that is not."""
         if isinstance(segment, Region):
             yield from self._region(segment.at, end, wanted, scratch, range(segment.at, segment.end))
             return
-        size = self._grammar.head(bytes(record[:PEEK])).size
-        yield from self._content(record, segment.at, scratch)
-        if size < segment.size:
-            behind = range(segment.at + size, segment.at + segment.size)
+        yield from self._walked(content, segment.at)
+        if found.size < segment.size:
+            behind = range(segment.at + found.size, segment.at + segment.size)
             yield from self._region(behind.start, end, wanted, scratch, behind)
 
     def _true_place(self, before: Sequence[Chunk | Region]) -> int:
@@ -262,23 +252,26 @@ class Records:
 
     def _content(self, record: memoryview, at: int, scratch: Scratch) -> Iterator[Block]:
         """The messages of a chunk."""
+        yield from self._walked(unpacked(self._sealed(record, at), self._storage.name, at, scratch, check=self._check), at)
+
+    def _sealed(self, record: memoryview, at: int) -> Packed | Content:
+        """What a chunk says of its content."""
         try:
-            packed = self._grammar.packed(record)
+            return self._grammar.packed(record)
         except ValueError as error:
-            self._tell(words.chunk_damaged(self._storage.name, at, str(error)))
-            return
-        data, wrong = decompressed(self._storage.name, packed.compression, packed.body, packed.size, scratch)
-        if not wrong and self._check and packed.crc is not None and crc32(data) != packed.crc:
-            self._tell(words.checksum(self._storage.name, at))
-            return
-        if wrong:
-            self._tell(words.chunk_damaged(self._storage.name, at, wrong))
+            return nothing(words.chunk_damaged(self._storage.name, at, str(error)))
+
+    def _walked(self, content: Content, at: int) -> Iterator[Block]:
+        """The messages in the content of a chunk."""
+        data, told = content.data, content.problem is not None
+        if content.problem is not None:
+            self._tell(content.problem)
         place = 0
         while place < data.size:
             rows, stop = walk(self._grammar.walk, data, place)
             if len(rows):
                 yield Block(data, rows)
-            place = self._inside(data, stop, at, told=bool(wrong))
+            place = self._inside(data, stop, at, told=told)
 
     def _inside(self, data: NDArray[np.uint8], stop: Stop, at: int, *, told: bool) -> int:
         """Where to go on in a chunk: behind the definition that stopped the walk, or at the end."""
@@ -330,27 +323,6 @@ def add_counts(counts: dict[int, int | None], rows: Rows) -> None:
     channels, numbers = np.unique(rows.channels, return_counts=True)
     for channel, number in zip(channels.tolist(), numbers.tolist(), strict=True):
         counts[channel] = (counts.get(channel) or 0) + number
-
-
-def pieces_of(segments: Sequence[Chunk | Region]) -> tuple[Piece, ...]:
-    """Segments as what can be read alone; of a log without records one that is empty."""
-    return tuple(each.piece for each in segments) or (Piece(0),)
-
-
-def segments_of(chunks: Iterable[Chunk], start: int, end: int, behind: Mapping[int, int]) -> list[Chunk | Region] | None:
-    """Chunks of an index, and the regions between them; ``behind`` says how much of an index follows a chunk. None if they overlap."""
-    found: list[Chunk | Region] = []
-    at = start
-    for chunk in sorted(chunks, key=lambda each: each.at):
-        if chunk.at < at or chunk.size < 9 or chunk.at + chunk.size > end:
-            return None
-        if chunk.at > at:
-            found.append(Region(at, chunk.at))
-        found.append(chunk)
-        at = min(chunk.at + chunk.size + behind.get(chunk.at, 0), end)
-    if at < end:
-        found.append(Region(at, end))
-    return found
 
 
 class Scanned:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Literal
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.logs.base import Connection
 from rosetta_jit.logs.fields import Fields
-from rosetta_jit.logs.records import Head, Packed
+from rosetta_jit.logs.records import Head
+from rosetta_jit.logs.unpacking import Packed
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -13,7 +13,8 @@ from rosetta_jit.logs.bag.old import MAGIC as OLD_MAGIC
 from rosetta_jit.logs.bag.old import OldBagReader
 from rosetta_jit.logs.base import Extent, widened
 from rosetta_jit.logs.limits import MAX_INDEX_BYTES
-from rosetta_jit.logs.records import PEEK, Chunk, Records, Region, Scanned, pieces_of, segments_of
+from rosetta_jit.logs.records import PEEK, Records, Scanned
+from rosetta_jit.logs.segments import Chunk, Region, pieces_of, segments_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -81,6 +82,10 @@ class BagReader:
     @property
     def pieces(self) -> Sequence[Piece]:
         return pieces_of(self._contents.segments)
+
+    @property
+    def works_ahead(self) -> bool:
+        return self._records.works_ahead(self._contents.segments)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         return self._records.blocks(self._contents.segments, wanted, self._contents.end)

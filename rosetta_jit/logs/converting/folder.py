@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
-from rosetta_jit.logs.ahead import ahead
 from rosetta_jit.logs.base import Wanted
 from rosetta_jit.logs.converting.journal import NAME, PART, Journal, Progress
 from rosetta_jit.logs.converting.parts import Parts
@@ -139,7 +138,7 @@ class FolderConversion:
         names, room = folder_names(each.topic for each in self.channels), min(LARGE_BYTES, WAITING_BYTES // max(len(self.channels), 1))
         streams = [_Stream(each, names[each.topic], self._collector(each, progress, rejected, room)) for each in self.channels]
         done = 0
-        for piece, within, block in ahead(self._blocks(progress), lambda each: each[2].data.size):
+        for piece, within, block in self._blocks(progress):
             for stream in streams:
                 rows = block.rows.of_channels(stream.channel.numbers)
                 self._add(stream, stream.collector.put(block, rows), progress, parts, rejected)
@@ -161,7 +160,7 @@ class FolderConversion:
         numbers = frozenset(number for each in self.channels for number in each.numbers)
         first, skipped = progress.piece, progress.within
         piece, within = first, 0
-        for block in self.log.blocks(Wanted(numbers, self.start, self.end, range(first, len(self.log.pieces)))):
+        for block in self.log.blocks_ahead(Wanted(numbers, self.start, self.end, range(first, len(self.log.pieces)))):
             if block.piece != piece:
                 piece, within = block.piece, 0
             before, within = within, within + len(block.rows)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.logs.ahead import ahead
-
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
@@ -29,7 +27,7 @@ def write_log(log: Log, routes: Sequence[Route], writer: Writer, wanted: Wanted,
     for route in routes:
         for origins, connection in route.connections:
             numbers |= dict.fromkeys(origins, writer.connect(connection))
-    for block in ahead(log.blocks(wanted), lambda each: each.data.size):
+    for block in log.blocks_ahead(wanted):
         rows, found = block.rows, dict[int, bytes]()
         for route in routes:
             found |= route.messages(block)

@@ -12,7 +12,8 @@ from rosetta_jit.logs.base import Extent
 from rosetta_jit.logs.fields import Fields
 from rosetta_jit.logs.limits import MAX_SUMMARY_BYTES
 from rosetta_jit.logs.mcap.grammar import CHANNEL, CHUNK_INDEX, FOOTER, HEADER, MAGIC, PREFIX, SCHEMA, STATISTICS, McapGrammar
-from rosetta_jit.logs.records import Chunk, Records, Region, Scanned, pieces_of, segments_of
+from rosetta_jit.logs.records import Records, Scanned
+from rosetta_jit.logs.segments import Chunk, Region, pieces_of, segments_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -63,6 +64,10 @@ class McapReader:
     @property
     def pieces(self) -> Sequence[Piece]:
         return pieces_of(self._summary.segments)
+
+    @property
+    def works_ahead(self) -> bool:
+        return self._records.works_ahead(self._summary.segments)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         return self._records.blocks(self._summary.segments, wanted, self._summary.end)

@@ -72,6 +72,10 @@ class Rosbag2Reader:
                 found.append(Piece(each.size, each.times, numbers))
         return found
 
+    @property
+    def works_ahead(self) -> bool:
+        return not self._compressed and all(isinstance(each, McapReader) and each.works_ahead for each in self._parts)
+
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         before = 0
         for place, part in enumerate(self._parts):
