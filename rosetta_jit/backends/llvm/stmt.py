@@ -159,7 +159,8 @@ def _require(frame: Frame, at: kernel.Expr, size: kernel.Expr, failure: kernel.F
     builder = frame.builder
     start, length = expression(frame, at), expression(frame, size)
     if size == kernel.Const("i64", 1):
-        return _check(frame, builder.icmp_unsigned("<", start, frame.parameters.end), failure)
+        _check(frame, builder.icmp_unsigned("<", start, frame.parameters.end), failure)
+        return
     holds = builder.icmp_signed("<=", length, builder.sub(frame.parameters.end, start))
     for value, is_positive in ((start, _is_behind_begin(at)), (length, isinstance(size, kernel.Const))):
         if not is_positive:
