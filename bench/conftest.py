@@ -26,6 +26,7 @@ ORDER = (
     "mapped",
     "bridges",
     "peers",
+    "against_cpp",
     "generated",
     "classes",
     "attributes",

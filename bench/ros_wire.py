@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 JOINTS, RAYS, POSES, POINTS = 32, 1080, 1000, 100_000
+TRANSFORMS, STATUSES, VALUES = 50, 20, 5
+"""Of a TFMessage; of a DiagnosticArray, and of each of its statuses."""
 NUMBERS = np.random.default_rng(0).random(8 * POSES)
 
 
@@ -112,6 +114,27 @@ def point_cloud(wire: Ros1) -> None:
     wire.pack("BII", 0, 16, 16 * POINTS)
     wire.blob(noise(16 * POINTS))
     wire.pack("B", 1)
+
+
+def transforms(wire: Ros1) -> None:
+    wire.pack("I", TRANSFORMS)
+    for number in range(TRANSFORMS):
+        wire.header()
+        wire.text(b"left_arm_link_%d" % number)
+        wire.numbers("d", 7)
+
+
+def diagnostics(wire: Ros1) -> None:
+    wire.header()
+    wire.pack("I", STATUSES)
+    for status in range(STATUSES):
+        wire.pack("B", status % 3)
+        for said in (b"motor %d", b"temperature of motor %d is high", b"board %d"):
+            wire.text(said % status)
+        wire.pack("I", VALUES)
+        for number in range(VALUES):
+            wire.text(b"temperature_%d" % number)
+            wire.text(b"%d.5" % (30 + status + number))
 
 
 def written(wire: Ros1, describe: Callable[[Ros1], None]) -> bytes:

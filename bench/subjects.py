@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 import rosetta_jit as rj
 from bench import ros_wire
 from bench.ros_wire import NUMBERS, Ros1, Ros2, noise, written
@@ -50,6 +52,9 @@ POSE_ARRAY, POSE_ARRAY_2 = _ros("geometry_msgs/PoseArray", ros_wire.pose_array)
 IMAGE, IMAGE_2 = _ros("sensor_msgs/Image", ros_wire.image)
 POINT_CLOUD, POINT_CLOUD_2 = _ros("sensor_msgs/PointCloud2", ros_wire.point_cloud)
 
+TRANSFORMS = Subject("tf2_msgs/TFMessage", "ros1", written(Ros1(), ros_wire.transforms))
+DIAGNOSTICS = Subject("diagnostic_msgs/DiagnosticArray", "ros1", written(Ros1(), ros_wire.diagnostics))
+
 LCM_DOUBLES = Subject(
     "rjtest.doubles_t",
     "lcm",
@@ -67,6 +72,7 @@ OROCOS_DOUBLES = Subject(
     struct.pack("<Q", DOUBLES) + _doubles(DOUBLES),
     {"schema": {"numbers.hpp": "struct Empty { int nothing; };"}},
 )
+NUMBERS_OF_BYTES = np.random.default_rng(0)
 _ANGLES = {"schema": {"angles.proto": ANGLES_PROTO.read_text("utf-8")}}
 RST_ANGLES = Subject(
     "rj.JointAngles", "protobuf", b"".join(b"\x09" + NUMBERS[i : i + 1].astype("<f8").tobytes() for i in range(24)), _ANGLES
@@ -83,6 +89,23 @@ def _field(number: int, value: int | bytes) -> bytes:
 
 def _varint(value: int) -> bytes:
     return bytes([value]) if value < 0x80 else bytes([value & 0x7F | 0x80]) + _varint(value >> 7)
+
+
+def _integers(type_: str, values: list[int]) -> Subject:
+    """An array of integers, each behind its tag or all behind one."""
+    packed = "Packed" in type_
+    message = _field(1, b"".join(map(_varint, values))) if packed else b"".join(_field(1, value) for value in values)
+    return Subject(type_, "protobuf", message, _ANGLES)
+
+
+INTEGERS = 10_000
+_ONE_BYTE, _TWO_BYTES = (NUMBERS_OF_BYTES.integers(*bounds, INTEGERS).tolist() for bounds in ((0, 1 << 7), (1 << 7, 1 << 14)))
+_EITHER = np.where(NUMBERS_OF_BYTES.random(INTEGERS) < 0.5, _ONE_BYTE, _TWO_BYTES).tolist()
+VARINTS = {
+    f"{INTEGERS:,} integers of {size}, {way}": _integers(type_, values)
+    for way, type_ in (("behind tags", "rj.Integers"), ("packed", "rj.PackedIntegers"))
+    for size, values in (("one byte", _ONE_BYTE), ("two bytes", _TWO_BYTES), ("one byte or two", _EITHER))
+}
 
 
 def _thing(number: int) -> bytes:

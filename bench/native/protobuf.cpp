@@ -34,6 +34,8 @@ double encode(const unsigned char* data, int size, std::int64_t iterations) {
 const std::map<std::string, std::pair<Job, Job>> JOBS = {
     {"rj.JointAngles", {decode<rj::JointAngles>, encode<rj::JointAngles>}},
     {"rj.PackedJointAngles", {decode<rj::PackedJointAngles>, encode<rj::PackedJointAngles>}},
+    {"rj.Integers", {decode<rj::Integers>, encode<rj::Integers>}},
+    {"rj.PackedIntegers", {decode<rj::PackedIntegers>, encode<rj::PackedIntegers>}},
     {"rst.vision.Image", {decode<rst::vision::Image>, encode<rst::vision::Image>}},
 };
 

@@ -4,7 +4,11 @@
 #include <string>
 #include <vector>
 
+#if __has_include(<diagnostic_msgs/DiagnosticArray.h>)
+#include <diagnostic_msgs/DiagnosticArray.h>
+#endif
 #include <geometry_msgs/PoseArray.h>
+#include <geometry_msgs/TransformStamped.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/Imu.h>
 #include <sensor_msgs/JointState.h>
@@ -47,6 +51,8 @@ double encode(unsigned char* data, std::uint32_t size, std::int64_t iterations) 
     return std::memcmp(buffer.data(), data, size) == 0 ? took : -1;
 }
 
+using Transforms = std::vector<geometry_msgs::TransformStamped>;  // all that tf2_msgs::TFMessage has
+
 const std::map<std::string, std::pair<Job, Job>> JOBS = {
     {"sensor_msgs/Imu", {decode<sensor_msgs::Imu>, encode<sensor_msgs::Imu>}},
     {"sensor_msgs/JointState", {decode<sensor_msgs::JointState>, encode<sensor_msgs::JointState>}},
@@ -54,6 +60,10 @@ const std::map<std::string, std::pair<Job, Job>> JOBS = {
     {"geometry_msgs/PoseArray", {decode<geometry_msgs::PoseArray>, encode<geometry_msgs::PoseArray>}},
     {"sensor_msgs/Image", {decode<sensor_msgs::Image>, encode<sensor_msgs::Image>}},
     {"sensor_msgs/PointCloud2", {decode<sensor_msgs::PointCloud2>, encode<sensor_msgs::PointCloud2>}},
+    {"tf2_msgs/TFMessage", {decode<Transforms>, encode<Transforms>}},
+#if __has_include(<diagnostic_msgs/DiagnosticArray.h>)
+    {"diagnostic_msgs/DiagnosticArray", {decode<diagnostic_msgs::DiagnosticArray>, encode<diagnostic_msgs::DiagnosticArray>}},
+#endif
 };
 
 }  // namespace

@@ -60,6 +60,30 @@ def test_bad_text_is_refused(backend):
             assert outcome(backend, kernels.text(), padded, rows(kernels.text()))[0] == -3, padded
 
 
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_characters_in_texts_of_every_length(backend):
+    """Texts are looked at by words and vectors: where a character stands, and what is left behind it, must not matter."""
+    kernel, places = kernels.text(), 0
+    for size in (*range(41), 63, 64, 65, 96, 97):
+        for character in (b"", b"\xc3\xa9", b"\xe2\x82\xac", b"\xf0\x9f\xa4\x96", b"\x80", b"\xe2\x82", b"\xc3\xa9\xff"):
+            for place in range(size - len(character) + 1):
+                message = bytearray(b"a" * size)
+                message[place : place + len(character)] = character
+                holder = rows(kernel)
+                accepted = outcome(backend, kernel, bytes(message), holder)[0] == size
+                assert accepted == is_utf8(message), message
+                places += 1
+    assert places > 7000
+
+
+def is_utf8(message):
+    try:
+        message.decode("utf-8")
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
 @pytest.mark.parametrize("backend", ENGINES)
 def test_decoding_into_row_0_empties_lanes(backend):
     kernel = kernels.counted()

@@ -1,10 +1,12 @@
 """The UTF-8 check as an LLVM function: many ASCII bytes at a time, else one character at a time by Unicode 15, table 3-7.
 
-The bytes behind the last whole word are looked at together with those before them, as the last word of the text.
+The bytes behind the last whole vector or word are looked at together with those before them, as the last vector or word of the text. A text
+shorter than a vector is looked at from both ends: as many branches for each length, which processors guess better than rounds of a loop.
 """
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
 
 from llvmlite import ir
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 WORD = 8
+VECTOR = 4 * WORD
 """Bytes."""
 
 
@@ -35,47 +38,85 @@ class _Check:
 
     def define(self) -> None:
         builder = self.builder
-        long, short, lead, good, bad = map(self._block, ("long", "short", "lead", "good", "bad"))
+        long, mixed, words, lead, good, bad = map(self._block, ("long", "mixed", "words", "lead", "good", "bad"))
         has_word = builder.icmp_signed(">=", self.size, constant(WORD))
-        builder.cbranch(has_word, long, short)
-        self._short(short, lead, good)
-        self._steps(long, has_word, lead, good)
-        self._character(lead, long, bad)
+        some_words, fewer = self._block("some_words"), self._block("fewer")
+        builder.cbranch(has_word, some_words, fewer)
+        self._below_word(fewer, lead, good)
+        self._below_vector(some_words, long, words, good)
+        self._long(long, words, good)
+        self._mixed(mixed, words, has_word, lead, good)
+        self._character(lead, mixed, bad)
         for block, answer in ((good, 1), (bad, 0)):
             builder.position_at_end(block)
             builder.ret(ir.Constant(I1, answer))
 
-    def _short(self, short: ir.Block, lead: ir.Block, good: ir.Block) -> None:
+    def _below_word(self, start: ir.Block, lead: ir.Block, good: ir.Block) -> None:
         """A text shorter than a word is ASCII if its first and its last bytes are, half a word of them or fewer, which may overlap."""
         builder, width = self.builder, WORD // 2
-        builder.position_at_end(short)
+        builder.position_at_end(start)
         while width:
             some, fewer = self._block(f"some{width}"), self._block("fewer")
             builder.cbranch(builder.icmp_signed(">=", self.size, constant(width)), some, fewer)
-            builder.position_at_end(some)
-            ends = [self._high_bits(at, ir.IntType(8 * width)) for at in (constant(0), builder.sub(self.size, constant(width)))]
-            builder.cbranch(self._is_zero(builder.or_(*ends)), good, lead)
+            self._ends(some, width, good, lead)
             builder.position_at_end(fewer)
             width //= 2
         builder.branch(good)
 
-    def _steps(self, long: ir.Block, has_word: ir.Value, lead: ir.Block, good: ir.Block) -> None:
-        """Step over vectors, then words, while they are ASCII; where fewer bytes are left, look at the text's last word."""
+    def _below_vector(self, start: ir.Block, long: ir.Block, words: ir.Block, good: ir.Block) -> None:
+        """One that is shorter than a vector: the same, with a word or two of them at each end."""
         builder = self.builder
-        rest = self._step(long, 4 * WORD, None)
-        rest = self._step(rest, WORD, lead)
+        builder.position_at_end(start)
+        short, two, one = self._block("short"), self._block("two"), self._block("one")
+        builder.cbranch(builder.icmp_signed(">=", self.size, constant(VECTOR)), long, short)
+        builder.position_at_end(short)
+        builder.cbranch(builder.icmp_signed(">=", self.size, constant(2 * WORD)), two, one)
+        self._ends(two, 2 * WORD, good, words)
+        self._ends(one, WORD, good, words)
+
+    def _ends(self, start: ir.Block, width: int, good: ir.Block, other: ir.Block) -> None:
+        """Whether the first and the last so many bytes are ASCII."""
+        self.builder.position_at_end(start)
+        ends = [self._high_bits(at, ir.IntType(8 * width)) for at in (constant(0), self.builder.sub(self.size, constant(width)))]
+        self.builder.cbranch(self._is_zero(self.builder.or_(*ends)), good, other)
+
+    def _long(self, start: ir.Block, words: ir.Block, good: ir.Block) -> None:
+        """Step over vectors while they are ASCII; where fewer bytes are left, look at the text's last vector."""
+        rest = self._step(start, VECTOR, words)
+        self._last(rest, VECTOR, good, words)
+
+    def _mixed(self, start: ir.Block, words: ir.Block, has_word: ir.Value, lead: ir.Block, good: ir.Block) -> None:
+        """Behind a character that is not ASCII: step over vectors, then words, that are; of a word that is not, over the bytes that are.
+
+        Where fewer bytes are left, look at the text's last word.
+        """
+        builder = self.builder
+        rest = self._step(start, VECTOR, words)
+        builder.position_at_end(rest)
+        builder.branch(words)
+        skip = self._block("skip")
+        rest = self._step(words, WORD, skip)
+        builder.position_at_end(skip)
+        count_bits = builder.cttz if sys.byteorder == "little" else builder.ctlz
+        ascii_bits = count_bits(self._high_bits(self._at(), I64), ir.Constant(I1, 1))
+        self._advance(builder.lshr(ascii_bits, constant(3)), lead)
         builder.position_at_end(rest)
         some, last = self._block("some"), self._block("last")
         builder.cbranch(builder.icmp_signed("<", self._at(), self.size), some, good)
         builder.position_at_end(some)
         builder.cbranch(has_word, last, lead)
-        builder.position_at_end(last)
-        builder.cbranch(self._is_zero(self._high_bits(builder.sub(self.size, constant(WORD)), I64)), good, lead)
+        self._last(last, WORD, good, lead)
 
-    def _step(self, start: ir.Block, width: int, other: ir.Block | None) -> ir.Block:
+    def _last(self, start: ir.Block, width: int, good: ir.Block, other: ir.Block) -> None:
+        """Whether the last so many bytes are ASCII."""
+        self.builder.position_at_end(start)
+        high_bits = self._high_bits(self.builder.sub(self.size, constant(width)), ir.IntType(8 * width))
+        self.builder.cbranch(self._is_zero(high_bits), good, other)
+
+    def _step(self, start: ir.Block, width: int, other: ir.Block) -> ir.Block:
         """Step over so many bytes, again and again from ``start`` on; returns where fewer are left.
 
-        Where some of them are not ASCII, go to ``other``, or by default to the same block.
+        Where some of them are not ASCII, go to ``other``.
         """
         builder = self.builder
         there, step, rest = self._block(f"there{width}"), self._block("step"), self._block("rest")
@@ -83,7 +124,7 @@ class _Check:
         behind = builder.add(self._at(), constant(width), flags=("nsw",))
         builder.cbranch(builder.icmp_signed("<=", behind, self.size), there, rest)
         builder.position_at_end(there)
-        builder.cbranch(self._is_zero(self._high_bits(self._at(), ir.IntType(8 * width))), step, other or rest)
+        builder.cbranch(self._is_zero(self._high_bits(self._at(), ir.IntType(8 * width))), step, other)
         builder.position_at_end(step)
         builder.store(behind, self.position)
         builder.branch(start)
@@ -108,29 +149,34 @@ class _Check:
         builder = self.builder
         builder.position_at_end(lead)
         first = builder.load(self._byte(0), typ=I8, align=1)
-        single, many = self.function.append_basic_block("single"), self.function.append_basic_block("many")
+        single, many, behind = self._block("single"), self._block("many"), self._block("behind")
         builder.cbranch(builder.icmp_unsigned("<", first, ir.Constant(I8, 0x80)), single, many)
         builder.position_at_end(single)
-        self._advance(1, again)
+        self._advance(constant(1), again)
         builder.position_at_end(many)
         low = self._choose(first, ((0xE0, 0xA0), (0xF0, 0x90)), 0x80)
         high = self._choose(first, ((0xED, 0x9F), (0xF4, 0x8F)), 0xBF)
         for least, most, following in ((0xC2, 0xDF, 1), (0xE0, 0xEF, 2), (0xF0, 0xF4, 3)):
-            mine, other = self.function.append_basic_block("mine"), self.function.append_basic_block("other")
+            mine, other = self._block("mine"), self._block("other")
             builder.cbranch(self._within(first, ir.Constant(I8, least), ir.Constant(I8, most)), mine, other)
             builder.position_at_end(mine)
             fine = self._following((low, high), following, bad)
-            good = self.function.append_basic_block("good")
+            good = self._block("good")
             builder.cbranch(fine, good, bad)
             builder.position_at_end(good)
-            self._advance(1 + following, again)
+            self._advance(constant(1 + following), behind)
             builder.position_at_end(other)
         builder.branch(bad)
+        builder.position_at_end(behind)
+        there = self._block("there")
+        builder.cbranch(builder.icmp_signed("<", self._at(), self.size), there, again)
+        builder.position_at_end(there)
+        builder.cbranch(builder.icmp_unsigned("<", builder.load(self._byte(0), typ=I8, align=1), ir.Constant(I8, 0x80)), again, lead)
 
     def _following(self, second: tuple[ir.Value, ir.Value], count: int, bad: ir.Block) -> ir.Value:
         """Whether the bytes after the first are what they must be; go to ``bad`` where the text ends before them."""
         builder = self.builder
-        there = self.function.append_basic_block("there")
+        there = self._block("there")
         builder.cbranch(builder.icmp_signed(">", builder.sub(self.size, self._at()), constant(count)), there, bad)
         builder.position_at_end(there)
         fine = self._within(builder.load(self._byte(1), typ=I8, align=1), *second)
@@ -156,6 +202,6 @@ class _Check:
         at = self.builder.add(self._at(), constant(index), flags=("nsw",))
         return self.builder.gep(self.bytes, [at], source_etype=I8)
 
-    def _advance(self, count: int, block: ir.Block) -> None:
-        self.builder.store(self.builder.add(self._at(), constant(count), flags=("nsw",)), self.position)
+    def _advance(self, count: ir.Value, block: ir.Block) -> None:
+        self.builder.store(self.builder.add(self._at(), count, flags=("nsw",)), self.position)
         self.builder.branch(block)

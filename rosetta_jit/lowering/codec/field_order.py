@@ -118,5 +118,5 @@ def _go_on(writer: Writer, guess: Local, after: Local, case: Local, goes_on: Loc
             writer.assign(case, guess)
             writer.assign(goes_on, TRUE)
         writer.emit(If(right, block(again)))
-    there = Compare("ge", Binary("sub", stop, after), index(2))
+    there = Compare("le", after, Binary("sub", stop, index(2)))
     writer.emit(If(Compare("ge", guess, index(0)), (If(there, block(inside)),)))
