@@ -90,7 +90,7 @@ def _compiled(build: Any, cache: Cache, link: Callable[[Mapping[str, Any], bytes
 def _answered(build: Any, cache: Cache, name: str, loaded: Linked) -> Linked:
     """A program that the cache has, as the answer to its request from now on, if the request says all."""
     if build.request.is_identified():
-        cache.put_manifest(request_name(build.request.key()), build.files(), name)
+        cache.put_manifest(request_name(build.request.key()), build.files(), name, by_search_path=bool(build.offered))
     return loaded
 
 
