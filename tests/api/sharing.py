@@ -38,6 +38,14 @@ pack-rules:
   .packed = compress(.pixels, "png", .width, .height, 1)
 """,
 }
+DIGITS = "0123456789"
+CHOICES = {
+    "choices.proto": """syntax = "proto3";
+package p;
+message N { string t = 1; repeated double d = 2; }
+message C { oneof u { string a = 1; N b = 2; int32 c = 3; } map<string, N> m = 4; map<int32, string> k = 5; N n = 6; }
+"""
+}
 KINDS = {}
 
 
@@ -62,6 +70,14 @@ def plain(number):
         "items": [{"k": number, "t": str(number)}] * (number % 5),
         "raw": word.encode() * (1 + number % 3 * 20),
     }
+
+
+def choice(number):
+    """The same of a message with a oneof and maps."""
+    word = str(number % 10) * (1 + number * 37 % 500)
+    nested = {"t": word, "d": [float(number)] * (number % 50)}
+    chosen = ({"a": word}, {"b": nested}, {"c": number})[number % 3]
+    return {**chosen, "m": {f"{word}{i}": nested for i in range(number % 6)}, "k": dict.fromkeys(range(number % 9), word), "n": nested}
 
 
 def buffer_of(sent):
@@ -449,6 +465,41 @@ def iterators(turns):
             assert one.d.tolist() == [] or len(one.d)
 
     turns.run(refill, batch_rows, lists, lists)
+
+
+@kind
+def maps(turns):
+    """Maps and the fields of a oneof are read while their message is decoded into, and its entries are put and deleted."""
+    options = {"schema": CHOICES, "imports": ["choices.proto"], "encoding": "protobuf"}
+    decode, encode = rj.Decoder.of("p.C", **options), rj.Encoder.of("p.C", **options)
+    dicts = [choice(number) for number in range(40)]
+    sent = [bytes(encode(encode.holder_type.from_dict(each))) for each in dicts]
+    known = [decode(each).to_dict() for each in sent]
+    shared, changed = decode(sent[1], decode.new()), decode.new()
+
+    def fill(rng):
+        decode(sent[rng.randrange(40)], shared)
+
+    def whole(rng):
+        assert shared.to_dict() in known
+        assert decode(encode(shared)).to_dict() in known
+
+    def entries(rng):
+        with suppress(rj.InvalidHolder, KeyError, IndexError, RuntimeError):
+            assert all(set(text) <= set(DIGITS) for _, text in shared.k.items())
+            assert set(shared.a + shared.b.t) <= set(DIGITS)
+
+    def put(rng):
+        changed.k[rng.randrange(200)] = "1" * rng.randrange(300)
+        changed.a = "1" * rng.randrange(3000)
+        with suppress(KeyError):
+            del changed.k[rng.randrange(200)]
+
+    def write(rng):
+        found = decode(encode(changed)).to_dict()
+        assert all(set(text) <= {"1"} for text in found["k"].values())
+
+    turns.run(fill, whole, entries, put, write)
 
 
 @kind
