@@ -99,7 +99,7 @@ def is_as_before(request: Any, name: str, build_of: Callable[[Any], Any]) -> boo
 def _answered(build: Any, cache: Cache, name: str, loaded: Linked) -> Linked:
     """A program that the cache has, as the answer to its request from now on, if the request says all."""
     if build.request.is_identified():
-        cache.put_manifest(request_name(build.request.key()), build.files(), name)
+        cache.put_manifest(request_name(build.request.key()), build.files(), name, by_search_path=bool(build.offered))
     return loaded
 
 

@@ -6,7 +6,7 @@ from functools import cache
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.backends.backend import Backend
-from rosetta_jit.startup.entry_points import may_be_offered
+from rosetta_jit.startup.entry_points import offered
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -28,15 +28,7 @@ OURS = (
 @cache
 def installed() -> Mapping[str, Backend]:
     """Every backend by name; none takes the place of ours."""
-    return {each.name: each for each in (*_offered(), *OURS)}
-
-
-def _offered() -> list[Backend]:
-    if not may_be_offered(GROUP):
-        return []
-    from importlib.metadata import entry_points  # slow to import
-
-    return [cast("Backend", each.load()) for each in entry_points(group=GROUP)]
+    return {each.name: each for each in (*(cast("Backend", each.load()) for each in offered(GROUP)), *OURS)}
 
 
 def backend_named(name: str | None) -> Backend | None:

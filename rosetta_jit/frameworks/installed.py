@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.model.types import name_parts
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.startup.entry_points import may_be_offered
+from rosetta_jit.startup.entry_points import offered
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
@@ -32,15 +32,10 @@ def shipped() -> tuple[Framework, ...]:
 
 @cache
 def installed() -> Mapping[str, Framework]:
-    """Every framework by name: ours, and those of installed packages."""
-    frameworks = (*shipped(), *_offered()) if may_be_offered(GROUP) else shipped()
-    return {framework.name: framework for framework in frameworks}
-
-
-def _offered() -> list[Framework]:
-    from importlib.metadata import entry_points  # slow to import
-
-    return [cast("Framework", each.load()) for each in entry_points(group=GROUP)]
+    """Every framework by name: ours, and those of installed packages, which cannot take the place of ours."""
+    ours = {framework.name: framework for framework in shipped()}
+    others = [cast("Framework", each.load()) for each in offered(GROUP)]
+    return ours | {framework.name: framework for framework in others if framework.name not in ours}
 
 
 @dataclass(frozen=True, slots=True)

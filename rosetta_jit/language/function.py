@@ -9,14 +9,13 @@ texts is a record with a name that no mapping can write: `+`.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from functools import cache
 from typing import TYPE_CHECKING, cast
 from typing import Literal as OneOf
 
+from rosetta_jit.startup import entry_points
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.startup.entry_points import may_be_offered
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
@@ -353,17 +352,7 @@ def shipped() -> tuple[Function, ...]:
 @cache
 def offered() -> tuple[Function, ...]:
     """The functions of installed packages."""
-    if not may_be_offered(GROUP):
-        return ()
-    from importlib.metadata import entry_points  # slow to import
-
-    return tuple(cast("Function", each.load()) for each in entry_points(group=GROUP))
-
-
-def files_of_offered() -> tuple[str, ...]:
-    """The source files of the functions of installed packages: what is kept of a program depends on them."""
-    modules = (sys.modules[each.lower.__module__] for each in offered())
-    return tuple(dict.fromkeys(path for each in modules if (path := each.__file__) is not None))
+    return tuple(cast("Function", each.load()) for each in entry_points.offered(GROUP))
 
 
 def names() -> tuple[str, ...]:

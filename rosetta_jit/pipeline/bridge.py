@@ -155,6 +155,11 @@ class BridgeBuild:
             case _:
                 return "\n".join(half.stage(stage) for half in self.halves)
 
+    @property
+    def offered(self) -> tuple[str, ...]:
+        """As of a `Build`."""
+        return tuple(file for half in self.halves for file in half.offered)
+
     def files(self) -> dict[str, str | None]:
         """As of a `Build`."""
         return {name: digest for half in self.halves for name, digest in half.files().items()}

@@ -17,12 +17,13 @@ from rosetta_jit.catalogue.wires import single as single_wire
 from rosetta_jit.catalogue.wires import unknown as unknown_wire
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework
+from rosetta_jit.frameworks.installed import GROUP as FRAMEWORKS
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError
 from rosetta_jit.kernel.shape import asks_host, our_functions
 from rosetta_jit.language.check.mapping import Checked, check
-from rosetta_jit.language.function import files_of_offered
+from rosetta_jit.language.function import GROUP as FUNCTIONS
 from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parse.mapping import parse as parse_mapping
 from rosetta_jit.lowering.lower import Mapped, lower
@@ -43,6 +44,7 @@ from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.runtime.limits import MAX_PIXEL_BYTES
 from rosetta_jit.runtime.run import GRACE_BYTES
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.entry_points import files_of_offered
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
@@ -295,8 +297,13 @@ class Build:
 
     def files(self) -> dict[str, str | None]:
         """The digests of all files that the program depends on."""
-        offered = files_of_offered() if self.request.mapping is not None else ()
-        return self.sources.digests() | {path: digest_file(path) for path in offered}
+        return self.sources.digests() | {path: digest_file(path) for path in self.offered}
+
+    @cached_property
+    def offered(self) -> tuple[str, ...]:
+        """The files of installed packages whose frameworks and functions this program may use: what is kept of it depends on them."""
+        functions = files_of_offered(FUNCTIONS) if self.request.mapping is not None else ()
+        return (*files_of_offered(FRAMEWORKS), *functions)
 
 
 @contextmanager

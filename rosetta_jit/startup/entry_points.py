@@ -1,13 +1,47 @@
-"""Whether installed packages may offer something under a group of entry points: a look at their folders.
+"""What installed packages offer under a group of entry points, and the files of these packages.
 
-`importlib.metadata` says it, and what they offer; but its import takes as long as making sense of a mapping, and hardly a package does.
+`importlib.metadata` finds entry points; but its import takes as long as making sense of a mapping, and hardly a package offers any. So the
+folders of `sys.path` are looked at first.
 """
 
 from __future__ import annotations
 
 import os
 import sys
+from functools import cache
 from importlib.machinery import PathFinder
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from importlib.metadata import EntryPoint
+
+
+@cache
+def offered(group: str) -> tuple[EntryPoint, ...]:
+    """The entry points of a group, of all installed packages; looked for once in a process."""
+    if not may_be_offered(group):
+        return ()
+    from importlib.metadata import entry_points
+
+    return tuple(entry_points(group=group))
+
+
+def files_of_offered(group: str) -> tuple[str, ...]:
+    """All files of the packages and modules that offer something under a group, once that was loaded: its code, and data that it reads."""
+    packages = dict.fromkeys(each.module.partition(".")[0] for each in offered(group))
+    return tuple(file for each in packages for file in _files_of(each))
+
+
+def _files_of(package: str) -> Iterator[str]:
+    module = sys.modules.get(package)
+    folders: list[str] = list(getattr(module, "__path__", ()))
+    if not folders and getattr(module, "__file__", None):
+        yield str(getattr(module, "__file__", None))
+    for folder in folders:
+        for inside, below, names in os.walk(folder):
+            below[:] = [each for each in below if each != "__pycache__"]
+            yield from (f"{inside}/{name}" for name in sorted(names))
 
 
 def may_be_offered(group: str) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.startup.entry_points import may_be_offered
+from rosetta_jit.startup.entry_points import offered
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
@@ -26,11 +26,5 @@ def installed() -> Mapping[str, Transport]:
     ours = [
         each for name in OURS for each in cast("tuple[Transport, ...]", imported(f"rosetta_jit.transports.{name}.transport").TRANSPORTS)
     ]
-    found = [*ours, *_offered()] if may_be_offered(GROUP) else ours
-    return {scheme: transport for transport in found for scheme in transport.schemes}
-
-
-def _offered() -> list[Transport]:
-    from importlib.metadata import entry_points  # slow to import
-
-    return [cast("Transport", each.load()) for each in entry_points(group=GROUP)]
+    others = (cast("Transport", each.load()) for each in offered(GROUP))
+    return {scheme: transport for transport in (*ours, *others) for scheme in transport.schemes}

@@ -9,12 +9,15 @@ from __future__ import annotations
 import copy
 import faulthandler
 import gc
+import os
 import pickle
 import random
+import signal
 import struct
 import sys
 import threading
 import time
+from contextlib import suppress
 
 import numpy as np
 
@@ -34,6 +37,14 @@ wire-schema: p/Q
 pack-rules:
   .packed = compress(.pixels, "png", .width, .height, 1)
 """,
+}
+DIGITS = "0123456789"
+CHOICES = {
+    "choices.proto": """syntax = "proto3";
+package p;
+message N { string t = 1; repeated double d = 2; }
+message C { oneof u { string a = 1; N b = 2; int32 c = 3; } map<string, N> m = 4; map<int32, string> k = 5; N n = 6; }
+"""
 }
 KINDS = {}
 
@@ -59,6 +70,18 @@ def plain(number):
         "items": [{"k": number, "t": str(number)}] * (number % 5),
         "raw": word.encode() * (1 + number % 3 * 20),
     }
+
+
+def choice(number):
+    """The same of a message with a oneof and maps."""
+    word = str(number % 10) * (1 + number * 37 % 500)
+    nested = {"t": word, "d": [float(number)] * (number % 50)}
+    chosen = ({"a": word}, {"b": nested}, {"c": number})[number % 3]
+    return {**chosen, "m": {f"{word}{i}": nested for i in range(number % 6)}, "k": dict.fromkeys(range(number % 9), word), "n": nested}
+
+
+def buffer_of(sent):
+    return b"".join(sent), np.cumsum([0, *map(len, sent)])
 
 
 def messages(count):
@@ -392,6 +415,126 @@ def pictures(turns):
         fill(sent[rng.randrange(3)], shared)
 
     turns.run(write, write, change)
+
+
+@kind
+def kept_tables(turns):
+    """Tables that were made before stay whole, while their batch is filled with longer texts."""
+    decode = of(rj.Decoder)
+    buffers = [buffer_of(messages(count)) for count in (5, 40, 20)]
+    shared = decode.many(*buffers[0])
+    kept = [shared.to_arrow()]
+
+    def refill(rng):
+        decode.many(*buffers[rng.randrange(3)], into=shared)
+
+    def make(rng):
+        kept[0] = shared.to_arrow()
+        time.sleep(0.001)
+
+    def read(rng):
+        table = kept[0]
+        table.validate(full=True)
+        assert table.to_pylist() == table.to_pylist()
+
+    turns.run(refill, make, read, read)
+
+
+@kind
+def iterators(turns):
+    """Batches, parts of them and lists are gone through while another thread decodes into them; what is gone raises what lists raise."""
+    sent, decode = messages(40), of(rj.Decoder)
+    buffers = [buffer_of(sent[:count]) for count in (5, 40, 20)]
+    rows, one = decode.many(*buffers[0]), decode(sent[7], decode.new())
+    words = {plain(number)["s"] for number in range(40)}
+
+    def refill(rng):
+        decode.many(*buffers[rng.randrange(3)], into=rows)
+        decode(sent[rng.randrange(40)], one)
+
+    def batch_rows(rng):
+        with suppress(rj.InvalidHolder, IndexError):
+            assert all(row.s in words for row in rows)
+            for row in rows[1:4][::-1]:
+                assert row.s in words
+
+    def lists(rng):
+        with suppress(rj.InvalidHolder, IndexError):
+            assert all(name in words for name in reversed(one.names))
+            assert all(item.t.isdigit() or not item.t for item in one.items)
+            assert one.d.tolist() == [] or len(one.d)
+
+    turns.run(refill, batch_rows, lists, lists)
+
+
+@kind
+def maps(turns):
+    """Maps and the fields of a oneof are read while their message is decoded into, and its entries are put and deleted."""
+    options = {"schema": CHOICES, "imports": ["choices.proto"], "encoding": "protobuf"}
+    decode, encode = rj.Decoder.of("p.C", **options), rj.Encoder.of("p.C", **options)
+    dicts = [choice(number) for number in range(40)]
+    sent = [bytes(encode(encode.holder_type.from_dict(each))) for each in dicts]
+    known = [decode(each).to_dict() for each in sent]
+    shared, changed = decode(sent[1], decode.new()), decode.new()
+
+    def fill(rng):
+        decode(sent[rng.randrange(40)], shared)
+
+    def whole(rng):
+        assert shared.to_dict() in known
+        assert decode(encode(shared)).to_dict() in known
+
+    def entries(rng):
+        with suppress(rj.InvalidHolder, KeyError, IndexError, RuntimeError):
+            assert all(set(text) <= set(DIGITS) for _, text in shared.k.items())
+            assert set(shared.a + shared.b.t) <= set(DIGITS)
+
+    def put(rng):
+        changed.k[rng.randrange(200)] = "1" * rng.randrange(300)
+        changed.a = "1" * rng.randrange(3000)
+        with suppress(KeyError):
+            del changed.k[rng.randrange(200)]
+
+    def write(rng):
+        found = decode(encode(changed)).to_dict()
+        assert all(set(text) <= {"1"} for text in found["k"].values())
+
+    turns.run(fill, whole, entries, put, write)
+
+
+@kind
+def forks(turns):
+    """A child of a fork beside threads that decode goes on, and what they had begun is in use there."""
+    sent, decode, encode = messages(40), of(rj.Decoder), of(rj.Encoder)
+    buffers = [buffer_of(sent[:count]) for count in (5, 40)]
+    shared, rows = decode.new(), decode.many(*buffers[0])
+
+    def fill(rng):
+        decode(sent[rng.randrange(40)], shared)
+
+    def refill(rng):
+        decode.many(*buffers[rng.randrange(2)], into=rows)
+
+    def child(rng):
+        number = os.fork()
+        if number:
+            assert os.waitpid(number, 0)[1] == 0
+            return
+        code = 1
+        try:
+            signal.alarm(30)
+            check(decode(sent[3]).to_dict(), 3)
+            assert encode(decode(sent[4], decode.new())) == sent[4]
+            assert len(decode.many(*buffers[1])) == 40
+            with suppress(rj.InUse):
+                decode.many(*buffers[0], into=rows)
+            with suppress(rj.InUse):
+                shared.to_dict()
+            code = 0
+        finally:
+            os._exit(code)
+
+    turns.run(fill, refill, child)
 
 
 def main(name, seconds):

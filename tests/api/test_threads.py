@@ -7,7 +7,8 @@ import sys
 
 import pytest
 
-from tests.api.sharing import KINDS
+import rosetta_jit as rj
+from tests.api.sharing import CHOICES, KINDS
 
 
 def share(kind, seconds):
@@ -25,3 +26,16 @@ def test_sharing(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_sharing_for_long(kind):
     share(kind, 120)
+
+
+@pytest.mark.parametrize("view", ["items", "values"])
+def test_pairs_of_a_map_that_are_gone_are_not_put_back(view):
+    options = {"schema": CHOICES, "imports": ["choices.proto"], "encoding": "protobuf"}
+    decode, encode = rj.Decoder.of("p.C", **options), rj.Encoder.of("p.C", **options)
+    holder = decode(encode(encode.holder_type.from_dict({"k": {1: "one", 2: "two"}})), decode.new())
+    pairs = iter(getattr(holder.k, view)())
+    next(pairs)
+    decode(b"", holder)
+    with pytest.raises(KeyError):
+        next(pairs)
+    assert holder.to_dict()["k"] == {}

@@ -127,8 +127,10 @@ def toys(tmp_path_factory):
     return folder
 
 
-def run(folder, *command, fails=False):
-    environment = {**os.environ, "PYTHONPATH": str(folder / "site"), "ROSETTA_JIT_CACHE_DIR": str(folder / "cache")}
+def run(folder, *command, fails=False, path=None):
+    package = str(Path(rosetta_jit.__file__).parents[1])
+    found = os.pathsep.join((str(path or folder / "site"), package))
+    environment = {**os.environ, "PYTHONPATH": found, "ROSETTA_JIT_CACHE_DIR": str(folder / "cache")}
     done = subprocess.run([sys.executable, *command], cwd=folder, env=environment, capture_output=True, text=False, check=False)
     assert bool(done.returncode) == fails, done.stderr.decode()
     return done.stderr.decode() if fails else done.stdout
@@ -136,6 +138,32 @@ def run(folder, *command, fails=False):
 
 def test_decodes_and_encodes(toys):
     run(toys, "use.py")
+
+
+DECODE = """
+import rosetta_jit as rj
+
+decode = rj.Decoder.of("toy.pair", imports=["pair.toy"], search_path=["."])
+print(decode(b"TOY" + bytes.fromhex("3ff0000000000000 4000000000000000")).left)
+"""
+
+
+def test_a_program_of_another_version_is_not_used(toys, tmp_path):
+    """The cache has no answer for a package whose files have changed, be it in a module beside the first, or that lies elsewhere now."""
+    (toys / "decode.py").write_text(DECODE)
+    encoding = toys / "site" / "toy" / "encoding.py"
+    usual = encoding.read_text()
+    try:
+        assert run(toys, "decode.py") == b"1.0\n"
+        encoding.write_text(usual.replace("struct.fields))", "reversed(struct.fields)))"))
+        assert run(toys, "decode.py") == b"2.0\n"
+    finally:
+        encoding.write_text(usual)
+    assert run(toys, "decode.py") == b"1.0\n"
+    for name, text in FOLDER.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text.replace("struct.fields))", "reversed(struct.fields)))"))
+    assert run(toys, "decode.py", path=tmp_path) == b"2.0\n"
 
 
 def test_commands(toys):

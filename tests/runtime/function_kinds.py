@@ -149,6 +149,17 @@ KINDS = {
         consts="import sys\nfrom types import ModuleType\nclass M(ModuleType):\n  @property\n  def K(self): return $.0\n"
         "sys.modules[__name__].__class__ = M\n",
     ),
+    "a module of numpy's that makes attributes": anew(
+        "import numpy as np\nmakes = np.__getattr__\nnp.__getattr__ = lambda name: $.0 if name == 'own' else makes(name)\n"
+        + F.format("np.own")
+    ),
+    "a member in the place of another": anew(
+        "import enum\nclass N(enum.Enum):\n  A = $.0\nclass M(enum.Enum):\n  A = 1.0\ntype.__setattr__(M, 'A', N.A)\n"
+        + F.format("M.A.value")
+    ),
+    "a function in the namespace of numpy": kept(
+        "import numba\nimport numpy as np\nexec('def own(x): return x * $.0', vars(np))\ng = numba.njit(np.own)\ndef f(x): return g(x)\n"
+    ),
     "a wrapped function": anew(
         "import functools\ndef g(x): return x\ndef wrap(inner):\n  @functools.wraps(inner)\n  def f(x): return x * $.0\n"
         "  return f\nf = wrap(g)\n"

@@ -79,6 +79,12 @@ def test_what_a_digest_covers():
     assert digest_of(recursive) is not None
 
 
+def test_options_that_a_user_gave_to_a_function_of_numbas():
+    function = numba.np.arraymath._early_return
+    made = numba.njit(function), numba.njit(error_model="numpy")(function)
+    assert len({content_of(reaching(each), "f").digest for each in made}) == 2
+
+
 class Colour(enum.Enum):
     RED = 1
 

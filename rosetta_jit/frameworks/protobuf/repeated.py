@@ -204,14 +204,14 @@ class MapField(Dictionary):
         super().__setitem__(key, value)
 
     def get(self, key: Any, default: Any = None) -> Any:
-        return self[key] if key in self else default  # noqa: SIM401  that would call itself
+        return self.found(key) if key in self else default
 
     def pop(self, key: Any, *default: Any) -> Any:
         if key not in self:
             if default:
                 return default[0]
             raise KeyError(key)
-        value = self[key]
+        value = self.found(key)
         del self[key]
         return value
 
@@ -223,5 +223,5 @@ class MapField(Dictionary):
 
     def MergeFrom(self, other: Mapping[Any, Any]) -> None:  # noqa: N802  as protobuf names it
         """Take over the pairs of another map."""
-        for key in other:
-            Dictionary.__setitem__(self, key, other[key])
+        for key, value in other.items():
+            Dictionary.__setitem__(self, key, value)

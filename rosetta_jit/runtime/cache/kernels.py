@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import errno
 import os
+import sys
 import warnings
 from contextlib import suppress
 from functools import lru_cache
@@ -105,15 +106,18 @@ class Cache:
         if manifest is None:
             return None
         files = cast("dict[str, str | None]", manifest.header["files"])
-        unchanged = all(digest_file(path) == digest for path, digest in files.items())
+        is_search_path = manifest.header.get("search path", sys.path) == sys.path
+        unchanged = is_search_path and all(digest_file(path) == digest for path, digest in files.items())
         return cast("str", manifest.header["entry"]) if unchanged else None
 
-    def put_manifest(self, request: str, files: Mapping[str, str | None], entry: str) -> None:
+    def put_manifest(self, request: str, files: Mapping[str, str | None], entry: str, *, by_search_path: bool = False) -> None:
         """Keep the answer to a request.
 
         ``files`` gives the SHA-256 of each file as it was read, and None for each path where a file would have been preferred but none was.
+        ``by_search_path`` says that modules were found on `sys.path` beside ours: with another one they might be others.
         """
-        self._write(request + MANIFEST, {"entry": entry, "files": dict(files)}, b"")
+        path = {"search path": sys.path} if by_search_path else {}
+        self._write(request + MANIFEST, {"entry": entry, "files": dict(files), **path}, b"")
 
     def put_note(self, name: str, program: str, reasons: tuple[str, ...]) -> None:
         """Note that a program is not kept, unless the same is noted already."""

@@ -18,7 +18,7 @@ import numpy as np
 
 from rosetta_jit.catalogue import uncertain as words
 from rosetta_jit.runtime.functions import kinds
-from rosetta_jit.runtime.functions.known import is_known, is_known_module
+from rosetta_jit.runtime.functions.known import has_known_attributes, is_known, is_known_dispatcher
 from rosetta_jit.runtime.limits import MAX_FUNCTION_DEPTH, MAX_FUNCTION_VALUES, MAX_FUNCTIONS
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
@@ -140,7 +140,7 @@ class _Walk:
             path = f"{path}.{attribute}"
             module, value = value, vars(value).get(attribute, _ABSENT)
             self.parts.append(f"attribute {attribute}")
-            if value is _ABSENT and is_known_module(module):
+            if value is _ABSENT and has_known_attributes(module):
                 self.parts.append(f"of {module.__name__}: {attributes[number:]}")
                 return
         if value is _ABSENT:
@@ -178,7 +178,7 @@ class _Walk:
 
     def dispatcher(self, given: Any, path: str) -> None:
         """A function of numba's that the code calls."""
-        if is_known(given.py_func):
+        if is_known_dispatcher(given):
             self.parts.append(f"numba's {given.py_func.__module__}.{given.py_func.__qualname__}")
         elif kinds.is_ordinary(given):
             self.dispatchers.append((path, given))

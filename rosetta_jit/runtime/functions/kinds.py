@@ -54,6 +54,8 @@ def enumeration(cls: enum.EnumType) -> tuple[object, ...] | None:
         return None
     kinds = tuple(f"{base.__module__}.{base.__qualname__}" for base in cls.__mro__ if base not in bases)
     members = cast("dict[str, enum.Enum]", cls.__members__)
+    if any(getattr(cls, name, None) is not member for name, member in members.items()):
+        return None  # `type.__setattr__` has put something else there, and numba takes the attribute
     return kinds, tuple((name, _member(member)) for name, member in members.items())
 
 

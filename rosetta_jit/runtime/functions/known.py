@@ -1,7 +1,8 @@
 """Objects that versions identify: what Python, numpy and numba brought, as long as nobody has put something else in its place.
 
-An object is known by what cannot be lent to another one: a C function by its module, a Python function by the globals that it runs in, a
-class by standing in its module under its name. A name alone proves nothing: `functools.wraps` copies it.
+An object is known by what cannot be lent to another one: a C function by its module, a Python function by the globals that it runs in and
+the file that its code comes from, a class or a dispatcher of numba's by standing in its module under its name. A name alone proves nothing:
+`functools.wraps` copies it.
 """
 
 from __future__ import annotations
@@ -37,7 +38,8 @@ def is_known(value: Any) -> bool:
     if type(value) is FunctionType:
         module = sys.modules.get(str(value.__globals__.get("__name__")))
         is_of_module = module is not None and vars(module) is value.__globals__ and is_known_module(module)
-        return is_of_module and value.__closure__ is None  # what a function was made around is nobody's version
+        is_of_file = is_of_module and value.__code__.co_filename == getattr(module, "__file__", None)
+        return is_of_file and value.__closure__ is None  # what a function was made around is nobody's version
     if isinstance(value, type):
         return _is_found(value, value.__module__, value.__qualname__)
     if type(value) is np.ufunc:
@@ -46,6 +48,18 @@ def is_known(value: Any) -> bool:
     if kind.__module__ == "numpy" and kind.__name__ == "_ArrayFunctionDispatcher":
         return is_known(value._implementation)  # noqa: SLF001 - numpy has no other name for it
     return kind.__module__.startswith("numba.core.types.") and is_known(kind) and _is_found(value, "numba.core.types", str(value))
+
+
+def has_known_attributes(module: ModuleType) -> bool:
+    """Whether versions also say which attributes a known module makes when they are asked for (PEP 562)."""
+    makes = vars(module).get("__getattr__")
+    return is_known_module(module) and (makes is None or is_known(makes))
+
+
+def is_known_dispatcher(dispatcher: Any) -> bool:
+    """Whether a dispatcher is numba's own, and not one that a user's `njit` made of a known function, with options of its own."""
+    function = dispatcher.py_func
+    return is_known(function) and _is_found(dispatcher, function.__module__, function.__qualname__)
 
 
 def _is_found(value: object, module: str, name: str) -> bool:

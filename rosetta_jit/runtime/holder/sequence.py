@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator, Mapping, MutableMapping, MutableSequence
+from collections.abc import Callable, ItemsView, Iterable, Iterator, Mapping, MutableMapping, MutableSequence, ValuesView
 from copy import copy
 from typing import TYPE_CHECKING, Any, Self, cast
 
@@ -265,7 +265,20 @@ class Dictionary(MutableMapping[Any, Any]):
         return self.checked(key) in self._known()
 
     def __getitem__(self, key: Any) -> Any:
-        index = self._known()[self.checked(key)]
+        return self.found(key)
+
+    def items(self) -> ItemsView[Any, Any]:
+        return _PairsView(self)
+
+    def values(self) -> ValuesView[Any]:
+        return _PairValues(self)
+
+    def found(self, key: Any) -> Any:
+        """The value of a key that the map has; reading never puts one there. KeyError where there is none."""
+        return self.message.lanes_.consistent(self._at, self.checked(key))
+
+    def _at(self, key: Any) -> Any:
+        index = self._keys()[key]
         family = self.message.access_.family
         pair = element(Pair(), self.message, family.access(self.node.record), self.entry, index)
         return pair.access_.getters["value"](pair)
@@ -318,9 +331,38 @@ class Dictionary(MutableMapping[Any, Any]):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Mapping):
             return NotImplemented
-        return dict(self) == dict(cast("Mapping[Any, Any]", other))
+        return dict(self.items()) == dict(cast("Mapping[Any, Any]", other).items())
 
     __hash__ = None  # pyright: ignore[reportAssignmentType]  as of every mutable mapping
 
     def __repr__(self) -> str:
-        return repr(dict(self))
+        return repr(dict(self.items()))
+
+
+class _PairsView(ItemsView[Any, Any]):
+    """The pairs of a map. Reading them adds no keys, even where `[]` does and another thread has removed the key meanwhile."""
+
+    __slots__ = ()
+    _mapping: Dictionary
+
+    def __iter__(self) -> Iterator[tuple[Any, Any]]:
+        for key in self._mapping:
+            yield key, self._mapping.found(key)
+
+    def __contains__(self, item: object) -> bool:
+        key, value = cast("tuple[object, object]", item)
+        return key in self._mapping and self._mapping.found(key) == value
+
+
+class _PairValues(ValuesView[Any]):
+    """The values of a map, which are read likewise."""
+
+    __slots__ = ()
+    _mapping: Dictionary
+
+    def __iter__(self) -> Iterator[Any]:
+        for key in self._mapping:
+            yield self._mapping.found(key)
+
+    def __contains__(self, value: object) -> bool:
+        return any(each is value or each == value for each in self)
