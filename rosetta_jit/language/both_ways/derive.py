@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
-from rosetta_jit.language.both_ways.bits import with_digits
+from rosetta_jit.language.both_ways.bits import Bits
 from rosetta_jit.language.both_ways.checks import checks_of
 from rosetta_jit.language.both_ways.inverse import condition_in
 from rosetta_jit.language.both_ways.packing import Packing
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.both_ways.bits import ConstantOf
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.knowledge import Beside
     from rosetta_jit.model import mapping as model
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 
-def derive(mapping: model.Mapping, type_of: TypeOf, problems: list[Diagnostic], depth: int = 0) -> model.Mapping:
+def derive(mapping: model.Mapping, type_of: TypeOf, constant_of: ConstantOf, problems: list[Diagnostic], depth: int = 0) -> model.Mapping:
     """The mapping with each direction's rules complete, those of its own block behind those for both.
 
     ``depth`` is how many conditions of its relations have become blocks.
@@ -41,16 +42,17 @@ def derive(mapping: model.Mapping, type_of: TypeOf, problems: list[Diagnostic], 
     if mapping.rules is None:
         return mapping
     found: list[Diagnostic] = []
-    packing, rules = Packing.of(mapping.pack_rules or (), type_of, found), with_digits(mapping.rules, type_of)
+    packing, bits = Packing.of(mapping.pack_rules or (), type_of, found), Bits(type_of, constant_of, {})
+    rules = bits.rules(mapping.rules)
     pack_rules = packing.block(with_flags(rules, packing.is_completed), ())
     conditional = _conditional(rules, packing)
     if conditional and depth < MAX_CONDITIONS:
-        split = tuple(_by_blocks(rule, conditional) for rule in rules)
-        return derive(replace(mapping, rules=split), type_of, problems, depth + 1)
+        split = tuple(_by_blocks(rule, conditional) for rule in mapping.rules)
+        return derive(replace(mapping, rules=split), type_of, constant_of, problems, depth + 1)
     problems.extend((*found, *(words.too_many_blocks(span, MAX_CONDITIONS) for span in conditional)))
     return replace(
         mapping,
-        unpack_rules=(*_unpacking(rules, packing.known.beside), *(mapping.unpack_rules or ())),
+        unpack_rules=(*_unpacking(rules, packing.known.beside, bits.written), *(mapping.unpack_rules or ())),
         pack_rules=(*pack_rules, *(mapping.pack_rules or ())),
     )
 
@@ -87,21 +89,21 @@ def _set(place: Path | Len | List, value: Expr, span: Span | None, via: Via | No
             return (Assign(place, value, span, via),)
 
 
-def _unpacking(rules: tuple[Rule, ...], checked: Mapping[int, Beside]) -> tuple[Rule, ...]:
-    return tuple(made for rule in rules for made in _unpacked(rule, checked))
+def _unpacking(rules: tuple[Rule, ...], checked: Mapping[int, Beside], written: Mapping[int, Expr]) -> tuple[Rule, ...]:
+    return tuple(made for rule in rules for made in _unpacked(rule, checked, written))
 
 
-def _unpacked(rule: Rule, checked: Mapping[int, Beside]) -> tuple[Rule, ...]:
+def _unpacked(rule: Rule, checked: Mapping[int, Beside], written: Mapping[int, Expr]) -> tuple[Rule, ...]:
     """The rules of a relation, and of what it needs to be the only one that packs so."""
     match rule:
         case Relation(place, value, span, via):
             beside = checked.get(id(rule))
             checks = () if beside is None or beside.side == "holder" else checks_of(beside)
-            return (*checks, *_set(place, value, span, via))
+            return (*checks, *_set(place, written.get(id(rule), value), span, via))
         case For(body=body):
-            return (replace(rule, body=_unpacking(body, checked)),)
+            return (replace(rule, body=_unpacking(body, checked, written)),)
         case When(then=then, otherwise=otherwise):
-            return (replace(rule, then=_unpacking(then, checked), otherwise=_unpacking(otherwise, checked)),)
+            return (replace(rule, then=_unpacking(then, checked, written), otherwise=_unpacking(otherwise, checked, written)),)
         case SameNames():
             return (replace(rule, both=True),)
         case Arranged(cases=cases):
