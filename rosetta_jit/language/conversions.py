@@ -11,7 +11,7 @@ import struct
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.typed import INT64, Binary, Const, Convert, LenOf, Local, Reduce
+from rosetta_jit.language.typed import INT64, Binary, Call, Const, Convert, LenOf, Local, Reduce
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 FLOAT64 = Float(64)
 SMALL = 2**32
+LARGEST_COUNT = 2**47
 """Where a loop may begin, and what may be added to a number of elements, so that a float64 holds what comes of it."""
 
 EXACT_BITS = {32: 24, 64: 53}
@@ -139,8 +140,8 @@ def convert(value: Expr, target: Type) -> Expr | None:
 
 
 def counts(value: Expr) -> bool:
-    """Whether an int64 is a number of elements or rounds, or a sum of some: none is beyond 2**47, as addresses are not, so that the sum of
-    as many as an expression can have is exact in float64.
+    """Whether an int64 is a number of elements or rounds, some bits of an integer, or a sum of these: none is beyond 2**47, as addresses
+    are not, so that the sum of as many as an expression can have is exact in float64.
     """
     match value:
         case LenOf():
@@ -149,6 +150,14 @@ def counts(value: Expr) -> bool:
             return value.counts
         case Reduce(function="count"):
             return True
+        case Binary("&", _, Const(int(mask))) | Binary("&", Const(int(mask)), _):
+            return 0 <= mask < LARGEST_COUNT
+        case Call("modulo", (_, Const(int(divisor)))):
+            return 0 < divisor <= LARGEST_COUNT
+        case Binary(">>", Convert(part), Const()):
+            return isinstance(part.type, Int) and part.type.bits <= 32
+        case Binary("*", Convert(part), Const(int(factor))):
+            return isinstance(part.type, Int) and abs(factor) << part.type.bits <= LARGEST_COUNT
         case Binary("+" | "-", left, right):
             return all(
                 counts(each) or (isinstance(each, Const) and isinstance(each.value, int) and abs(each.value) <= SMALL)

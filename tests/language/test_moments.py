@@ -200,7 +200,7 @@ def test_times_of_one_direction(backend):
         (".n <-> .i * .j", "several-fields"),
         (".x <-> .x * 10 + .f", "operand"),
         (".n <-> .i * 10 + .j if .s == .t else .i", "undetermined-field"),
-        (".n <-> modulo(.i, 10)", "no-inverse"),
+        (".n <-> modulo(.i, .j)", "several-fields"),
         (".n <-> nanoseconds(.i, .x)", "integer-needed"),
         (".n <-> seconds(.i)", "text-needed"),
     ],

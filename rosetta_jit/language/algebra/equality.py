@@ -2,13 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.algebra.polynomial import TooComplexError, polynomial_of
 from rosetta_jit.language.algebra.quotients import NOTHING, are_same, mentions, only_atom, reduced
-from rosetta_jit.language.typed import BOOL, Access, Binary, Call, Const, Convert, Has, IndexStep, LenOf, Local, Nearest, StateVariable
+from rosetta_jit.language.conversions import bare
+from rosetta_jit.language.typed import (
+    BOOL,
+    Access,
+    Binary,
+    Call,
+    Const,
+    Convert,
+    Has,
+    IndexStep,
+    LenOf,
+    Local,
+    Nearest,
+    StateVariable,
+    Unary,
+)
 from rosetta_jit.language.walk import operands, parts, renamed
-from rosetta_jit.model.types import Int
+from rosetta_jit.model.types import Bool, Int
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -99,7 +115,7 @@ def same_number(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:
     if not isinstance(value.type, Int) or not isinstance(goal.type, Int):
         return False
     try:
-        return are_same(polynomial_of(value), polynomial_of(goal), facts)
+        return are_same(polynomial_of(value), polynomial_of(goal), _with_types(facts, value, goal))
     except TooComplexError:
         return False
 
@@ -108,7 +124,7 @@ def own_part(expr: Expr, facts: Callable[[], Facts]) -> Expr | None:
     """The part of an integer that it is the same as: of `floor_divide(x * c + y, c)` the x, if y is known to be from 0 to below c."""
     if not isinstance(expr.type, Int) or not _is_of_parts(expr):
         return None
-    known = facts()
+    known = _with_types(facts(), expr)
     inner = (each for each in parts(expr) if each is not expr and isinstance(each.type, Int) and not isinstance(each, Const | Local))
     try:
         whole = reduced(polynomial_of(expr), known)
@@ -117,14 +133,41 @@ def own_part(expr: Expr, facts: Callable[[], Facts]) -> Expr | None:
         return None
 
 
+def _with_types(facts: Facts, *exprs: Expr) -> Facts:
+    """What is known besides: a field of an unsigned type is from 0 to below what that type cannot hold."""
+    fields = {each for expr in exprs if _is_divided(expr) for each in parts(expr) if isinstance(each, Access)}
+    unsigned = ((each, each.type) for each in fields if isinstance(each.type, Int) and not each.type.signed)
+    return replace(facts, digits=(*facts.digits, *((polynomial_of(each), 1 << type_.bits) for each, type_ in unsigned)))
+
+
+def _is_divided(expr: Expr) -> bool:
+    return any(isinstance(each, Call) and each.function in ("floor_divide", "modulo") for each in parts(expr))
+
+
 def _is_of_parts(expr: Expr) -> bool:
     """Whether an integer is a part of one that is put together, or is put together of parts."""
     within = {each.function if isinstance(each, Call) else each.operator for each in parts(expr) if isinstance(each, Call | Binary)}
     match expr:
         case Call("floor_divide" | "modulo"):
-            return not within.isdisjoint(("+", "nanoseconds"))
+            has_flag = any(isinstance(each, Convert) and isinstance(each.operand.type, Bool) for each in parts(expr))
+            return has_flag or not within.isdisjoint(("+", "*", "nanoseconds"))
         case Call("nanoseconds") | Binary("+"):
             return within.issuperset(("floor_divide", "modulo"))
+        case _:
+            return False
+
+
+def is_of_digits(expr: Expr, integer: Expr) -> bool:
+    """Whether a number is a sum of digits of an integer."""
+    match expr:
+        case Convert(operand) | Nearest(operand) | Unary(_, operand):
+            return is_of_digits(operand, integer)
+        case Binary("+", left, right):
+            return is_of_digits(left, integer) and is_of_digits(right, integer)
+        case Binary("*", left, Const()):
+            return is_of_digits(left, integer)
+        case Call("floor_divide" | "modulo", (inner, Const())):
+            return bare(inner) == integer or is_of_digits(inner, integer)
         case _:
             return False
 

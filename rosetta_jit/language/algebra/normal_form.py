@@ -1,4 +1,4 @@
-"""The normal form of typed rules: loops numbered by depth, texts compared like numbers."""
+"""The normal form of typed rules: loops numbered by depth, texts compared like numbers, bits of integers as their digits."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language import typed
+from rosetta_jit.language.algebra.typed_bits import digits
 from rosetta_jit.language.walk import placed, rebuilt, renamed
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Bytes, String
@@ -64,7 +65,7 @@ def _plain(expr: typed.Expr) -> typed.Expr:
     if isinstance(expr, typed.IsText):
         place = placed(expr.place, _plain)
         return typed.Binary("==", typed.Access(place, place.type), typed.Const(expr.text, String()), typed.BOOL, expr.span)
-    return rebuilt(expr, _plain)
+    return digits(rebuilt(expr, _plain))
 
 
 def _is_key(condition: typed.Expr) -> bool:

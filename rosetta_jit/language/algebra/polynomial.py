@@ -18,7 +18,7 @@ from rosetta_jit.language.counters import counter_of
 from rosetta_jit.language.limits import MAX_ATOM_DEPTH, MAX_ATOMS
 from rosetta_jit.language.places import shown_shape
 from rosetta_jit.model.expr import Literal
-from rosetta_jit.model.types import Int
+from rosetta_jit.model.types import Bool, Int
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -39,6 +39,8 @@ class Atom:
 
 Monomial = frozenset[tuple[Atom, int]]
 ONE: Monomial = frozenset()
+BIT = "bit"
+"""The head of a bool as a number: 0 or 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,8 +188,23 @@ def _of_elements(expr: typed.Search | typed.Reduce) -> Polynomial:
 
 def _converted(value: typed.Convert | typed.Nearest) -> Polynomial:
     rule = value.rule if isinstance(value, typed.Convert) else "solved"
+    if isinstance(value.operand.type, Bool) and isinstance(value.type, Int):
+        return _bit(value.operand)
     keeps = isinstance(value.operand.type, Int) and rule in {"widen", "exact"}
     return polynomial_of(value.operand) if keeps else atom(f"{describe(value.type)} {rule}", polynomial_of(value.operand))
+
+
+def _bit(expr: typed.Expr) -> Polynomial:
+    """A bool as 0 or 1; one that was made of an integer is that integer."""
+    match expr:
+        case typed.Unary("not", operand):
+            return subtract(number(1), _bit(operand))
+        case typed.Convert(operand, Bool()) if isinstance(operand.type, Int):
+            return polynomial_of(operand)
+        case typed.Const(bool(value)):
+            return number(int(value))
+        case _:
+            return atom(BIT, polynomial_of(expr))
 
 
 def _chosen(expr: typed.Choice | typed.Listed | typed.Given) -> Polynomial:

@@ -2,6 +2,7 @@
 
 divide(x · c, c) = x                divide(x, c) · c = x                  what leaves a remainder, and a divisor of 0, is refused
 floor_divide(x · c + y, c) = x      where 0 ≤ y < c is known              modulo(x, c) = x - c · floor_divide(x, c)
+floor_divide(floor_divide(x, b), c) = floor_divide(x, b · c)
 nanoseconds(x, y) = x · 10⁹ + y     of which 0 ≤ y < 10⁹ is checked
 """
 
@@ -10,7 +11,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.algebra.polynomial import Atom, Polynomial, add, multiply, number, product, shown_atom, subtract
+from rosetta_jit.language.algebra.polynomial import BIT, ONE, Atom, Polynomial, add, multiply, number, product, shown_atom, subtract
 from rosetta_jit.language.limits import MAX_SUBSTITUTED
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -120,8 +121,37 @@ def _floored(total: Polynomial, by: int, facts: Facts) -> Polynomial:
     known = rest.constant()
     if known is not None:
         return add(whole, number(known // by))
-    is_digit = any(digit == rest and below <= by for digit, below in facts.digits)
-    return whole if is_digit else add(whole, _of(Atom("floor_divide", (rest, number(by)))))
+    if _is_below(rest, by, facts):
+        return whole
+    match only_atom(rest):
+        case Atom("floor_divide", (inner, divisor)) if (before := divisor.constant() or 0) > 0:
+            return add(whole, _floored(inner, before * by, facts))
+        case _:
+            return add(whole, _of(Atom("floor_divide", (rest, number(by)))))
+
+
+def _is_below(total: Polynomial, by: int, facts: Facts) -> bool:
+    """Whether a number is known to be from 0 to below another: it is a digit, or a sum of multiples of digits."""
+    if any(digit == total and below <= by for digit, below in facts.digits):
+        return True
+    least = most = 0
+    for monomial, coefficient in total.terms:
+        if monomial == ONE:
+            least, most = least + coefficient, most + coefficient
+            continue
+        below = _below(product(monomial, 1), facts)
+        if below is None:
+            return False
+        furthest = coefficient * (below - 1)
+        least, most = least + min(0, furthest), most + max(0, furthest)
+    return least >= 0 and most < by
+
+
+def _below(value: Polynomial, facts: Facts) -> int | None:
+    """What a digit is below; of several such numbers the least."""
+    found = [below for digit, below in facts.digits if digit == value]
+    atom = only_atom(value)
+    return min([*found, *([2] if atom is not None and atom.head == BIT else [])], default=None)
 
 
 def _quotient(total: Polynomial, divisor: Polynomial) -> Polynomial | None:

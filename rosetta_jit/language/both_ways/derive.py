@@ -10,21 +10,22 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
+from rosetta_jit.language.both_ways.bits import Bits
 from rosetta_jit.language.both_ways.checks import checks_of
-from rosetta_jit.language.both_ways.inverse import CONVERSIONS, condition_in
+from rosetta_jit.language.both_ways.inverse import condition_in
 from rosetta_jit.language.both_ways.packing import Packing
 from rosetta_jit.language.both_ways.presence import with_flags
 from rosetta_jit.language.groups import component
 from rosetta_jit.language.limits import MAX_CONDITIONS
-from rosetta_jit.model.expr import Binary, Call, Len, List, Literal, Path
+from rosetta_jit.model.expr import Len, List, Path
 from rosetta_jit.model.mapping import Arranged, Assign, For, Relation, SameNames, SetLength, When
-from rosetta_jit.model.types import Int
 from rosetta_jit.model.walk import every_rule
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.both_ways.bits import ConstantOf
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.knowledge import Beside
     from rosetta_jit.model import mapping as model
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 
-def derive(mapping: model.Mapping, type_of: TypeOf, problems: list[Diagnostic], depth: int = 0) -> model.Mapping:
+def derive(mapping: model.Mapping, type_of: TypeOf, constant_of: ConstantOf, problems: list[Diagnostic], depth: int = 0) -> model.Mapping:
     """The mapping with each direction's rules complete, those of its own block behind those for both.
 
     ``depth`` is how many conditions of its relations have become blocks.
@@ -41,16 +42,17 @@ def derive(mapping: model.Mapping, type_of: TypeOf, problems: list[Diagnostic], 
     if mapping.rules is None:
         return mapping
     found: list[Diagnostic] = []
-    packing, rules = Packing.of(mapping.pack_rules or (), type_of, found), with_digits(mapping.rules, type_of)
+    packing, bits = Packing.of(mapping.pack_rules or (), type_of, found), Bits(type_of, constant_of, {})
+    rules = bits.rules(mapping.rules)
     pack_rules = packing.block(with_flags(rules, packing.is_completed), ())
     conditional = _conditional(rules, packing)
     if conditional and depth < MAX_CONDITIONS:
-        split = tuple(_by_blocks(rule, conditional) for rule in rules)
-        return derive(replace(mapping, rules=split), type_of, problems, depth + 1)
+        split = tuple(_by_blocks(rule, conditional) for rule in mapping.rules)
+        return derive(replace(mapping, rules=split), type_of, constant_of, problems, depth + 1)
     problems.extend((*found, *(words.too_many_blocks(span, MAX_CONDITIONS) for span in conditional)))
     return replace(
         mapping,
-        unpack_rules=(*_unpacking(rules, packing.known.beside), *(mapping.unpack_rules or ())),
+        unpack_rules=(*_unpacking(rules, packing.known.beside, bits.written), *(mapping.unpack_rules or ())),
         pack_rules=(*pack_rules, *(mapping.pack_rules or ())),
     )
 
@@ -87,65 +89,24 @@ def _set(place: Path | Len | List, value: Expr, span: Span | None, via: Via | No
             return (Assign(place, value, span, via),)
 
 
-def _unpacking(rules: tuple[Rule, ...], checked: Mapping[int, Beside]) -> tuple[Rule, ...]:
-    return tuple(made for rule in rules for made in _unpacked(rule, checked))
+def _unpacking(rules: tuple[Rule, ...], checked: Mapping[int, Beside], written: Mapping[int, Expr]) -> tuple[Rule, ...]:
+    return tuple(made for rule in rules for made in _unpacked(rule, checked, written))
 
 
-def _unpacked(rule: Rule, checked: Mapping[int, Beside]) -> tuple[Rule, ...]:
+def _unpacked(rule: Rule, checked: Mapping[int, Beside], written: Mapping[int, Expr]) -> tuple[Rule, ...]:
     """The rules of a relation, and of what it needs to be the only one that packs so."""
     match rule:
         case Relation(place, value, span, via):
             beside = checked.get(id(rule))
             checks = () if beside is None or beside.side == "holder" else checks_of(beside)
-            return (*checks, *_set(place, value, span, via))
+            return (*checks, *_set(place, written.get(id(rule), value), span, via))
         case For(body=body):
-            return (replace(rule, body=_unpacking(body, checked)),)
+            return (replace(rule, body=_unpacking(body, checked, written)),)
         case When(then=then, otherwise=otherwise):
-            return (replace(rule, then=_unpacking(then, checked), otherwise=_unpacking(otherwise, checked)),)
+            return (replace(rule, then=_unpacking(then, checked, written), otherwise=_unpacking(otherwise, checked, written)),)
         case SameNames():
             return (replace(rule, both=True),)
         case Arranged(cases=cases):
             return (replace(rule, cases=cases[:1]),)
         case _:
             return (rule,)
-
-
-MOST_BITS = 62
-"""The largest power of two that is an int64."""
-
-
-def with_digits(rules: tuple[Rule, ...], type_of: TypeOf) -> tuple[Rule, ...]:
-    """Rules whose relations have digits in place of bits."""
-    return tuple(_with_digits(rule, type_of) for rule in rules)
-
-
-def _with_digits(rule: Rule, type_of: TypeOf) -> Rule:
-    match rule:
-        case Relation(Path(), value):  # lengths stay as they are written, to be equal to the ends of loops
-            return replace(rule, value=_digits(value, type_of))
-        case For(body=body):
-            return replace(rule, body=with_digits(body, type_of))
-        case When(then=then, otherwise=otherwise):
-            return replace(rule, then=with_digits(then, type_of), otherwise=with_digits(otherwise, type_of))
-        case _:
-            return rule
-
-
-def _digits(expr: Expr, type_of: TypeOf) -> Expr:
-    match expr:
-        case Call(function, (value, *rest)) if function in CONVERSIONS:
-            return replace(expr, arguments=(_digits(value, type_of), *rest))
-        case Binary("&", value, Literal(int(mask))) | Binary("&", Literal(int(mask)), value) if 0 < mask < 1 << MOST_BITS:
-            if mask & (mask + 1) == 0 and _is_computed_with(value, type_of):
-                return Call("modulo", (_digits(value, type_of), Literal(mask + 1, expr.span)), expr.span)
-        case Binary(">>", value, Literal(int(count))) if 0 < count <= MOST_BITS and _is_computed_with(value, type_of):
-            return Call("floor_divide", (_digits(value, type_of), Literal(1 << count, expr.span)), expr.span)
-        case _:
-            pass
-    return expr
-
-
-def _is_computed_with(value: Expr, type_of: TypeOf) -> bool:
-    """Whether arithmetic takes a value: an integer, but no uint64."""
-    type_ = type_of(value)
-    return isinstance(type_, Int) and (type_.signed or type_.bits < 64)

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.both_ways.bits import ConstantOf
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.model.mapping import Mapping
 
 
-def in_each_direction(mapping: Mapping, type_of: TypeOf, problems: list[Diagnostic]) -> Mapping:
+def in_each_direction(mapping: Mapping, type_of: TypeOf, constant_of: ConstantOf, problems: list[Diagnostic]) -> Mapping:
     """The mapping with all rules of each direction in the block of that direction."""
     if mapping.rules is None:
         return mapping
@@ -22,4 +23,4 @@ def in_each_direction(mapping: Mapping, type_of: TypeOf, problems: list[Diagnost
     from rosetta_jit.language.both_ways.state import without_state
 
     rules = without_state(mapping.rules, frozenset(each.name for each in mapping.state), problems)
-    return derive(replace(mapping, rules=rules), type_of, problems)
+    return derive(replace(mapping, rules=rules), type_of, constant_of, problems)

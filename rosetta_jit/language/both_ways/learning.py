@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.array_relations import equal_lengths
+from rosetta_jit.language.both_ways.digit_relations import Digits, digits_of
 from rosetta_jit.language.both_ways.image_relations import images_of
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solved
 from rosetta_jit.language.both_ways.inverse_parts import below, part, plain, put_together, rest_of, taken_part
@@ -38,8 +39,9 @@ def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops, is_assigned: 
         if isinstance(rule, When) and not loops:
             known.signals |= told_in_all(rule, known.type_of)
     relations = [each for each in _relations(rules, loops) if not _is_left(each[0], is_assigned)]
-    groups = (*numbers_of_texts(relations), *frames_of(relations), *images_of(relations))
-    done = _pairs(known, relations) | _together(known, groups, is_assigned)
+    groups = (*numbers_of_texts(relations), *frames_of(relations), *images_of(relations), *digits_of(relations))
+    done = _together(known, groups, is_assigned)
+    done |= _pairs(known, [each for each in relations if id(each[0]) not in done])
     done |= {id(rule) for rule, around in sorted(relations, key=_loss) if id(rule) not in done and _solve(known, rule, around)}
     later = [each for each in relations if id(each[0]) not in done]
     for _ in range(2):
@@ -172,6 +174,9 @@ def _together(known: Knowledge, groups: Iterable[Together], is_assigned: Callabl
         if group.refused:
             known.beside[id(first)] = Beside(first, "wire", (), group.refused)
         known.beside.update({id(rule): Beside(rule, "holder", ()) for rule, _ in others})
+        if isinstance(group, Digits):
+            checked = group.digits(known.type_of)
+            known.beside.update({id(rule): Beside(rule, "holder", checked.get(id(rule), ())) for rule, _ in group.relations})
         done |= {id(rule) for rule, _ in group.relations}
     return done
 

@@ -158,10 +158,12 @@ class Packing:
             return agreement(place, is_there, rule) if isinstance(is_there, Literal) else ()
         fields = fields_in(rule.value)
         targets = [each for each in fields if self.known.setters.get(key_of(each, loops)[0], (None,))[0] is rule]
+        beside = self.known.beside.get(id(rule))
+        checks = () if beside is None or (targets and beside.side == "wire") else checks_of(beside)
         if targets:
-            return tuple(found for target in targets for found in self.setting(target, loops, rule))
-        if (beside := self.known.beside.get(id(rule))) is not None:
-            return checks_of(beside)
+            return (*checks, *(found for target in targets for found in self.setting(target, loops, rule)))
+        if beside is not None:
+            return checks
         wanted = self.known.replaced(rule.value, loops)
         missing = [*fields_of(wanted, "wire"), *fields_of(place, "wire")]
         if not missing and group_of(wanted) is not None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.language.algebra.equality import given_back, has_state, is_part, reads_other, same_number
+from rosetta_jit.language.algebra.equality import given_back, has_state, is_of_digits, is_part, reads_other, same_number
 from rosetta_jit.language.algebra.normal_form import normal
 from rosetta_jit.language.laws.chain import UNSHOWN, Lost, Rounding, come_back
 from rosetta_jit.language.laws.execution_paths import ExecutionPath, UnfollowedError, execution_paths
@@ -177,5 +177,7 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
         case _ if reads_other(value, place.side):
             return Lost("it comes back as something that does not follow from it")
         case _:
-            known = any(same_number(value, each) for each in (goal, *trip.equal_to(goal)))
-            return None if known else come_back(value, goal)
+            if any(same_number(value, each) for each in (goal, *trip.equal_to(goal))):
+                return None
+            found = come_back(value, goal)
+            return Lost("what no relation takes of it comes back as 0") if found == UNSHOWN and is_of_digits(value, goal) else found

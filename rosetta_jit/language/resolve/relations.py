@@ -14,15 +14,17 @@ from rosetta_jit.language.arrays.parts import sources_in, substituted
 from rosetta_jit.language.both_ways.directions import in_each_direction
 from rosetta_jit.language.resolve.expressions import type_expr
 from rosetta_jit.language.resolve.messages import message_named, scope_between
+from rosetta_jit.language.typed import Const
 from rosetta_jit.model.expr import Call, Literal, Member, Path
 from rosetta_jit.model.mapping import For
-from rosetta_jit.model.walk import every_rule, expressions_of, parts
+from rosetta_jit.model.walk import every_rule, expressions_of, fields_of, parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.scope import Scope
+    from rosetta_jit.language.typed import Expr as Typed
     from rosetta_jit.language.uses import UsableMappings
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Mapping
@@ -41,14 +43,21 @@ def derived(mapping: Mapping, schema: Schema, others: UsableMappings, problems: 
     def scope() -> Scope | None:
         return _scope(mapping, schema, others)
 
-    def type_of(expr: Expr) -> Type | None:
+    def typed(expr: Expr) -> Typed | None:
         known = scope()
-        typed = None if known is None else type_expr(_of_first(expr), known)
-        return None if typed is None else typed.type
+        return None if known is None else type_expr(_of_first(expr), known)
+
+    def type_of(expr: Expr) -> Type | None:
+        found = typed(expr)
+        return None if found is None else found.type
+
+    def constant_of(expr: Expr) -> int | None:
+        found = typed(expr) if not fields_of(expr, "holder") and not fields_of(expr, "wire") else None
+        return found.value if isinstance(found, Const) and type(found.value) is int else None
 
     asked = [words.arrival_to_pack(call.span) for call in _arrivals(mapping)]
     problems.extend(asked)
-    return in_each_direction(mapping, type_of, [] if asked else problems)
+    return in_each_direction(mapping, type_of, constant_of, [] if asked else problems)
 
 
 def _arrivals(mapping: Mapping) -> Iterator[Call]:
