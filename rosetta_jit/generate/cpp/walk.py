@@ -189,10 +189,13 @@ class Walk:
         if not member.slot.members and member.slot.unknown is None:
             self.writer.line(f"static_cast<void>({spot.at});")
         else:
+            before = len(self.writer.lines)
             with self.writer.indented("{"):
                 self.writer.line(f"{'' if self.direction == 'decode' else 'const '}auto &{name} = {spot.at};")
                 self.value(type_, member.slot, element, row, Spot(name))
             self.writer.line("}")
+            if len(self.writer.lines) == before + 3:  # all of it lies in lanes that are containers
+                self.writer.lines[before:] = []
         self.depth -= 1
 
     def sequence(self, type_: String | Bytes | Array, slot: Span, row: str, spot: Spot) -> None:
