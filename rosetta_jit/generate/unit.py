@@ -90,3 +90,8 @@ class Unit:
     numpy: bool = False
     arrivals: Mapping[str, tuple[int, int]] = field(default_factory=dict[str, "tuple[int, int]"])
     shares: Mapping[Role, Ways] = field(default_factory=dict["Role", "Ways"])
+
+
+def wires_of(unit: Unit) -> list[str]:
+    """The wires, if there are several, whose messages are decoded."""
+    return [wire for role in unit.kernels if (wire := wire_of(role))]

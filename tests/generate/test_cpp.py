@@ -55,6 +55,55 @@ def test_cpp_answers_as_the_library_does(tmp_path):
     same(found, rj.Decoder.of(request.type, encoding="ros1"), rj.Encoder.of(request.type, encoding="ros1"), messages)
 
 
+LAID_OUT = {
+    "alike": "struct Point { double x; double y; float weight; std::int32_t id; };",
+    "in another order": "struct Point { std::int32_t id; float weight; double y; double x; };",
+    "of other types": "struct Point { double x; double y; float weight; std::int64_t id; };",
+    "with a member more": "struct Point { double x; double y; float weight; std::int32_t id; int own = 0; };",
+    "with a destructor": "struct Point { ~Point() {} double x; double y; float weight; std::int32_t id; };",
+}
+POINTS = "Point[] points\nstring name\nWithin within\nName[] names\n" + "=" * 80 + "\nMSG: rj/Within\nPoint[] points\n" + "=" * 80
+POINTS += "\nMSG: rj/Point\nfloat64 x\nfloat64 y\nfloat32 weight\nint32 id\n" + "=" * 80 + "\nMSG: rj/Name\nstring text\nint32 id\n"
+LISTS = """
+struct Name { std::string text; std::int32_t id; };
+struct Within { std::vector<Point> points; };
+struct Points { std::vector<Point> points; std::string name; Within within; std::vector<Name> names; };
+"""
+LIBRARY = "#pragma once\n#include <cstdint>\n#include <string>\n#include <vector>\n"
+THOROUGH = ("-O2", *QUICK[1:])
+
+
+@cpp.needs_cpp
+@pytest.mark.parametrize("encoding", ["ros1", "cdr"])
+@pytest.mark.parametrize("layout", LAID_OUT)
+def test_lists_of_structs_however_their_class_lies_in_memory(layout, encoding, tmp_path):
+    """Also of big-endian CDR, of which numbers are set one by one; texts in lists have all lengths that are copied in other ways."""
+    (tmp_path / "points.h").write_text(f"{LIBRARY}namespace rj {{\n{LAID_OUT[layout]}\n{LISTS}namespace msg = ::rj;\n}}\n")
+    options = {"encoding": encoding, "schema": POINTS}
+    request = type_request("decode", "rj/Points", options)
+    name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "unit", Wishes(holder="ros1", include="points.h")))
+    decode, encode = (of("rj/Points", **options) for of in (rj.Decoder.of, rj.Encoder.of))
+    points = [{"x": 0.5 * i, "y": -float(i), "weight": 0.25 * i, "id": i - 2} for i in range(5)]
+    names = [{"text": "abcdefghijklmnopqrstuvwxyz"[:i], "id": i} for i in range(20)]
+    lists = {"points": points, "within": {"points": points[:2]}, "names": names}
+    good = [bytes(encode({**each, "name": "n"})) for each in (lists, {**lists, "points": points[:1]}, {})]
+    messages = harmed(good, 12, f"{layout} {encoding}")
+    same(answers(cpp.program(tmp_path, name, options=THOROUGH), messages), decode, encode, messages)
+
+
+@cpp.needs_cpp
+def test_elements_that_lie_as_rows_do_are_not_copied_one_by_one(tmp_path):
+    """The compiler finds it out, and that the others do not lie so."""
+    for layout, text in LAID_OUT.items():
+        (tmp_path / "points.h").write_text(f"{LIBRARY}namespace rj {{\n{text}\n{LISTS}}}\n")
+        request = type_request("decode", "rj/Points", {"encoding": "ros1", "schema": POINTS})
+        cpp.write(tmp_path, generated(request, "cpp", BOTH, "unit", Wishes(holder="ros1", include="points.h")))
+        wanted = "true" if layout == "alike" else "false"
+        check = f'#include "unit.cpp"\nstatic_assert(unit::unit_points_row::lies<rj::Point>() == {wanted});\n'
+        (tmp_path / "check.cpp").write_text(check)
+        subprocess.run(["g++", "-std=c++17", "-fsyntax-only", f"-I{tmp_path}", tmp_path / "check.cpp"], check=True)
+
+
 @cpp.needs_cpp
 @pytest.mark.parametrize("compiler", ["g++", "clang++"])
 def test_no_compiler_complains_of_a_hostile_schema(tmp_path, compiler):

@@ -149,7 +149,7 @@ def _head(writer: Writer, head: str, scope: Scope, direction: Direction) -> None
     for lane in sorted(scope.touched):
         constant = "const " if lane == 0 and direction != "decode" else ""
         fixed = "" if lane in scope.moved else " const"
-        writer.line(f"    {constant}{scope.lanes.type(lane)} *restrict{fixed} {scope.lanes.rows(lane)} = {scope.lanes.member(lane)};")
+        writer.line(f"    {constant}{scope.lanes.pointer(lane)}{fixed} {scope.lanes.rows(lane)} = {scope.lanes.member(lane)};")
 
 
 def _tables(writer: Writer, scope: Scope) -> None:

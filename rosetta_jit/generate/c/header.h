@@ -29,7 +29,7 @@ typedef struct ${name}_holder {
 $members
 } ${name}_holder;
 
-/* What is wrong with a message. Texts live as long as the program, `detail` of a rejected message as long as the holder stays as it is. */
+/* What is wrong with a message. Where ${status}_NO_TEXTS is defined for the source, all texts are empty. Texts live as long as the program, `detail` of a rejected message as long as the holder stays as it is. */
 typedef struct ${name}_error {
     ${name}_status status;
     int64_t offset; /* of the message's byte */
@@ -40,6 +40,7 @@ typedef struct ${name}_error {
     const char *line; /* of the mapping, where one of its rules is to blame */
     int64_t lane; /* that is full, counted from 1 in the order of the holder */
     int64_t missing; /* rows that it lacks (of scratch memory, bytes) */
+    int site; /* the row of the function's table of errors */
 } ${name}_error;
 
 $declarations

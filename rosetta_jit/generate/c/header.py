@@ -45,6 +45,7 @@ def header(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...], hidden: int) -
     """The text of the header."""
     template = Template(Path(__file__).with_name("header.h").read_text("utf-8"))
     return template.substitute(
+        status=unit.name.upper(),
         made=made(unit),
         name=unit.name,
         guard=f"{unit.name.upper()}_H",

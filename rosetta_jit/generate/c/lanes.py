@@ -46,7 +46,8 @@ class Lane:
 class Lanes:
     """Those of a kernel; ``prefix`` begins the names of the header, ``own`` are not hidden. Those of C++ make room for themselves.
 
-    The rows of ``addressed`` lanes are bytes anywhere in memory, by their addresses. ``row``: the functions are given the message's row.
+    The rows of ``addressed`` lanes are bytes anywhere in memory, by their addresses; those of ``viewed`` lanes are made of an object's
+    elements when they are read. ``row``: the functions are given the message's row.
     """
 
     prefix: str
@@ -54,6 +55,7 @@ class Lanes:
     own: int
     dialect: Dialect = "c"
     addressed: frozenset[int] = frozenset()
+    viewed: frozenset[int] = frozenset()
     row: bool = False
 
     def stride(self, lane: int) -> int:
@@ -79,7 +81,13 @@ class Lanes:
         """The expression for the rows in the holder."""
         if lane >= self.own:
             return f"holder->scratch[{lane - self.own}].bytes"
-        return ("&given_row" if self.row else "&holder->message") if lane == 0 else f"holder->{self.rows(lane)}.rows"
+        if lane == 0:
+            return "&given_row" if self.row else "&holder->message"
+        return f"holder->{self.rows(lane)}" if lane in self.viewed else f"holder->{self.rows(lane)}.rows"
+
+    def pointer(self, lane: int) -> str:
+        """The type of the local for the rows."""
+        return "auto" if lane in self.viewed else f"{self.type(lane)} *restrict"
 
     def grown(self, lane: int, missing: str) -> str | None:
         """The call that makes room for rows, and says whether it could; None where the caller's memory is all there is."""

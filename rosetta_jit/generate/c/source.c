@@ -11,21 +11,28 @@ $asserts
 
 $support
 
+/* Without texts an error has its status, its offset and the number of its site, a row of the tables below. */
+#ifdef ${status}_NO_TEXTS
+#define TEXT(text) ""
+#else
+#define TEXT(text) text
+#endif
+
 /* What can be wrong with a message, and where. A `{}` in a path stands for an index; parts tell fields apart that are checked at once. */
 struct part {
-    int64_t offset;
-    int64_t size;
-    int64_t step;
+    $number offset;
+    $number size;
+    $number step;
     const char *path;
 };
 
 struct site {
-    ${name}_status status;
+    unsigned char status;
     const char *path;
     const char *detail;
     const char *line;
-    int scratch;
-    int parts;
+    $number scratch;
+    $number parts;
     const struct part *part;
 };
 
@@ -51,7 +58,7 @@ static void locate(${name}_error *error, const struct site *site, int64_t availa
         if (part->step != 0 && available - part->offset - part->size >= 0) {
             element = (available - part->offset - part->size) / part->step + 1;
         }
-        if (part->step != 0 || part->offset + part->size > available) {
+        if (part->step != 0 || (int64_t)part->offset + part->size > available) {
             const size_t indices = indices_in(part->path);
             error->path = part->path;
             error->offset += part->offset + element * part->step;
@@ -77,9 +84,10 @@ static ${name}_status report(${name}_error *error, const struct site *sites, con
                              const ${name}_holder *holder)
 {
     const struct site *site = &sites[failure->site];
-    ${name}_error found = {${status}_FULL, 0, "", {0, 0, 0, 0}, "", 0, "", 0, 0};
+    ${name}_error found = {${status}_FULL, 0, "", {0, 0, 0, 0}, "", 0, "", 0, 0, 0};
     (void)holder;
-    found.status = site->status;
+    found.status = (${name}_status)site->status;
+    found.site = (int)failure->site;
     found.path = site->path;
     found.detail = site->detail;
     found.line = site->line;
@@ -138,8 +146,13 @@ size_t ${name}_error_path(const ${name}_error *error, char *text, size_t size)
 
 const char *${name}_status_text(${name}_status status)
 {
+#ifdef ${status}_NO_TEXTS
+    (void)status;
+    return "";
+#else
     switch (status) {
 $texts
     }
     return "unknown";
+#endif
 }

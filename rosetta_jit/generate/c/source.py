@@ -15,7 +15,7 @@ from rosetta_jit.generate.unit import kind_of, wire_of
 from rosetta_jit.kernel.ir import Site
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from rosetta_jit.generate.c.functions import Attempt, Printed
     from rosetta_jit.generate.c.lanes import Lanes
@@ -29,11 +29,13 @@ FREESTANDING = """#include <float.h>
 void *memcpy(void *restrict target, const void *restrict source, size_t size);
 void *memset(void *target, int byte, size_t size);"""
 
-SAID = """    if (site->scratch >= 0 && failure->site != 0) { /* the mapping has put this text together */
+SAID = """#ifndef {status}_NO_TEXTS
+    if (site->scratch >= 0 && failure->site != 0) {{ /* the mapping has put this text together */
         const size_t first = indices_in(site->path);
         found.detail = (const char *)holder->scratch[site->scratch].bytes + failure->indices[first];
         found.detail_size = (size_t)failure->indices[first + 1];
-    }
+    }}
+#endif
 """
 REACH = """/* As an offset; no object is larger than this. */
 static int64_t reach(size_t size)
@@ -113,11 +115,14 @@ def source(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...], printed: Mappi
         made=made(unit),
         name=unit.name,
         status=unit.name.upper(),
+        number=_number(unit),
         includes=_includes(unit, called),
         asserts="\n".join(f'_Static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in structs),
         support=support(without_unused(called, printed)),
-        lanes=",\n    ".join([*(literal(_shown(each.name)) for each in unit.layout.lanes), *_scratch(lanes)]),
-        said=SAID if any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites) else "",
+        lanes=",\n    ".join([*(text_literal(_shown(each.name)) for each in unit.layout.lanes), *_scratch(lanes)]),
+        said=SAID.format(status=unit.name.upper())
+        if any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites)
+        else "",
         functions="\n\n".join([clear(unit.name, lanes), REACH, *functions]),
         texts="\n".join(f'    case {unit.name.upper()}_{each.upper()}:\n        return "{each}";' for each in STATUSES),
     )
@@ -131,7 +136,7 @@ def without_unused(called: set[str], printed: Mapping[Role, Printed]) -> set[str
 
 
 def _scratch(lanes: Lanes) -> list[str]:
-    return [literal(f"scratch[{number}]") for number in range(len(lanes.all) - lanes.own)]
+    return [text_literal(f"scratch[{number}]") for number in range(len(lanes.all) - lanes.own)]
 
 
 def _shown(name: str) -> str:
@@ -178,7 +183,7 @@ def _table(role: Role, unit: Unit, lanes: Lanes, named: tuple[int, ...]) -> str:
     for number, site in enumerate(sites):
         if site.parts:
             lines.append(f"static const struct part {role}_parts_{number}[] = {{")
-            lines += [f"    {{{each.offset}, {each.size}, {each.step}, {literal(each.path)}}}," for each in site.parts]
+            lines += [f"    {{{each.offset}, {each.size}, {each.step}, {text_literal(each.path)}}}," for each in site.parts]
             lines += ["};", ""]
     lines.append(f"static const struct site {role}_sites[] = {{")
     lines += [f"    {_site(role, number, site, unit, lanes)}," for number, site in enumerate(sites)]
@@ -187,11 +192,24 @@ def _table(role: Role, unit: Unit, lanes: Lanes, named: tuple[int, ...]) -> str:
 
 def _site(role: Role, number: int, site: Site, unit: Unit, lanes: Lanes) -> str:
     status = "FULL" if number == 0 else site.kind.upper()
-    return f"{{{unit.name.upper()}_{status}, {site_text(role, number, site, lanes)}}}"
+    return f"{{{unit.name.upper()}_{status}, {site_text(role, number, site, lanes, text=text_literal)}}}"
 
 
-def site_text(role: Role, number: int, site: Site, lanes: Lanes, nothing: str = "NULL") -> str:
+def _number(unit: Unit) -> str:
+    """The smallest type for the numbers of all tables."""
+    parts = [part for kernel in unit.kernels.values() for site in kernel.sites for part in site.parts]
+    lengths = [len(site.parts) for kernel in unit.kernels.values() for site in kernel.sites]
+    most = max((number for part in parts for number in (part.offset, part.size, part.step)), default=0)
+    return next(f"int{width}_t" for width in (16, 32, 64) if max(most, *lengths, 0) < 1 << width - 1)
+
+
+def text_literal(text: str) -> str:
+    """A text of an error as a literal, which a macro leaves out; an empty one as it is."""
+    return f"TEXT({literal(text)})" if text else literal(text)
+
+
+def site_text(role: Role, number: int, site: Site, lanes: Lanes, nothing: str = "NULL", *, text: Callable[[str], str] = literal) -> str:
     """A row of the table of sites behind its status."""
     scratch = -1 if site.detail_lane is None else site.detail_lane - lanes.own
     parts = f"{len(site.parts)}, {role}_parts_{number}" if site.parts else f"0, {nothing}"
-    return f"{literal(site.path)}, {literal(site.detail)}, {literal(site.line)}, {scratch}, {parts}"
+    return f"{text(site.path)}, {text(site.detail)}, {text(site.line)}, {scratch}, {parts}"

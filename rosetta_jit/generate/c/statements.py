@@ -178,12 +178,21 @@ def _effect(scope: Scope, stmt: ir.Effect) -> str:
         case ir.SetField(place, value):
             return written(scope, place, value)
         case ir.Copy(target, source, size):
-            copied = (*location(scope, target), *location(scope, source), bare(expression(scope, size)))
-            return f"{scope.calls('copy_bytes')}({', '.join(copied)});"
+            return _copy(scope, target, source, bare(expression(scope, size)))
         case ir.Fill(target, size, byte):
             return _fill(scope, target, size, byte)
         case _:
             assert_never(stmt)
+
+
+def _copy(scope: Scope, target: ir.Address, source: ir.Address, size: str) -> str:
+    if isinstance(source, ir.Place) and source.lane in scope.lanes.viewed:
+        taken = (scope.rows(source.lane), bare(expression(scope, source.row)), str(source.offset))
+        return f"rosetta_jit::detail::copy_rows({', '.join((*location(scope, target), *taken, size))});"
+    copied = ", ".join((*location(scope, target), *location(scope, source), size))
+    if scope.lanes.dialect == "c++" and isinstance(source, ir.Place) and scope.lanes.stride(source.lane) == 1:
+        return f"rosetta_jit::detail::copy_few({copied});"
+    return f"{scope.calls('copy_bytes')}({copied});"
 
 
 def _lacks(scope: Scope, at: ir.Expr, size: ir.Expr) -> str:

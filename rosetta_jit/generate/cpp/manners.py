@@ -2,7 +2,7 @@
 
 A section `KIND decode` is what a decoder writes for a field of that kind, `KIND encode` what an encoder does; in them `$object` is what has
 the field, `$field` its name, `$at` the field itself, `$row` what the kernel made, or reads, of it, and `$lane` where its elements lie. A
-holder without a section cannot have such fields.
+holder without a section cannot have such fields. `laid out` is empty where a class does not show how its fields lie in memory.
 """
 
 from __future__ import annotations

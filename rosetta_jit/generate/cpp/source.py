@@ -14,22 +14,23 @@ from rosetta_jit.generate.c.state import MEMBERS
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import C_TYPES, RESERVED
-from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.classes import classes
-from rosetta_jit.generate.cpp.straight import addressed_lanes, is_local
+from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
+from rosetta_jit.generate.cpp.reading import addressed_in, container_type, directs_of, encoder, source_struct, viewed_in, writes_apart
+from rosetta_jit.generate.cpp.straight import is_local
 from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
 from rosetta_jit.generate.shares import WHOLE, changed_lanes
-from rosetta_jit.generate.unit import kind_of, wire_of
-from rosetta_jit.model.layout import Row
+from rosetta_jit.generate.unit import kind_of, wire_of, wires_of
 from rosetta_jit.model.types import Ref, Struct
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.c.language import Parts
     from rosetta_jit.generate.cpp.manners import Manners
     from rosetta_jit.generate.unit import Role, Unit
 
 FOLDER = Path(__file__).parent
+HOLDER = "std::declval<holder &>()"
+"""An object, for types."""
 RESET = (
     "    /* Forgets all messages: state is what the mapping says that it is at first. */",
     "    void reset() { kept = state(); }",
@@ -68,7 +69,7 @@ def header(unit: Unit, manners: Manners) -> str:
         classes=f"{own}\n/* What is filled and read. */\nusing holder = {named};\n",
         declarations="\n".join(_declared(unit)),
         state=_state(unit),
-        written="    std::unique_ptr<memory> written_;\n" if _writes_apart(unit) else "",
+        written="    std::unique_ptr<memory> written_;\n" if writes_apart(unit) else "",
         functions="".join(_function(unit, each.name, each.parameters, each.result) for each in unit.functions),
         around="\n".join(Template(text).substitute(words) for _, text in around),
     )
@@ -81,18 +82,8 @@ def _state(unit: Unit) -> str:
     names, words = (", ".join(map(str, some)) for some in zip(*((name, _word(word)) for name, word in unit.state), strict=True))
     members = (f"        std::int64_t {member}[{len(unit.state)}] = {{{words}}};" for member in dict.fromkeys(MEMBERS.values()))
     head = f"    /* What the mapping keeps from one message to the next, for each direction: {names}; floats by their bits. */"
-    reset = (RESET[0], "    void reset();") if _wires(unit) else RESET
+    reset = (RESET[0], "    void reset();") if wires_of(unit) else RESET
     return "\n".join([head, "    struct state {", *members, "    };", "    state kept;", *reset])
-
-
-def _wires(unit: Unit) -> list[str]:
-    """The wires, if there are several, whose messages are decoded."""
-    return [wire for role in unit.kernels if (wire := wire_of(role))]
-
-
-def _writes_apart(unit: Unit) -> bool:
-    """Whether encoders need memory of their own, as what decoders have filled stays."""
-    return bool(_wires(unit)) and "encode" in unit.kernels
 
 
 def _word(word: int) -> str:
@@ -133,7 +124,7 @@ def _declared(unit: Unit) -> list[str]:
     """The codec's functions."""
     known = _declarations()
     found = [known["decode"]] if "borrow" in unit.kernels else []
-    for wire in _wires(unit):
+    for wire in wires_of(unit):
         every, last = unit.arrivals[wire]
         found.append(Template(known["wire"]).substitute(wire=wire, every=every, last=last))
     return [*found, *([known["encode"]] if "encode" in unit.kernels else [])]
@@ -150,23 +141,17 @@ def _filled(file: str, **given: str) -> str:
     return re.sub(r"\n{3,}", "\n\n", Template((FOLDER / file).read_text("utf-8")).substitute(given))
 
 
-def _directs(walk: Walk, at: str) -> list[Direct]:
-    """The containers that are lanes; none where rows stay, which are the codec's."""
-    unit, element = walk.unit, walk.lanes.all[0].element
-    return [] if _wires(unit) else [*walk.directs(Ref(unit.type), unit.layout.root, element, "row", Spot(at))]
-
-
-def addressed_in(unit: Unit, lanes: Lanes, manners: Manners) -> frozenset[int]:
-    """The lanes of an encoder that are addressed."""
-    return addressed_lanes(unit, frozenset(each.lane for each in _directs(Walk(unit, lanes, manners, "encode"), "source")))
-
-
 def source(unit: Unit, parts: Parts, manners: Manners) -> str:
     """The text of the source file."""
     printed, lanes = parts.printed, parts.lanes
     walks = {direction: Walk(unit, lanes, manners, direction) for direction in ("decode", "encode")}
-    directs = {name: _directs(walk, at) for (name, walk), at in zip(walks.items(), ("target", "source"), strict=True)}
-    containers = {each.lane: each.spot.at for each in _directs(walks["decode"], "std::declval<holder &>()")}
+    directs = {name: directs_of(walk, at) for (name, walk), at in zip(walks.items(), ("target", "source"), strict=True)}
+    containers = {each.lane: each.spot.at for each in directs_of(walks["decode"], HOLDER)}
+    views, filled = viewed_in(unit, lanes, manners), _taken(walks["decode"], "target")
+    walks["decode"].taken = frozenset(each.direct.lane for each in filled)
+    directs["decode"] += [each.direct for each in filled]
+    directs["encode"] += [each.direct for each in views]
+    listed = {each.direct.lane: each.direct.spot.at for each in _taken(walks["decode"], HOLDER)}
     called = {name for each in printed.values() for name in each.support} | {"failure"}
     kernels: list[str] = []
     for role in sorted(printed, key=by_order):
@@ -178,9 +163,11 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
         made=made(unit),
         name=unit.name,
         includes=_includes(called),
-        structs="\n\n".join(_struct(unit, parts, each) for each in parts.structs),
+        structs="\n\n".join(_struct(unit, parts, each, walks["decode"].taken) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
-        holder=_holder(unit, parts, containers) + (_source(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
+        holder=_row_structs(unit, parts, manners, [*views, *filled])
+        + _holder(unit, parts, containers, listed)
+        + (source_struct(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
         support=SELDOM.sub(r"ROSETTA_JIT_COLD \g<0>", support(without_unused(called, printed))),
         kernels="\n\n".join(kernels),
         walks=between,
@@ -188,9 +175,21 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
             [*(literal(f".{each.name}" if each.name else "") for each in unit.layout.lanes)] + [literal("")] * parts.hidden
         ),
         said=SAID if said else "",
-        written=", written_(new memory)" if _writes_apart(unit) else "",
+        written=", written_(new memory)" if writes_apart(unit) else "",
         functions="\n".join(_methods(unit, parts, directs, walks["encode"])),
     )
+
+
+def _taken(walk: Walk, at: str) -> list[Listed]:
+    """The lists that a decoder puts into the object at once, if it can; none where rows stay."""
+    return [] if wires_of(walk.unit) or "borrow" not in walk.unit.kernels else taken(walk, at)
+
+
+def _row_structs(unit: Unit, parts: Parts, manners: Manners, lists: list[Listed]) -> str:
+    """What is known of the elements of lists."""
+    walk = Walk(unit, parts.lanes, manners, "encode", addressed=addressed_in(unit, parts.lanes, manners))
+    each_once = {each.direct.lane: each for each in lists}
+    return "\n".join(row_struct(walk, each) for _, each in sorted(each_once.items()))
 
 
 def _includes(called: set[str]) -> str:
@@ -200,12 +199,14 @@ def _includes(called: set[str]) -> str:
     return "\n".join(f"#include {each}" for each in sorted(lines))
 
 
-def _struct(unit: Unit, parts: Parts, struct: RowStruct) -> str:
-    """As in C, without what its header has for who builds messages by hand."""
-    return struct_text(unit.name, parts.lanes, struct, cases=False)
+def _struct(unit: Unit, parts: Parts, struct: RowStruct, taken: frozenset[int]) -> str:
+    """As in C, without what its header has for who builds messages by hand. As a row of a list that is taken it stands for a class."""
+    text = struct_text(unit.name, parts.lanes, struct, cases=False)
+    is_taken = any(parts.lanes.all[lane].element == struct for lane in taken)
+    return text.replace("typedef struct ", "typedef struct ROSETTA_JIT_MAY_ALIAS ", 1) if is_taken else text
 
 
-def _holder(unit: Unit, parts: Parts, containers: dict[int, str]) -> str:
+def _holder(unit: Unit, parts: Parts, containers: dict[int, str], listed: dict[int, str]) -> str:
     """What kernels work on: the message's row and the lanes."""
     lanes = parts.lanes
     lines = [
@@ -216,8 +217,11 @@ def _holder(unit: Unit, parts: Parts, containers: dict[int, str]) -> str:
     for lane in range(1, lanes.own):
         kind = f"rosetta_jit::detail::lane<{lanes.type(lane)}>"
         if lane in containers:
-            container = f"std::remove_const_t<std::remove_reference_t<decltype({containers[lane]})>>"
-            kind = f"rosetta_jit::detail::field_lane<{lanes.type(lane)}, {container}>"
+            kind = f"rosetta_jit::detail::field_lane<{lanes.type(lane)}, {container_type(containers[lane])}>"
+        if lane in listed:
+            container, rows = container_type(listed[lane]), row_name(lanes, lane)
+            lies = f"{rows}::lies<rosetta_jit::detail::element_type<{container}>>()"
+            kind = f"rosetta_jit::detail::list_lane<{lanes.type(lane)}, {container}, {lies}>"
         lines.append(f"    {kind} {lanes.rows(lane)};")
     lines += [f"    rosetta_jit::detail::scratch scratch[{parts.hidden}];"] if parts.hidden else []
     lines += ["    int64_t most = 0; /* rows that a message may ask for */", "    int64_t now = 0;", "    int64_t number = 0;"]
@@ -250,7 +254,7 @@ def _walks(unit: Unit, parts: Parts, walks: dict[str, Walk], directs: dict[str, 
         roles = [role for role in unit.kernels if kind_of(role) in (("decode", "borrow") if name == "decode" else ("encode",))]
         if not roles:
             continue
-        walk.direct = frozenset(each.lane for each in directs[name])
+        walk.direct = frozenset(each.lane for each in directs[name]) - walk.taken
         walk.addressed = addressed_in(unit, parts.lanes, walk.manners) if name == "encode" else frozenset()
         inner = [_walk(unit, parts, walk, lane, Ref(struct)) for lane, struct in unit.layout.recursive]
         whole = [_walk(unit, parts, walk, 0, Ref(unit.type), role) for role in roles]
@@ -307,62 +311,9 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], walk: W
             )
         )
     texts += [_of_wire(unit, parts, known, role) for role in printed if wire_of(role)]
-    texts += [known["reset"]] if _wires(unit) else []
-    texts += [_encoder(unit, parts, known, words, directs["encode"], walk)] if "encode" in printed else []
+    texts += [known["reset"]] if wires_of(unit) else []
+    texts += [encoder(unit, parts, known, words, directs["encode"], walk)] if "encode" in printed else []
     return [re.sub(r"\n+(\n    |\n})", r"\1", text) for text in texts]
-
-
-def _encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, str], directs: list[Direct], walk: Walk) -> str:
-    """The encoder; ``walk`` has printed what takes an object apart."""
-    lanes, encode = parts.lanes, parts.printed["encode"]
-    is_straight, memory, row = is_local(walk, encode.hidden), "written_" if _writes_apart(unit) else "memory_", lanes.type(0)
-    begun = (f"    holder->{lanes.rows(lane)}.reset();" for lane in _copied(parts, directs, walk))
-    measure = Template(known["measure"]).substitute(no_room=str(len(encode.sites)), memory=memory) if encode.hidden else ""
-    return Template(known["encode"]).substitute(
-        words,
-        row=row,
-        inline="ROSETTA_JIT_INLINE " if is_straight else "",
-        memory=memory,
-        again="try_encode(source, &bytes[0], *size)" if is_straight else f"written(&given, {memory}->message, *{memory}, &bytes[0], *size)",
-        local=f"    {row} row;" if is_straight else f"    {row} &row = {memory}->message;",
-        clear="" if _is_collected(unit) else "    row = {};",
-        reset="\n".join(begun),
-        bind="\n".join(_read(lanes.rows(each.lane), each) for each in directs),
-        size=run(parts.printed["size"].attempts[0], "failure"),
-        run=run(encode.attempts[0], "failure"),
-        measure=measure,
-    )
-
-
-def _copied(parts: Parts, directs: list[Direct], walk: Walk) -> list[int]:
-    """The lanes whose rows an encoder puts together in the codec's memory."""
-    shown = {each.lane for each in directs} | walk.addressed
-    return [lane for lane in range(1, parts.lanes.own) if lane not in shown]
-
-
-def _source(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -> str:
-    """What kernels that write work on: a local of the encoder, so that a compiler need not put it into memory."""
-    lanes, copied = parts.lanes, _copied(parts, directs, walk)
-    members = [(f"rosetta_jit::detail::lane<{lanes.type(lane)}> &", lanes.rows(lane)) for lane in copied]
-    members += [("rosetta_jit::detail::scratch *", "scratch")] if parts.hidden else []
-    given = [f"{name}(memory.{name})" for _, name in members]
-    members += [("int64_t ", "most"), ("int64_t ", "now"), ("int64_t ", "number")]
-    given += ["most(rosetta_jit::detail::most_rows(std::size_t{1} << 39))", "now(owner.now)", "number(owner.number)"]
-    if unit.state:
-        members.append(("codec::state *", "state"))
-        given.append("state(&owner.kept)")
-    shown = [lane for lane in range(1, lanes.own) if lane not in copied]
-    lines = [
-        "/* What a message is written from: elements where an object has them, and those that are put together in the codec's memory. */",
-        f"struct {unit.name}_source {{",
-        *(f"    {type_}{name};" for type_, name in members),
-        *(f"    rosetta_jit::detail::shown<{lanes.type(lane)}> {lanes.rows(lane)} = {{}};" for lane in shown),
-        "",
-        f"    {unit.name}_source({unit.name}_holder &memory, codec &owner) : {', '.join(given)} {{ static_cast<void>(memory); }}",
-        "};",
-        "",
-    ]
-    return "\n".join(lines)
 
 
 def _of_wire(unit: Unit, parts: Parts, known: dict[str, str], role: Role) -> str:
@@ -378,14 +329,3 @@ def _of_wire(unit: Unit, parts: Parts, known: dict[str, str], role: Role) -> str
         save="\n".join(each.format("save") for each in changed),
         restore="\n".join(f"    {each.format('restore')}" for each in changed),
     )
-
-
-def _is_collected(unit: Unit) -> bool:
-    """Whether all fields of the message's row are set from an object: what may be absent is not."""
-    slots = [*slots_of(unit.layout.root)]
-    may_lack = any(isinstance(each, Row) and each.unknown is not None for each in slots) or unit.layout.recursive
-    return not may_lack and offsets_of(unit.layout.root) is not None
-
-
-def _read(lane: str, each: Direct) -> str:
-    return f"    holder->{lane}.read({each.spot.at});\n    {each.row} = {{0, holder->{lane}.used}};"

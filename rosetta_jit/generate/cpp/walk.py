@@ -65,7 +65,8 @@ class Direct:
 class Walk:
     """One of the functions being printed; ``in_rows`` is how many lists there are around a value, ``share`` what is set of it.
 
-    ``takes``: an encoder copies rows, whose lanes have memory of their own.
+    ``takes``: an encoder copies rows, whose lanes have memory of their own. ``taken`` are the lists that a decoder has put into the object
+    already, where their elements lie in memory as rows do.
     """
 
     unit: Unit
@@ -74,6 +75,7 @@ class Walk:
     direction: Direction
     direct: frozenset[int] = frozenset()
     addressed: frozenset[int] = frozenset()
+    taken: frozenset[int] = frozenset()
     takes: bool = False
     writer: Writer = field(default_factory=Writer)
     depth: int = 0
@@ -141,7 +143,7 @@ class Walk:
     def struct(self, struct: Struct, slot: Row, element: object, row: str, spot: Spot) -> None:
         """The fields of a class, one after the other."""
         assert isinstance(element, RowStruct)
-        known, names, share = _members(element), self.names(struct), self.share
+        known, names, share = members_of(element), self.names(struct), self.share
         if slot.unknown is not None and () in share and "unknown decode" in self.manners.sections():
             lane, self.takes = self.lanes.rows(slot.unknown.lane), True
             self.lines("unknown", Spot(spot.at, spot.at), row=f"{row}.unknown", lane=lane)
@@ -187,10 +189,13 @@ class Walk:
         if not member.slot.members and member.slot.unknown is None:
             self.writer.line(f"static_cast<void>({spot.at});")
         else:
+            before = len(self.writer.lines)
             with self.writer.indented("{"):
                 self.writer.line(f"{'' if self.direction == 'decode' else 'const '}auto &{name} = {spot.at};")
                 self.value(type_, member.slot, element, row, Spot(name))
             self.writer.line("}")
+            if len(self.writer.lines) == before + 3:  # all of it lies in lanes that are containers
+                self.writer.lines[before:] = []
         self.depth -= 1
 
     def sequence(self, type_: String | Bytes | Array, slot: Span, row: str, spot: Spot) -> None:
@@ -199,11 +204,23 @@ class Walk:
         if slot.lane in self.direct:
             return
         if not isinstance(type_, Array) or isinstance(self.unit.layout.lanes[slot.lane].element, Number):
-            how = "point" if slot.lane in self.addressed else "take" if self.in_rows else "show"
+            if slot.lane in self.addressed:
+                self.lines("address", spot, row=row)
+                return
+            how = "take" if self.in_rows else "show"
             self.takes |= how == "take"
             self.lines("sequence", spot, row=row, lane=lane, how=how)
             return
-        self.takes = True
+        if slot.lane in self.taken:
+            with self.writer.indented(f"if constexpr (!decltype(from.{lane})::LIES) {{"):
+                self.elements(type_, slot, row, spot)
+            self.writer.line("}")
+            return
+        self.elements(type_, slot, row, spot)
+
+    def elements(self, type_: Array, slot: Span, row: str, spot: Spot) -> None:
+        """The elements of a list, one by one."""
+        lane, self.takes = self.lanes.rows(slot.lane), True
         self.lines("list", spot, row=row, lane=lane)
         self.depth += 1
         index = self.local("i")
@@ -275,7 +292,7 @@ class Walk:
         element, layout = self.lanes.all[slot.lane].element, self.unit.layout.lanes[slot.lane].element
         assert isinstance(element, RowStruct)
         assert isinstance(layout, Row)
-        known, (of_key, of_value) = _members(element), layout.members
+        known, (of_key, of_value) = members_of(element), layout.members
         parts = ((entry.fields[0].type, of_key, known[0], "key"), (entry.fields[1].type, of_value, known[1], "mapped"))
         if self.direction == "decode":
             self.lines("map clear", spot)
@@ -309,7 +326,7 @@ class Walk:
     def union(self, union: Union, slot: Variant, element: object, row: str, spot: Spot) -> None:
         """The case that is set, or none."""
         assert isinstance(element, RowStruct)
-        known, opened = _members(element), False
+        known, opened = members_of(element), False
         for number, (case, member, own) in enumerate(zip(union.cases, slot.members, known, strict=True), 1):
             given = {"case": self.named(case.name), "number": str(number)}
             there = f"{row}.which == {number}" if self.direction == "decode" else self.text("case is there", spot, **given)
@@ -335,19 +352,23 @@ class Walk:
 
     def directs(self, type_: Type, slot: object, element: object, row: str, spot: Spot) -> Iterator[Direct]:
         """Containers of numbers and texts that every message has, and how they are reached from it."""
+        for found, lane, at, inner in self.spans(type_, slot, element, row, spot):
+            if isinstance(found, String | Bytes | Array) and self._is_plain(found, lane):
+                yield Direct(lane, at, Spot(self.text("direct", inner), inner.owner, inner.field))
+
+    def spans(self, type_: Type, slot: object, element: object, row: str, spot: Spot) -> Iterator[tuple[Type, int, str, Spot]]:
+        """What has a length and is in every message: its type, its lane, its span in the row, and the field of the class."""
         resolved = self.unit.schema.resolve(type_)
         if not isinstance(resolved, Struct) or not isinstance(slot, Row) or not isinstance(element, RowStruct):
             return
-        for each, name, member, own in zip(resolved.fields, self.names(resolved), slot.members, _members(element), strict=True):
-            found, at = self.unit.schema.resolve(each.type), f"{row}.{own.identifier}"
-            inner = self.member_of(spot.at, name)
-            match found, member.slot:
-                case ((String() | Bytes() | Array()), Span(_, lane)) if member.presence is None and self._is_plain(found, lane):
-                    yield Direct(lane, at, Spot(self.text("direct", inner), inner.owner, inner.field))
-                case Struct(), Row() if member.presence is None:
-                    yield from self.directs(found, member.slot, own.type, at, Spot(inner.at))
-                case _:
-                    pass
+        for each, name, member, own in zip(resolved.fields, self.names(resolved), slot.members, members_of(element), strict=True):
+            if member.presence is not None:
+                continue
+            found, at, inner = self.unit.schema.resolve(each.type), f"{row}.{own.identifier}", self.member_of(spot.at, name)
+            if isinstance(member.slot, Span):
+                yield found, member.slot.lane, at, inner
+            elif isinstance(found, Struct):
+                yield from self.spans(found, member.slot, own.type, at, Spot(inner.at))
 
     def _is_plain(self, type_: String | Bytes | Array, lane: int) -> bool:
         """Whether a container has the very numbers that the lane has: enums are of another type, and bools may be bits."""
@@ -356,6 +377,6 @@ class Walk:
         return isinstance(element, Number) and element.scalar != "bool" and not is_enum
 
 
-def _members(struct: RowStruct) -> list[RowMember]:
+def members_of(struct: RowStruct) -> list[RowMember]:
     """Those of a row's struct that stand for fields, in order."""
     return [each for each in struct.members if each.identifier not in NOT_FIELDS and not (PADDING.fullmatch(each.identifier) and each.many)]

@@ -144,28 +144,35 @@ static inline void store_f64_le(unsigned char *bytes, int64_t at, double number)
     store_u64_le(bytes, at, bits_of_f64(number));
 }
 
+/* Without texts an error has its status, its offset and the number of its site, a row of the tables below. */
+#ifdef TORSO_STATE_NO_TEXTS
+#define TEXT(text) ""
+#else
+#define TEXT(text) text
+#endif
+
 /* What can be wrong with a message, and where. A `{}` in a path stands for an index; parts tell fields apart that are checked at once. */
 struct part {
-    int64_t offset;
-    int64_t size;
-    int64_t step;
+    int16_t offset;
+    int16_t size;
+    int16_t step;
     const char *path;
 };
 
 struct site {
-    torso_state_status status;
+    unsigned char status;
     const char *path;
     const char *detail;
     const char *line;
-    int scratch;
-    int parts;
+    int16_t scratch;
+    int16_t parts;
     const struct part *part;
 };
 
 static const char *const lanes[] = {
     "",
-    ".(unknown)",
-    ".angles"
+    TEXT(".(unknown)"),
+    TEXT(".angles")
 };
 
 static size_t indices_in(const char *path)
@@ -186,7 +193,7 @@ static void locate(torso_state_error *error, const struct site *site, int64_t av
         if (part->step != 0 && available - part->offset - part->size >= 0) {
             element = (available - part->offset - part->size) / part->step + 1;
         }
-        if (part->step != 0 || part->offset + part->size > available) {
+        if (part->step != 0 || (int64_t)part->offset + part->size > available) {
             const size_t indices = indices_in(part->path);
             error->path = part->path;
             error->offset += part->offset + element * part->step;
@@ -212,9 +219,10 @@ static torso_state_status report(torso_state_error *error, const struct site *si
                              const torso_state_holder *holder)
 {
     const struct site *site = &sites[failure->site];
-    torso_state_error found = {TORSO_STATE_FULL, 0, "", {0, 0, 0, 0}, "", 0, "", 0, 0};
+    torso_state_error found = {TORSO_STATE_FULL, 0, "", {0, 0, 0, 0}, "", 0, "", 0, 0, 0};
     (void)holder;
-    found.status = site->status;
+    found.status = (torso_state_status)site->status;
+    found.site = (int)failure->site;
     found.path = site->path;
     found.detail = site->detail;
     found.line = site->line;
@@ -250,41 +258,41 @@ static int64_t reach(size_t size)
 
 static const struct part decode_parts_3[] = {
     {0, 4, 0, ""},
-    {4, 8, 0, ".yaw"},
-    {12, 8, 0, ".roll"},
-    {20, 8, 0, ".pitch"},
+    {4, 8, 0, TEXT(".yaw")},
+    {12, 8, 0, TEXT(".roll")},
+    {20, 8, 0, TEXT(".pitch")},
 };
 
 static const struct part decode_parts_6[] = {
     {0, 4, 0, ""},
-    {4, 8, 0, ".yaw"},
-    {12, 8, 0, ".roll"},
-    {20, 8, 0, ".pitch"},
+    {4, 8, 0, TEXT(".yaw")},
+    {12, 8, 0, TEXT(".roll")},
+    {20, 8, 0, TEXT(".pitch")},
 };
 
 static const struct part decode_parts_7[] = {
     {0, 4, 0, ""},
-    {4, 4, 0, ".yaw"},
-    {8, 8, 0, ".yaw"},
-    {16, 4, 0, ".roll"},
-    {20, 8, 0, ".roll"},
-    {28, 4, 0, ".pitch"},
-    {32, 8, 0, ".pitch"},
+    {4, 4, 0, TEXT(".yaw")},
+    {8, 8, 0, TEXT(".yaw")},
+    {16, 4, 0, TEXT(".roll")},
+    {20, 8, 0, TEXT(".roll")},
+    {28, 4, 0, TEXT(".pitch")},
+    {32, 8, 0, TEXT(".pitch")},
 };
 
 static const struct site decode_sites[] = {
-    {TORSO_STATE_FULL, "", "a lane is too small", "", -1, 0, NULL},
-    {TORSO_STATE_TRUNCATED, "", "the message ends here", "", -1, 0, NULL},
-    {TORSO_STATE_TAG, "", "must be 266", "", -1, 0, NULL},
-    {TORSO_STATE_TRUNCATED, "", "the message ends here", "", -1, 4, decode_parts_3},
-    {TORSO_STATE_COUNT, "", "must be 3", "", -1, 0, NULL},
-    {TORSO_STATE_TRAILING, "", "bytes are left over", "", -1, 0, NULL},
-    {TORSO_STATE_TRUNCATED, "", "the message ends here", "", -1, 4, decode_parts_6},
-    {TORSO_STATE_TRUNCATED, "", "the message ends here", "", -1, 7, decode_parts_7},
-    {TORSO_STATE_TAG, ".yaw", "must be 10", "", -1, 0, NULL},
-    {TORSO_STATE_TAG, ".roll", "must be 10", "", -1, 0, NULL},
-    {TORSO_STATE_TAG, ".pitch", "must be 10", "", -1, 0, NULL},
-    {TORSO_STATE_TAG, "", "must be one of 266, 256", "", -1, 0, NULL},
+    {TORSO_STATE_FULL, "", TEXT("a lane is too small"), "", -1, 0, NULL},
+    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 0, NULL},
+    {TORSO_STATE_TAG, "", TEXT("must be 266"), "", -1, 0, NULL},
+    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 4, decode_parts_3},
+    {TORSO_STATE_COUNT, "", TEXT("must be 3"), "", -1, 0, NULL},
+    {TORSO_STATE_TRAILING, "", TEXT("bytes are left over"), "", -1, 0, NULL},
+    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 4, decode_parts_6},
+    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 7, decode_parts_7},
+    {TORSO_STATE_TAG, TEXT(".yaw"), TEXT("must be 10"), "", -1, 0, NULL},
+    {TORSO_STATE_TAG, TEXT(".roll"), TEXT("must be 10"), "", -1, 0, NULL},
+    {TORSO_STATE_TAG, TEXT(".pitch"), TEXT("must be 10"), "", -1, 0, NULL},
+    {TORSO_STATE_TAG, "", TEXT("must be one of 266, 256"), "", -1, 0, NULL},
 };
 
 static int64_t decode_1(torso_state_holder *holder, const unsigned char *restrict bytes, int64_t end, struct failure *failure)
@@ -415,8 +423,8 @@ torso_state_status torso_state_decode(torso_state_holder *holder, const void *by
 }
 
 static const struct site size_sites[] = {
-    {TORSO_STATE_FULL, "", "a lane is too small", "", -1, 0, NULL},
-    {TORSO_STATE_LENGTH, ".angles", "the holder is damaged", "", -1, 0, NULL},
+    {TORSO_STATE_FULL, "", TEXT("a lane is too small"), "", -1, 0, NULL},
+    {TORSO_STATE_LENGTH, TEXT(".angles"), TEXT("the holder is damaged"), "", -1, 0, NULL},
 };
 
 static int64_t size_message(const torso_state_holder *holder, struct failure *failure)
@@ -448,20 +456,20 @@ torso_state_status torso_state_size(const torso_state_holder *holder, size_t *si
 static const struct part encode_parts_2[] = {
     {0, 4, 0, ""},
     {4, 4, 0, ""},
-    {8, 8, 0, ".yaw"},
-    {16, 8, 0, ".roll"},
-    {24, 8, 0, ".pitch"},
+    {8, 8, 0, TEXT(".yaw")},
+    {16, 8, 0, TEXT(".roll")},
+    {24, 8, 0, TEXT(".pitch")},
 };
 
 static const struct site encode_sites[] = {
-    {TORSO_STATE_FULL, "", "a lane is too small", "", -1, 0, NULL},
-    {TORSO_STATE_LENGTH, ".angles", "the holder is damaged", "", -1, 0, NULL},
-    {TORSO_STATE_LENGTH, "", "no room for the message", "", -1, 5, encode_parts_2},
-    {TORSO_STATE_INDEX, ".angles[{}]", "no such element", "torso_state.mapping:11:3", -1, 0, NULL},
-    {TORSO_STATE_INDEX, ".angles[{}]", "no such element", "torso_state.mapping:12:3", -1, 0, NULL},
-    {TORSO_STATE_INDEX, ".angles[{}]", "no such element", "torso_state.mapping:13:3", -1, 0, NULL},
-    {TORSO_STATE_REJECTED, "", "`len(.angles)` is not `3`, as the mapping says", "torso_state.mapping:10:3", -1, 0, NULL},
-    {TORSO_STATE_LENGTH, "", "no room for the message", "", -1, 0, NULL},
+    {TORSO_STATE_FULL, "", TEXT("a lane is too small"), "", -1, 0, NULL},
+    {TORSO_STATE_LENGTH, TEXT(".angles"), TEXT("the holder is damaged"), "", -1, 0, NULL},
+    {TORSO_STATE_LENGTH, "", TEXT("no room for the message"), "", -1, 5, encode_parts_2},
+    {TORSO_STATE_INDEX, TEXT(".angles[{}]"), TEXT("no such element"), TEXT("torso_state.mapping:11:3"), -1, 0, NULL},
+    {TORSO_STATE_INDEX, TEXT(".angles[{}]"), TEXT("no such element"), TEXT("torso_state.mapping:12:3"), -1, 0, NULL},
+    {TORSO_STATE_INDEX, TEXT(".angles[{}]"), TEXT("no such element"), TEXT("torso_state.mapping:13:3"), -1, 0, NULL},
+    {TORSO_STATE_REJECTED, "", TEXT("`len(.angles)` is not `3`, as the mapping says"), TEXT("torso_state.mapping:10:3"), -1, 0, NULL},
+    {TORSO_STATE_LENGTH, "", TEXT("no room for the message"), "", -1, 0, NULL},
 };
 
 static int64_t encode_message(const torso_state_holder *holder, unsigned char *restrict bytes, int64_t end, struct failure *failure)
@@ -558,6 +566,10 @@ size_t torso_state_error_path(const torso_state_error *error, char *text, size_t
 
 const char *torso_state_status_text(torso_state_status status)
 {
+#ifdef TORSO_STATE_NO_TEXTS
+    (void)status;
+    return "";
+#else
     switch (status) {
     case TORSO_STATE_OK:
         return "ok";
@@ -595,4 +607,5 @@ const char *torso_state_status_text(torso_state_status status)
         return "union";
     }
     return "unknown";
+#endif
 }

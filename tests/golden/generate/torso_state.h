@@ -70,7 +70,7 @@ typedef struct torso_state_holder {
     int64_t number; /* of the message, for mappings that count */
 } torso_state_holder;
 
-/* What is wrong with a message. Texts live as long as the program, `detail` of a rejected message as long as the holder stays as it is. */
+/* What is wrong with a message. Where TORSO_STATE_NO_TEXTS is defined for the source, all texts are empty. Texts live as long as the program, `detail` of a rejected message as long as the holder stays as it is. */
 typedef struct torso_state_error {
     torso_state_status status;
     int64_t offset; /* of the message's byte */
@@ -81,6 +81,7 @@ typedef struct torso_state_error {
     const char *line; /* of the mapping, where one of its rules is to blame */
     int64_t lane; /* that is full, counted from 1 in the order of the holder */
     int64_t missing; /* rows that it lacks (of scratch memory, bytes) */
+    int site; /* the row of the function's table of errors */
 } torso_state_error;
 
 /* Reads a message. FULL: a lane lacks room; give it more and call again. After a failure the holder is empty. */

@@ -6,6 +6,9 @@ $object.$field
 /* == member encode == */
 $object.$field
 
+/* == laid out == */
+$object.$field
+
 /* == number decode == */
 rosetta_jit::detail::set($at, $row);
 
@@ -17,6 +20,9 @@ rosetta_jit::detail::assign_span($at, from.$lane, $row, bytes);
 
 /* == sequence encode == */
 rosetta_jit::detail::${how}_span(to.$lane, $row, $at);
+
+/* == address == */
+rosetta_jit::detail::point_span($row, $at);
 
 /* == list decode == */
 rosetta_jit::detail::resize_to($at, $row.count);

@@ -6,6 +6,8 @@
 /* == member encode == */
 $object.$field()
 
+/* == laid out == */
+
 /* == number decode == */
 $object.set_$field(rosetta_jit::detail::as<decltype($object.$field())>($row));
 

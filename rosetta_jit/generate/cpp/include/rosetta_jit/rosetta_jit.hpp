@@ -24,14 +24,22 @@
 #include <span>
 #endif
 
-/* INLINE: code that is as quick as what it stands for only where a compiler sees both. COLD: code that seldom runs, which must not slow down what is around it. */
+/* INLINE: code that is as quick as what it stands for only where a compiler sees both. COLD: code that seldom runs, which must not slow down what is around it.
+   MAY_ALIAS: a struct through which objects of another class are written that lie in memory as it does; where there is no such word, it is not done. */
 #if defined(__GNUC__)
+#define ROSETTA_JIT_MAY_ALIAS __attribute__((may_alias))
 #define ROSETTA_JIT_INLINE __attribute__((always_inline)) inline
 #define ROSETTA_JIT_COLD __attribute__((noinline, cold))
 #else
+#define ROSETTA_JIT_MAY_ALIAS
 #define ROSETTA_JIT_INLINE inline
 #define ROSETTA_JIT_COLD
 #endif
+
+/* Whether a field of a class lies where a member of a row does, and is the same number. */
+#define ROSETTA_JIT_LIES(CLASS, FIELD, ROW, MEMBER) \
+    (offsetof(CLASS, FIELD) == offsetof(ROW, MEMBER) && \
+     rosetta_jit::detail::same_numbers<decltype(std::declval<CLASS &>().FIELD), decltype(std::declval<ROW &>().MEMBER)>)
 
 namespace rosetta_jit {
 
@@ -340,6 +348,34 @@ inline void fill_few(void *target, std::int64_t to, std::int64_t size, int byte)
     }
 }
 
+/* Copies bytes, of which there are few nearly always, as in texts. */
+inline void copy_few(void *target, std::int64_t to, const void *source, std::int64_t from, std::int64_t size) noexcept
+{
+    unsigned char *const at = static_cast<unsigned char *>(target) + to;
+    const unsigned char *const begin = static_cast<const unsigned char *>(source) + from;
+    const unsigned char *const end = begin + size;
+    if (size > 16) {
+        std::memcpy(at, begin, static_cast<std::size_t>(size));
+    } else if (size >= 8) { /* the first ones and the last ones, which may be the same */
+        std::uint64_t first, last;
+        std::memcpy(&first, begin, 8);
+        std::memcpy(&last, end - 8, 8);
+        std::memcpy(at, &first, 8);
+        std::memcpy(at + size - 8, &last, 8);
+    } else if (size >= 4) {
+        std::uint32_t first, last;
+        std::memcpy(&first, begin, 4);
+        std::memcpy(&last, end - 4, 4);
+        std::memcpy(at, &first, 4);
+        std::memcpy(at + size - 4, &last, 4);
+    } else if (size > 0) {
+        const unsigned char first = begin[0], middle = begin[size / 2], last = end[-1];
+        at[0] = first;
+        at[size / 2] = middle;
+        at[size - 1] = last;
+    }
+}
+
 /* --- containers --- */
 
 template <class Container, class = void> struct is_repeated : std::false_type {};
@@ -530,7 +566,7 @@ template <class Lane, class Span, class Container> void show_span(Lane &to, Span
 }
 
 /* The same by the address of the elements. */
-template <class Lane, class Span, class Container> void point_span(Lane &, Span &span, const Container &from)
+template <class Span, class Container> void point_span(Span &span, const Container &from)
 {
     static_assert(sizeof(*std::data(from)) == 1, "the class has elements of another type than the schema");
     span.start = static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(std::data(from)));
@@ -551,15 +587,62 @@ template <class Row> struct shown {
     }
 };
 
+/* Whether a class may lie in memory as a row of numbers does; if so, ROSETTA_JIT_LIES says it of each of them. */
+#if defined(__GNUC__)
+template <class Class, class Row>
+constexpr bool may_lie = std::is_standard_layout_v<Class> && std::is_trivially_copyable_v<Class> && sizeof(Class) == sizeof(Row);
+#else
+template <class Class, class Row> constexpr bool may_lie = false;
+#endif
+
+/* The type of an element of a container. */
+template <class Container> using element_type = std::remove_cv_t<std::remove_reference_t<decltype(*std::begin(std::declval<const Container &>()))>>;
+
+/* To write a message: rows that are made of the elements of a container when they are read. `Rows` says how. */
+template <class Row, class Container, class Rows> struct view {
+    static constexpr bool LIES = has_data<const Container>::value && Rows::template lies<element_type<Container>>();
+    decltype(std::begin(std::declval<const Container &>())) elements = {};
+    std::int64_t used = 0;
+
+    void read(const Container &from)
+    {
+        elements = std::begin(from);
+        used = count_of(from);
+    }
+
+    ROSETTA_JIT_INLINE Row operator[](std::int64_t index) const { return Rows::of(elements[static_cast<std::ptrdiff_t>(index)]); }
+};
+
+/* Copies bytes of rows, from byte `offset` of row `row` on. */
+template <class View> ROSETTA_JIT_INLINE void copy_rows(unsigned char *target, std::int64_t to, const View &from, std::int64_t row, std::int64_t offset, std::int64_t size)
+{
+    if (size <= 0) {
+        return;
+    }
+    unsigned char *at = target + to;
+    if constexpr (View::LIES) {
+        std::memcpy(at, reinterpret_cast<const unsigned char *>(&from.elements[static_cast<std::ptrdiff_t>(row)]) + offset, static_cast<std::size_t>(size));
+    } else {
+        using Row = decltype(from[row]);
+        constexpr std::int64_t WHOLE = sizeof(Row);
+        while (size > 0) {
+            const Row each = from[row];
+            const std::int64_t part = size < WHOLE - offset ? size : WHOLE - offset;
+            std::memcpy(at, reinterpret_cast<const unsigned char *>(&each) + offset, static_cast<std::size_t>(part));
+            at += part;
+            size -= part;
+            offset = 0;
+            row++;
+        }
+    }
+}
+
 /* Rows that are the elements of a container, so that nothing is copied. */
-template <class Row, class Container> struct field_lane {
+template <class Row, class Container> struct container_lane {
     Row *rows = nullptr;
     std::int64_t capacity = 0;
     std::int64_t used = 0;
     Container *container = nullptr;
-
-    using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(std::declval<Container &>()))>>;
-    static_assert(same_numbers<Number, Row>, "the class has elements of another type than the schema");
 
     void fill(Container &target)
     {
@@ -602,6 +685,24 @@ private:
         capacity = count_of(*container);
         rows = reinterpret_cast<Row *>(data_of(*container));
     }
+};
+
+/* The same of numbers and of the bytes of a text. */
+template <class Row, class Container> struct field_lane : container_lane<Row, Container> {
+    using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(std::declval<Container &>()))>>;
+    static_assert(same_numbers<Number, Row>, "the class has elements of another type than the schema");
+};
+
+/* The same of structs, where they lie in memory as rows do. */
+template <class Row, class Container, bool Lies> struct list_lane : container_lane<Row, Container> {
+    static constexpr bool LIES = true;
+};
+
+/* Where they do not, the elements are set after the rows are. */
+template <class Row, class Container> struct list_lane<Row, Container, false> : lane<Row> {
+    static constexpr bool LIES = false;
+    void fill(Container &) { this->reset(); }
+    template <class Span> void finish(const Span &, const unsigned char *) const noexcept {}
 };
 
 template <class Message, class = void> struct shows_unknown : std::false_type {};

@@ -1,0 +1,157 @@
+"""Lists of structs and of texts: kernels work on the elements where the object has them, as far as these are what rows are.
+
+An encoder *views* a list: a row is made of an element when the kernel reads it, and no list of rows is put together.
+A decoder *takes* a list where its elements lie in memory as the rows do: they are the rows. Elements that do not lie so are set one by one.
+Only a compiler knows how a class lies in memory: `lies` of a generated struct asks it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.backends.base import Writer
+from rosetta_jit.generate.c.rows import Struct as RowStruct
+from rosetta_jit.generate.c.rows import path_to
+from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk, members_of
+from rosetta_jit.generate.unit import kind_of
+from rosetta_jit.kernel.ir import Advance, Capacity, Copy, Get, HostCall, Place, Reserve, Used
+from rosetta_jit.kernel.shape import expressions_of, extents_of, statements, subexpressions
+from rosetta_jit.model.layout import Number, Row, Span
+from rosetta_jit.model.types import Array, Bytes, Ref, String, Struct
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.unit import Unit
+    from rosetta_jit.kernel.ir import Block, Expr, Stmt
+    from rosetta_jit.model.layout import Slot
+    from rosetta_jit.model.types import Type
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """A list that every message has: where it is, and what its elements are."""
+
+    direct: Direct
+    element: Type
+
+
+def viewed(walk: Walk, at: str) -> list[Listed]:
+    """The lists that an encoder views; ``walk`` knows the lanes whose texts it takes by their addresses."""
+    own = [each for each in _lists(walk, at) if _is_readable(walk, each.element, walk.unit.layout.lanes[each.direct.lane].element)]
+
+    def is_read(node: Stmt | Expr) -> bool:
+        """Whether a row is read, by a member that it has, or bytes of it are copied to the message."""
+        match node:
+            case Get(type_, place):
+                element = walk.lanes.all[place.lane].element if place.lane < walk.lanes.own else None
+                return element is not None and path_to(element, place.offset, type_) is not None
+            case Copy(target, _):
+                return not isinstance(target, Place)
+            case _:
+                return isinstance(node, Used)
+
+    other = _other_uses(walk.unit, ("encode", "size"), is_read) if own else set[int]()
+    return [each for each in own if each.direct.lane not in other]
+
+
+def taken(walk: Walk, at: str) -> list[Listed]:
+    """The lists of structs that have numbers alone, which a decoder fills where they are."""
+    return [each for each in _lists(walk, at) if laid_out(walk, each)]
+
+
+def _lists(walk: Walk, at: str) -> Iterator[Listed]:
+    unit, element = walk.unit, walk.lanes.all[0].element
+    for type_, lane, row, spot in walk.spans(Ref(unit.type), unit.layout.root, element, "row", Spot(at)):
+        if isinstance(type_, Array) and not isinstance(unit.layout.lanes[lane].element, Number) and unit.layout.lanes[lane].links is None:
+            yield Listed(Direct(lane, row, Spot(walk.text("direct", spot), spot.owner, spot.field)), type_.element)
+
+
+def _is_readable(walk: Walk, type_: Type, slot: Slot) -> bool:
+    """Whether a row can be made of an element without memory for anything that it contains."""
+    match walk.unit.schema.resolve(type_), slot:
+        case _, Number():
+            return True
+        case ((String() | Bytes()), Span(_, lane)):
+            return lane in walk.addressed
+        case Struct(fields=fields), Row(members=members, unknown=None):
+            parts = zip(fields, members, strict=True)
+            return all(member.presence is None and _is_readable(walk, each.type, member.slot) for each, member in parts)
+        case _:
+            return False
+
+
+# --- what kernels do with lanes ------------------------------------------------------------------------------------------------------
+
+
+def _other_uses(unit: Unit, kinds: tuple[str, ...], allowed: Callable[[Stmt | Expr], bool]) -> set[int]:
+    """The lanes that kernels of some kinds use in another way than is allowed."""
+    kernels = [kernel for role, kernel in unit.kernels.items() if kind_of(role) in kinds]
+    blocks = [block for kernel in kernels for block in (*kernel.bodies, *(routine.body for routine in kernel.routines))]
+    return {lane for block in blocks for node in _nodes(block) if not allowed(node) for lane in _lanes_of(node)}
+
+
+def _nodes(block: Block) -> Iterator[Stmt | Expr]:
+    """The statements of a block, and their expressions."""
+    for stmt, _ in statements(block):
+        yield stmt
+        for expr in expressions_of(stmt):
+            yield from subexpressions(expr)
+
+
+def _lanes_of(node: Stmt | Expr) -> set[int]:
+    """The lanes that a statement or expression names itself."""
+    if isinstance(node, Reserve | Advance | Used | Capacity):
+        return {node.lane}
+    named = [getattr(node, name, None) for name in ("place", "target", "source", "address")]
+    named += [each.address for each in extents_of(node)] if isinstance(node, HostCall) else []
+    return {each.lane for each in named if isinstance(each, Place)}
+
+
+# --- what is printed -----------------------------------------------------------------------------------------------------------------
+
+
+def laid_out(walk: Walk, listed: Listed) -> list[tuple[str, str]]:
+    """The numbers of an element, as its class and as rows reach them; none where it has anything else, or gaps."""
+    element, slot = walk.lanes.all[listed.direct.lane].element, walk.unit.layout.lanes[listed.direct.lane].element
+    found = [*_numbers(walk, listed.element, slot, element, "", "")]
+    covered = sum(size for _, _, size in found)
+    return [(field, member) for field, member, _ in found] if covered == walk.lanes.stride(listed.direct.lane) else []
+
+
+def _numbers(walk: Walk, type_: Type, slot: Slot, element: object, at: str, row: str) -> Iterator[tuple[str, str, int]]:
+    resolved = walk.unit.schema.resolve(type_)
+    if not isinstance(resolved, Struct) or not isinstance(slot, Row) or not isinstance(element, RowStruct):
+        return
+    for each, name, member, own in zip(resolved.fields, walk.names(resolved), slot.members, members_of(element), strict=True):
+        inner = walk.text("laid out", Spot("", at, name))
+        if inner and member.presence is None and isinstance(member.slot, Number):
+            yield inner.lstrip("."), f"{row}{own.identifier}", own.size
+        elif inner:
+            yield from _numbers(walk, each.type, member.slot, own.type, inner, f"{row}{own.identifier}.")
+
+
+def row_struct(walk: Walk, listed: Listed) -> str:
+    """A struct with what is known of an element: whether it lies in memory as a row does, and the row of it."""
+    lane = listed.direct.lane
+    lanes, type_ = walk.lanes, walk.lanes.type(lane)
+    walk.writer, walk.depth, walk.in_rows = Writer(depth=2), 0, 1
+    walk.value(listed.element, walk.unit.layout.lanes[lane].element, lanes.all[lane].element, "row", Spot("element"))
+    lies = [f"ROSETTA_JIT_LIES(Element, {field}, {type_}, {member})" for field, member in laid_out(walk, listed)]
+    lines = [f"/* Elements of `{walk.unit.layout.lanes[lane].name}` and rows. */", f"struct {row_name(lanes, lane)} {{"]
+    lines += ["    template <class Element> static constexpr bool lies()", "    {"]
+    if lies:
+        lines.append(f"        if constexpr (rosetta_jit::detail::may_lie<Element, {type_}>) {{")
+        lines.append("            return " + " &&\n                   ".join(lies) + ";")
+        lines.append("        }")
+    lines += ["        return false;", "    }", ""]
+    lines += [f"    template <class Element> ROSETTA_JIT_INLINE static {type_} of(const Element &element)", "    {"]
+    lines += [f"        {type_} row = {{}};", *walk.writer.text().splitlines(), "        return row;", "    }", "};", ""]
+    return "\n".join(lines)
+
+
+def row_name(lanes: Lanes, lane: int) -> str:
+    """The name of the struct."""
+    return f"{lanes.prefix}_{lanes.rows(lane)}_row"

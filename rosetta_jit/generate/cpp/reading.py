@@ -1,0 +1,123 @@
+"""What an encoder reads: fields of an object where they lie, and rows that are put together in the codec's memory."""
+
+from __future__ import annotations
+
+from string import Template
+from typing import TYPE_CHECKING
+
+from rosetta_jit.generate.c.source import run
+from rosetta_jit.generate.cleared import offsets_of, slots_of
+from rosetta_jit.generate.cpp.lists import Listed, row_name, viewed
+from rosetta_jit.generate.cpp.straight import addressed_lanes, is_local
+from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
+from rosetta_jit.generate.unit import wires_of
+from rosetta_jit.model.layout import Row
+from rosetta_jit.model.types import Ref
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.language import Parts
+    from rosetta_jit.generate.cpp.manners import Manners
+    from rosetta_jit.generate.unit import Unit
+
+HOLDER = "std::declval<const holder &>()"
+
+
+def directs_of(walk: Walk, at: str) -> list[Direct]:
+    """The containers that are lanes; none where rows stay, which are the codec's."""
+    unit, element = walk.unit, walk.lanes.all[0].element
+    return [] if wires_of(unit) else [*walk.directs(Ref(unit.type), unit.layout.root, element, "row", Spot(at))]
+
+
+def addressed_in(unit: Unit, lanes: Lanes, manners: Manners) -> frozenset[int]:
+    """The lanes of an encoder that are addressed."""
+    return addressed_lanes(unit, frozenset(each.lane for each in directs_of(Walk(unit, lanes, manners, "encode"), "source")))
+
+
+def viewed_in(unit: Unit, lanes: Lanes, manners: Manners, at: str = "source") -> list[Listed]:
+    """The lists of ``at``, an expression for the object, that an encoder views; none where rows stay."""
+    if wires_of(unit):
+        return []
+    return viewed(Walk(unit, lanes, manners, "encode", addressed=addressed_in(unit, lanes, manners)), at)
+
+
+def writes_apart(unit: Unit) -> bool:
+    """Whether encoders need memory of their own, as what decoders have filled stays."""
+    return bool(wires_of(unit)) and "encode" in unit.kernels
+
+
+def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, str], directs: list[Direct], walk: Walk) -> str:
+    """The encoder; ``walk`` has printed what takes an object apart."""
+    lanes, encode = parts.lanes, parts.printed["encode"]
+    is_straight, memory, row = is_local(walk, encode.hidden), "written_" if writes_apart(unit) else "memory_", lanes.type(0)
+    begun = (f"    holder->{lanes.rows(lane)}.reset();" for lane in _copied(parts, directs, walk))
+    measure = Template(known["measure"]).substitute(no_room=str(len(encode.sites)), memory=memory) if encode.hidden else ""
+    return Template(known["encode"]).substitute(
+        words,
+        row=row,
+        inline="ROSETTA_JIT_INLINE " if is_straight else "",
+        memory=memory,
+        again="try_encode(source, &bytes[0], *size)" if is_straight else f"written(&given, {memory}->message, *{memory}, &bytes[0], *size)",
+        local=f"    {row} row;" if is_straight else f"    {row} &row = {memory}->message;",
+        clear="" if _is_collected(unit) else "    row = {};",
+        reset="\n".join(begun),
+        bind="\n".join(_read(lanes.rows(each.lane), each) for each in directs),
+        size=run(parts.printed["size"].attempts[0], "failure"),
+        run=run(encode.attempts[0], "failure"),
+        measure=measure,
+    )
+
+
+def _copied(parts: Parts, directs: list[Direct], walk: Walk) -> list[int]:
+    """The lanes whose rows an encoder puts together in the codec's memory."""
+    shown = {each.lane for each in directs} | walk.addressed
+    return [lane for lane in range(1, parts.lanes.own) if lane not in shown]
+
+
+def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -> str:
+    """What kernels that write work on: a local of the encoder, so that a compiler need not put it into memory."""
+    lanes, copied = parts.lanes, _copied(parts, directs, walk)
+    members = [(f"rosetta_jit::detail::lane<{lanes.type(lane)}> &", lanes.rows(lane)) for lane in copied]
+    members += [("rosetta_jit::detail::scratch *", "scratch")] if parts.hidden else []
+    given = [f"{name}(memory.{name})" for _, name in members]
+    members += [("int64_t ", "most"), ("int64_t ", "now"), ("int64_t ", "number")]
+    given += ["most(rosetta_jit::detail::most_rows(std::size_t{1} << 39))", "now(owner.now)", "number(owner.number)"]
+    if unit.state:
+        members.append(("codec::state *", "state"))
+        given.append("state(&owner.kept)")
+    views = {each.direct.lane: _view(walk, each) for each in viewed_in(unit, lanes, walk.manners)}
+    shown = {lane: f"shown<{lanes.type(lane)}>" for lane in range(1, lanes.own) if lane not in copied} | views
+    lines = [
+        "/* What a message is written from: elements where an object has them, and those that are put together in the codec's memory. */",
+        f"struct {unit.name}_source {{",
+        *(f"    {type_}{name};" for type_, name in members),
+        *(f"    rosetta_jit::detail::{kind} {lanes.rows(lane)} = {{}};" for lane, kind in shown.items()),
+        "",
+        f"    {unit.name}_source({unit.name}_holder &memory, codec &owner) : {', '.join(given)} {{ static_cast<void>(memory); }}",
+        "};",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def _view(walk: Walk, listed: Listed) -> str:
+    """The type of a list that is viewed."""
+    lane = listed.direct.lane
+    (container,) = (each.direct.spot.at for each in viewed_in(walk.unit, walk.lanes, walk.manners, HOLDER) if each.direct.lane == lane)
+    return f"view<{walk.lanes.type(lane)}, {container_type(container)}, {row_name(walk.lanes, lane)}>"
+
+
+def container_type(at: str) -> str:
+    """The type of a container."""
+    return f"std::remove_const_t<std::remove_reference_t<decltype({at})>>"
+
+
+def _is_collected(unit: Unit) -> bool:
+    """Whether all fields of the message's row are set from an object: what may be absent is not."""
+    slots = [*slots_of(unit.layout.root)]
+    may_lack = any(isinstance(each, Row) and each.unknown is not None for each in slots) or unit.layout.recursive
+    return not may_lack and offsets_of(unit.layout.root) is not None
+
+
+def _read(lane: str, each: Direct) -> str:
+    return f"    holder->{lane}.read({each.spot.at});\n    {each.row} = {{0, holder->{lane}.used}};"
