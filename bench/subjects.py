@@ -100,7 +100,10 @@ def _integers(type_: str, values: list[int]) -> Subject:
 
 INTEGERS = 10_000
 _ONE_BYTE, _TWO_BYTES = (NUMBERS_OF_BYTES.integers(*bounds, INTEGERS).tolist() for bounds in ((0, 1 << 7), (1 << 7, 1 << 14)))
-_EITHER = np.where(NUMBERS_OF_BYTES.random(INTEGERS) < 0.5, _ONE_BYTE, _TWO_BYTES).tolist()
+_EITHER = [
+    min(pair) if first else max(pair)
+    for pair, first in zip(zip(_ONE_BYTE, _TWO_BYTES, strict=True), NUMBERS_OF_BYTES.random(INTEGERS) < 0.5, strict=True)
+]
 VARINTS = {
     f"{INTEGERS:,} integers of {size}, {way}": _integers(type_, values)
     for way, type_ in (("behind tags", "rj.Integers"), ("packed", "rj.PackedIntegers"))

@@ -13,7 +13,7 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from typing import Literal
+    from typing import Any, Literal
 
     import numpy as np
     from numpy.typing import NDArray
@@ -65,13 +65,12 @@ class OnDemand:
     library: Library
 
     @classmethod
-    def of(cls, header: Mapping[str, object], library: Library) -> OnDemand | None:
+    def of(cls, header: Mapping[str, Any], library: Library) -> OnDemand | None:
         """From the header of a program, which has its name, too; None where it leaves no messages to another one."""
-        match header:
-            case {"rare": [str(opening), "little" | "big" as byte_order], "name": str(name)}:
-                return cls(bytes.fromhex(opening), byte_order, name, library)
-            case _:
-                return None
+        if header["rare"] is None:
+            return None
+        opening, byte_order = header["rare"]
+        return cls(bytes.fromhex(opening), byte_order, header["name"], library)
 
     @property
     def place(self) -> Place:

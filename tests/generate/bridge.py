@@ -50,6 +50,7 @@ class Error(ctypes.Structure):
         ("line", ctypes.c_char_p),
         ("lane", ctypes.c_int64),
         ("missing", ctypes.c_int64),
+        ("site", ctypes.c_int),
     )
 
 
