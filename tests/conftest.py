@@ -9,9 +9,12 @@ from functools import lru_cache
 import pytest
 from hypothesis import settings
 
+from rosetta_jit.generate import languages
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.pipeline.build import Build
+from rosetta_jit.startup import entry_points
+from rosetta_jit.transports import installed as transports
 
 settings.register_profile("reproducible", derandomize=True)
 settings.load_profile("reproducible")
@@ -54,6 +57,19 @@ def optimised(lowered):
 def little_to_collect():
     """Tests that ask for a collection wait for what their module has made, and not for all that the modules before it have."""
     gc.freeze()
+
+
+@pytest.fixture
+def offers_anew():
+    """What installed packages offer is looked for again by the test, and forgotten behind it."""
+
+    def forget():
+        for known in (entry_points.offered, languages.installed, transports.installed):
+            known.cache_clear()
+
+    forget()
+    yield
+    forget()
 
 
 def pytest_terminal_summary(terminalreporter):

@@ -8,6 +8,7 @@ from rosetta_jit.backends.installed import backend_named
 from rosetta_jit.backends.installed import installed as installed_backends
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.installed import GROUP as FRAMEWORKS
 from rosetta_jit.frameworks.installed import installed
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
@@ -18,8 +19,10 @@ from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref
 from rosetta_jit.pipeline.build import plain_site
 from rosetta_jit.pipeline.kept import kept_of
+from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.runtime.run import GRACE_BYTES
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.entry_points import files_of_offered
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
@@ -95,6 +98,11 @@ class TranscodingBuild:
     def check_functions(self) -> tuple[str, ...]:
         return ()
 
+    @property
+    def offered(self) -> tuple[str, ...]:
+        """As of a `Build`."""
+        return files_of_offered(FRAMEWORKS)
+
     def image(self) -> bytes:
         """The object code."""
         imported("rosetta_jit.backends.entry.link")
@@ -115,4 +123,4 @@ class TranscodingBuild:
         return (link.llvm_text if stage == "llvm" else link.assembly)(self.kernels, "bridge", with_numba=False, references=self.references)
 
     def files(self) -> dict[str, str | None]:
-        return {}
+        return {path: digest_file(path) for path in self.offered}

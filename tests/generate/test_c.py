@@ -353,19 +353,14 @@ def files(unit):
 """
 
 
+@pytest.mark.usefixtures("offers_anew")
 def test_a_language_from_another_package(tmp_path, monkeypatch):
-    from rosetta_jit.generate.languages import installed
-
     (tmp_path / "toy_language.py").write_text(TOY)
     (tmp_path / "toy-1.dist-info").mkdir()
     (tmp_path / "toy-1.dist-info" / "METADATA").write_text("Metadata-Version: 2.1\nName: toy\nVersion: 1\n")
     (tmp_path / "toy-1.dist-info" / "entry_points.txt").write_text("[rosetta_jit.languages]\ntoy = toy_language:TOY\n")
     monkeypatch.syspath_prepend(str(tmp_path))
-    installed.cache_clear()
-    try:
-        assert main(["generate", "sensor_msgs/JointState", "--encoding", "ros1", "--language", "toy", "-o", str(tmp_path)]) == 0
-    finally:
-        installed.cache_clear()
+    assert main(["generate", "sensor_msgs/JointState", "--encoding", "ros1", "--language", "toy", "-o", str(tmp_path)]) == 0
     made = json.loads((tmp_path / "joint_state.json").read_text())
     assert made == dict.fromkeys(("decode", "encode", "size"), "sensor_msgs/JointState")
 

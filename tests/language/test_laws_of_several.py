@@ -13,7 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rosetta_jit as rj
-from tests.language.test_laws import assert_law, files
+from tests.language.test_laws import files
+from tests.language.test_random_laws import assert_law
 
 if TYPE_CHECKING:
     from collections.abc import Callable

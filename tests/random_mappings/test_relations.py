@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from tests.language.test_laws import is_near
+from tests.language.test_random_laws import is_near
 from tests.random_mappings.blocks import Relations
 from tests.random_mappings.digits import digits, divided, moment, taken_apart
 from tests.random_mappings.fields import plain

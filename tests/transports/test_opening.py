@@ -6,7 +6,6 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.errors import AddressError
-from rosetta_jit.transports.installed import installed
 
 
 @pytest.mark.parametrize(
@@ -30,6 +29,7 @@ def test_what_is_wrong_with_an_address_is_said(address, said):
     assert said in str(caught.value)
 
 
+@pytest.mark.usefixtures("offers_anew")
 def test_an_installed_package_may_offer_a_transport(tmp_path, monkeypatch):
     (tmp_path / "toy_transport.py").write_text(
         "from rosetta_jit.transports.base import Message, Transport\n"
@@ -43,14 +43,10 @@ def test_an_installed_package_may_offer_a_transport(tmp_path, monkeypatch):
     (described / "METADATA").write_text("Metadata-Version: 2.1\nName: toy\nVersion: 1\n")
     (described / "entry_points.txt").write_text("[rosetta_jit.transports]\ntoy = toy_transport:TOY\n")
     monkeypatch.syspath_prepend(str(tmp_path))
-    installed.cache_clear()
-    try:
-        with rj.subscribe("toy:hello") as source:
-            assert [each.data for each in source] == [b"hello"]
-        with pytest.raises(AddressError, match="cannot publish"):
-            rj.publish("toy:hello")
-    finally:
-        installed.cache_clear()
+    with rj.subscribe("toy:hello") as source:
+        assert [each.data for each in source] == [b"hello"]
+    with pytest.raises(AddressError, match="cannot publish"):
+        rj.publish("toy:hello")
 
 
 def test_options_of_a_call_go_before_those_of_the_address():
