@@ -8,6 +8,7 @@ import threading
 import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import replace
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -71,28 +72,29 @@ def programs_of(
     return tuple(dict.fromkeys(found))
 
 
-def warm(programs: Iterable[Request], jobs: int | None = None) -> Iterator[tuple[Warmed, ...]]:
+def warm(programs: Iterable[Request], jobs: int | None = None, *, usual: bool = False) -> Iterator[tuple[Warmed, ...]]:
     """Compile programs, ``jobs`` at a time (by default as many as there are processors); yields what became of each when it is done.
 
     That is nothing where the mapping has no rules for the direction, and several programs where the encoding stands for several dialects,
     of which a writer must choose one. Many programs are compiled in processes of their own, because LLVM works for one thread of a process
     at a time; the first one here, and with it, into the cache, what all of them need. All accessors of messages are compiled, too.
+    ``usual`` leaves out what decoders make when a message comes that hardly ever does, such as big-endian CDR.
 
     Raises
     ------
     BrokenProcessPool
         One of these processes was ended from outside.
     """
-    wanted = tuple(programs)
+    wanted, made = tuple(programs), partial(_made, usual=usual)
     processes = min(jobs or os.cpu_count() or 1, len(wanted) // LEAST)
     if processes < 2:
-        yield from map(_made, wanted)
+        yield from map(made, wanted)
         make_ready()
         return
-    yield _made(wanted[0])
+    yield made(wanted[0])
     with ProcessPoolExecutor(processes, get_context(_start_method())) as pool:
         accessors = pool.submit(make_ready)
-        for done in as_completed([pool.submit(_made, each) for each in wanted[1:]]):
+        for done in as_completed([pool.submit(made, each) for each in wanted[1:]]):
             yield done.result()
         accessors.result()
 
@@ -112,20 +114,20 @@ def _is_mapping(name: str) -> bool:
     return name.endswith(SUFFIX) or Path(name).is_file()
 
 
-def _made(request: Request) -> tuple[Warmed, ...]:
+def _made(request: Request, *, usual: bool) -> tuple[Warmed, ...]:
     started = time.perf_counter()
     try:
         program = program_of(request)
-        if request.direction == "decode":
+        if request.direction == "decode" and not usual:
             program.complete_()
     except ReportError as error:
         match error.diagnostics[0].code:
             case "no-rules":
                 return ()
             case "ambiguous-encoding":
-                return tuple(made for each in _dialects(request) for made in _made(each))
+                return tuple(made for each in _dialects(request) for made in _made(each, usual=usual))
             case "wire-unsaid":
-                return tuple(made for each in _wires(request) for made in _made(each))
+                return tuple(made for each in _wires(request) for made in _made(each, usual=usual))
             case _:
                 return (Warmed(request, time.perf_counter() - started, error),)
     return (Warmed(request, time.perf_counter() - started),)

@@ -32,6 +32,8 @@ def add_programs(command: argparse.ArgumentParser, *, nargs: str, of: str = "") 
     add_encoding(command)
     add_parameters(command)
     command.add_argument("--direction", choices=("decode", "encode"), action="append", help=f"{of}only this direction")
+    usual = f"{of}leave out what is compiled when a message comes that hardly ever does, such as big-endian CDR"
+    command.add_argument("--usual", action="store_true", help=usual)
     jobs = f"{of}compile so many at a time (default: as many as there are processors)"
     command.add_argument("--jobs", type=int, metavar="N", help=jobs)
 
@@ -47,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
     programs = programs_of(arguments.names, directions, encoding_of(arguments), parameters_of(arguments))
     started, made, wrong = time.perf_counter(), 0, 0
     try:
-        for number, several in enumerate(warm(programs, cast("int | None", arguments.jobs)), 1):
+        for number, several in enumerate(warm(programs, cast("int | None", arguments.jobs), usual=arguments.usual), 1):
             for each in several:
                 made, wrong = made + 1, wrong + (each.error is not None)
                 _show(each, as_json=arguments.json, progress=f"{number}/{len(programs)}")

@@ -56,7 +56,7 @@ def test_many_are_compiled_in_several_processes(tmp_path, monkeypatch, capsys):
 
 
 def test_a_process_that_is_gone_is_told(monkeypatch, capsys):
-    def broken(*_):
+    def broken(*_, **__):
         raise BrokenProcessPool
         yield
 

@@ -177,10 +177,11 @@ def test_to_warm_the_cache_compiles_both(package):
     wanted = request(package)
     for order in (None, "big"):
         assert Cache.default().get_manifest(request_name(replace(wanted, byte_order=order).key())) is None
-    (((warmed,),)) = warm([wanted])
-    assert warmed.error is None
-    for order in (None, "big"):
-        assert Cache.default().get_manifest(request_name(replace(wanted, byte_order=order).key())) is not None
+    for usual, known in ((True, (True, False)), (False, (True, True))):
+        (((warmed,),)) = warm([wanted], usual=usual)
+        assert warmed.error is None
+        found = [Cache.default().get_manifest(request_name(replace(wanted, byte_order=order).key())) for order in (None, "big")]
+        assert tuple(each is not None for each in found) == known
 
 
 @pytest.mark.parametrize(("backend", "count"), [("llvm", 1), ("numba", 2), ("python", 2), ("interpreter", 2)])

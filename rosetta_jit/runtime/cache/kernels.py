@@ -247,7 +247,8 @@ def _default(folder: str, switch: str) -> Cache:
 def digest_file(path: str) -> str | None:
     """SHA-256 of a file's content, or None where there is no file to read."""
     try:
-        return sha256(Path(path).read_bytes()).hexdigest()
+        with open(path, "rb", buffering=0) as file:  # noqa: PTH123 - a thousand of them, where fifty programs are loaded
+            return sha256(file.read()).hexdigest()
     except OSError:
         return None
 
