@@ -247,16 +247,17 @@ class DecoderBase(Program):
         """One message into the first row of lanes."""
         with run.decoding():
             result = run.run_growing(self._loaded.kernel, data, 0, data.size, lanes, 0, message_limit=self._loaded.limit)
-            if result < 0 and self._made_for(data, 0, data.size):
+            if result < 0 and self._made_for(result, data, 0, data.size):
                 result = run.run_growing(self._loaded.kernel, data, 0, data.size, lanes, 0, message_limit=self._loaded.limit)
         if result < 0:
             raise run.decode_error(self._loaded.site(result), lanes, 0, data.size)
         self._need(roomier(self._plan, lanes))
 
-    def _made_for(self, data: NDArray[np.uint8], begin: int, end: int) -> bool:
-        """Where a message has failed, whether the program that it is left to was made now, for this message."""
+    def _made_for(self, result: int, data: NDArray[np.uint8], begin: int, end: int) -> bool:
+        """Whether a message that failed is left to a program that was not there then, and now is: made here, or by another thread."""
         on_demand = self._loaded.on_demand
-        if on_demand is None or not on_demand.is_awaited(data, begin, end):
+        is_ours = -1 - result < len(self._loaded.sites)  # else the other program has seen the message
+        if on_demand is None or not is_ours or not on_demand.is_for_other(data, begin, end):
             return False
         self.complete_()
         return True

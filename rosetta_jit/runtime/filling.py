@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.program import Loaded
 
 OnError = Literal["raise", "skip", "mask"]
-MadeFor: TypeAlias = "Callable[[NDArray[np.uint8], int, int], bool]"
-"""Whether what a message of a buffer is left to was made now: it is tried again."""
+MadeFor: TypeAlias = "Callable[[int, NDArray[np.uint8], int, int], bool]"
+"""Of the result of a kernel and the message of a buffer, whether what the message is left to is there now: it is tried again."""
 
 
 class Filling:
@@ -95,7 +95,7 @@ class Filling:
     def _unstuck(self, lanes: Lanes, data: NDArray[np.uint8], spans: MessageSpans, done: int) -> Exception | None:
         """Make the room or the program that was missing, if it was that; otherwise what is wrong with the message."""
         result = run.result_of(lanes)
-        if result < run.GROW and self._made_for(data, *spans.span(done)):
+        if result < run.GROW and self._made_for(result, data, *spans.span(done)):
             return None
         if result != run.GROW:
             return self._error(result, data, spans, done)

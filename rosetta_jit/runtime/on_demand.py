@@ -79,7 +79,7 @@ class OnDemand:
         assert isinstance(place, Place)
         return place
 
-    def is_awaited(self, data: NDArray[np.uint8], begin: int, end: int) -> bool:
-        """Whether a message is the first one of those that are left to the other program."""
+    def is_for_other(self, data: NDArray[np.uint8], begin: int, end: int) -> bool:
+        """Whether a message is one of those that are left to the other program."""
         opening = self.opening
-        return self.place.sites is None and data[begin : min(end, begin + len(opening))].tobytes() == opening
+        return data[begin : min(end, begin + len(opening))].tobytes() == opening

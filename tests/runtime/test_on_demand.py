@@ -151,6 +151,19 @@ def test_threads_meet_the_first_message_at_once(decode):
         assert list(pool.map(first, range(32))) == [1.5] * 32
 
 
+@pytest.mark.parametrize("many", [False, True])
+def test_another_thread_makes_it_between_failure_and_retry(decode, package, monkeypatch, many):
+    other, made_for = program_of(request(package)), type(decode)._made_for  # noqa: SLF001
+    whole = message(">", COUNTS)
+
+    def late(decoder, *failed):
+        other.complete_()
+        return made_for(decoder, *failed)
+
+    monkeypatch.setattr(type(decode), "_made_for", late)
+    assert (decode.many([whole])[0] if many else decode(whole)).one == 1.5
+
+
 def test_decoders_of_one_type_share_it(decode, package):
     other = program_of(request(package))
     decode(message(">", COUNTS))
