@@ -153,7 +153,7 @@ def test_threads_meet_the_first_message_at_once(decode):
 
 @pytest.mark.parametrize("many", [False, True])
 def test_another_thread_makes_it_between_failure_and_retry(decode, package, monkeypatch, many):
-    other, made_for = program_of(request(package)), type(decode)._made_for  # noqa: SLF001
+    other, made_for = program_of(request(package)), type(decode)._made_for
     whole = message(">", COUNTS)
 
     def late(decoder, *failed):
