@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rosetta_jit.parsing.idl import FrontEnd
     from rosetta_jit.runtime.holder import Manners
     from rosetta_jit.wire.codec import Encoding
+    from rosetta_jit.wire.other_type import Partners
     from rosetta_jit.wire.tree import Tree
 
 ByteOrder = Literal["little", "big"]
@@ -54,8 +55,8 @@ class Encoder(Protocol):
 class Successors(Protocol):
     """A function from a struct of an older framework and the one that followed it to what became of its fields."""
 
-    def __call__(self, older: Struct, newer: Struct, shown: str) -> Mapping[str, str | None]:
-        """The newer name of each older field, None of what was dropped."""
+    def __call__(self, older: Struct, newer: Struct, shown: str) -> Partners:
+        """The newer name of each older field, None of what was dropped; and what was added, zero or empty where the older one comes."""
         ...
 
 

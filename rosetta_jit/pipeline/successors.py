@@ -9,7 +9,7 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.model.types import Schema
 from rosetta_jit.pipeline.build import Build, Types
 from rosetta_jit.startup.cached import cached_property
-from rosetta_jit.wire.other_type import UnlikeError, for_other_type
+from rosetta_jit.wire.other_type import Partners, UnlikeError, for_other_type
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Successors
@@ -73,9 +73,12 @@ def joined(first: Build, second: Build) -> tuple[Build, Build]:
 def _with_other_holder(build: Build, other: Build, follow: Successors, *, is_older: bool) -> Build:
     """A half whose holder is of the type of the other one."""
 
-    def of_newer(wire: Struct, holder: Struct, shown: str) -> dict[str, str | None]:
+    def of_newer(wire: Struct, holder: Struct, shown: str) -> Partners:
         became = follow(holder, wire, shown)
-        return dict.fromkeys(each.name for each in wire.fields) | {name: old for old, name in became.items() if name is not None}
+        if became.added:
+            raise UnlikeError(f"{shown}.{min(became.added)}", "the data-holder has no such field")
+        older = {name: old for old, name in became.fields.items() if name is not None}
+        return Partners({each.name: older.get(each.name) for each in wire.fields})
 
     made = SuccessorBuild(build, other, follow if is_older else of_newer)
     made.encoding  # noqa: B018 - here it is found out that fields have no partner

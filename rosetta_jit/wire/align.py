@@ -45,7 +45,7 @@ ORIGIN = Phase(8, 0)
 def settle(codec: wire.Codec, phase: Phase) -> tuple[wire.Codec, Phase]:
     """The codec with all alignment resolved that a position of that phase tells, and the phase behind it."""
     match codec:
-        case wire.Number() | wire.Table() | wire.Constant() | wire.Computed() | wire.Padding():
+        case wire.Number() | wire.Unsent() | wire.Table() | wire.Constant() | wire.Computed() | wire.Padding():
             return codec, phase.after(fixed_size(codec))
         case wire.Align(size):
             known = phase.padding(size)

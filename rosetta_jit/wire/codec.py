@@ -1,6 +1,6 @@
 r"""A codec: an invertible description of bytes, without a direction.
 
-    Codec  = Number | Table | Varint | Constant | Computed | Padding | Align | Blob | Seq | Repeat | Choice | Cases | Maybe
+    Codec  = Number | Unsent | Table | Varint | Constant | Computed | Padding | Align | Blob | Seq | Repeat | Choice | Cases | Maybe
            | Delimited | Members | Parameter | Parameters | Utf16 | Tagged | Recursion
     Count  = how many elements or bytes follow: a number on the wire, perhaps one that the schema fixes or computes, or that alone
 
@@ -36,6 +36,14 @@ class Number:
     order: Order = "<"
     absent: int | float = 0
     holder_scalar: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Unsent:
+    """A scalar that a holder has and the wire does not: it is zero where the message is read, and nothing else can be written."""
+
+    path: Path
+    scalar: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -301,6 +309,7 @@ class Recursion:
 
 Codec = (
     Number
+    | Unsent
     | Table
     | Varint
     | Constant

@@ -1,25 +1,35 @@
 """Codecs of one type for holders of another: the same fields under other names, in another order, in integers of another size.
 
 A codec names fields by their paths, and does not say where they lie. With other paths it fills another type, as long as that has a field
-for each. What it has not, and need not have, is padding: any number is read, zero is written.
+for each. What it has not, and need not have, is padding: any number is read, zero is written. What only the holder has may have to be zero
+or empty: it is so where a message is read, and cannot be written with another value.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.model.types import Array, Bool, Float, Int, Struct
+from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String, Struct
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.wire.codec import Align, Blob, Constant, Number, Padding, Repeat, Seq, Table
+from rosetta_jit.wire.codec import Align, Blob, Constant, Count, Number, Padding, Repeat, Seq, Table, Unsent
 
 if TYPE_CHECKING:
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.wire.codec import Codec, Encoding, Path
 
-Pairs = Callable[[Struct, Struct, str], Mapping[str, str | None]]
-"""For a struct of the wire, the holder's, and the path of both: which field of the holder each field of the wire is; None for none."""
+
+@dataclass(frozen=True, slots=True)
+class Partners:
+    """Of two structs: for each field of the one the field of the other that it is, None for none; and what is ``added`` in the other."""
+
+    fields: Mapping[str, str | None]
+    added: frozenset[str] = frozenset()
+
+
+Pairs = Callable[[Struct, Struct, str], Partners]
+"""For a struct of the wire, the holder's, and the path of both: which fields of the holder those of the wire are."""
 
 
 class UnlikeError(Exception):
@@ -39,9 +49,9 @@ def for_other_type(encoding: Encoding, wire: Struct, holder: Struct, schema: Sch
         A field has no partner, or one of another kind.
     """
     other = _OtherType(schema, pairs)
-    codecs = tuple(other.codec(each, wire, holder, "") for each in encoding.attempts)
+    codecs = tuple(other.whole(each, wire, holder, "") for each in encoding.attempts)
     written = encoding.written
-    return replace(encoding, attempts=codecs, written=None if written is None else other.codec(written, wire, holder, ""))
+    return replace(encoding, attempts=codecs, written=None if written is None else other.whole(written, wire, holder, ""))
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +69,46 @@ class _OtherType:
     schema: Schema
     pairs: Pairs
 
+    def whole(self, codec: Codec, wire: Type, holder: Type, shown: str) -> Codec:
+        """The codec of a message or an element, and behind it what is added in the holder."""
+        found, unsent = self.codec(codec, wire, holder, shown), tuple(self.unsent(wire, holder, shown, ()))
+        return Seq((found, *unsent)) if unsent else found
+
+    def unsent(self, wire: Type, holder: Type, shown: str, path: Path) -> Iterator[Codec]:
+        """The fields of the holder, at any depth, that are added to those of the wire."""
+        one, other = self.schema.resolve(wire), self.schema.resolve(holder)
+        if not isinstance(one, Struct) or not isinstance(other, Struct):
+            return
+        partners = self.pairs(one, other, shown)
+        origins = {there: here for here, there in partners.fields.items() if there is not None}
+        for each in other.fields:
+            inside = (*path, each.name)
+            if each.name in origins:
+                yield from self.unsent(_field(one, origins[each.name]), each.type, f"{shown}.{each.name}", inside)
+            elif each.name in partners.added:
+                yield self.nothing(each.type, f"{shown}.{each.name}", inside)
+
+    def nothing(self, type_: Type, shown: str, path: Path) -> Codec:
+        """What takes no bytes, and is zero or empty."""
+        match self.schema.resolve(type_):
+            case Struct(_, fields):
+                return Seq(tuple(self.nothing(each.type, f"{shown}.{each.name}", (*path, each.name)) for each in fields))
+            case Array(element, length):
+                count = length if isinstance(length, int) else 0
+                return Repeat(path, Count(None, value=count), self.nothing(element, f"{shown}[]", ()) if count else Seq(()))
+            case Bytes(_, length):
+                return Blob(path, Count(None, value=length if isinstance(length, int) else 0))
+            case String("utf-8" | "octets"):
+                return Blob(path, Count(None, value=0))
+            case Int(bits, signed):
+                return Unsent(path, f"{'i' if signed else 'u'}{bits}")
+            case Float(bits):
+                return Unsent(path, f"f{bits}")
+            case Bool():
+                return Unsent(path, "bool")
+            case _:
+                raise UnlikeError(shown, "nothing of the message is called so")
+
     def codec(self, codec: Codec, wire: Type, holder: Type, shown: str) -> Codec:
         """The same codec with the paths of the holder."""
         match codec:
@@ -70,7 +120,7 @@ class _OtherType:
             case Repeat(path, _, item):
                 found = self.find(path, wire, holder, shown)
                 element = self.elements(found)
-                return replace(codec, path=found.path, item=self.codec(item, *element, f"{found.shown}[]"))
+                return replace(codec, path=found.path, item=self.whole(item, *element, f"{found.shown}[]"))
             case Number(path, scalar, order):
                 found = self.look(path, wire, holder, shown)
                 if found is None:
@@ -103,7 +153,7 @@ class _OtherType:
             one, other = self.schema.resolve(wire), self.schema.resolve(holder)
             if not isinstance(one, Struct) or not isinstance(other, Struct):
                 raise UnlikeError(shown or ".", "is a message in one type, and none in the other")
-            partner = self.pairs(one, other, shown)[name]
+            partner = self.pairs(one, other, shown).fields[name]
             if partner is None:
                 return None
             found.append(partner)
@@ -113,6 +163,8 @@ class _OtherType:
 
     def elements(self, found: _Found) -> tuple[Type, Type]:
         one, other = self.schema.resolve(found.wire), self.schema.resolve(found.holder)
+        if isinstance(other, Bytes):
+            other = Array(Int(8, signed=False), other.length)
         if not isinstance(one, Array) or not isinstance(other, Array) or one.length != other.length:
             raise UnlikeError(found.shown, "is an array in one type, and in the other none, or one of another length")
         return one.element, other.element

@@ -10,6 +10,20 @@ from rosetta_jit.wire import codec as wire
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    Leaf = (
+        wire.Number
+        | wire.Unsent
+        | wire.Table
+        | wire.Varint
+        | wire.Constant
+        | wire.Computed
+        | wire.Padding
+        | wire.Align
+        | wire.Blob
+        | wire.Utf16
+        | wire.Recursion
+    )
+
 
 def show_encoding(encoding: wire.Encoding) -> str:
     """What is tried in turn when reading, what is written, and the messages of recursive structs."""
@@ -88,21 +102,12 @@ def _members(members: tuple[wire.Member, ...], depth: int) -> Iterator[str]:
         yield from _lines(member.value, depth + 1)
 
 
-def _leaf(
-    codec: wire.Number
-    | wire.Table
-    | wire.Varint
-    | wire.Constant
-    | wire.Computed
-    | wire.Padding
-    | wire.Align
-    | wire.Blob
-    | wire.Utf16
-    | wire.Recursion,
-) -> str:
+def _leaf(codec: Leaf) -> str:
     match codec:
         case wire.Number(path, scalar, order):
             return f"{_path(path)}: {_scalar(scalar, order)}"
+        case wire.Unsent(path):
+            return f"{_path(path)}: 0, without a byte"
         case wire.Table(path, scalar, pairs, order):
             if scalar is None:
                 return f"{_path(path)}: {pairs[0][1]}, without a byte"

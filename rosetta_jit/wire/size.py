@@ -22,6 +22,8 @@ def fixed_size(codec: wire.Codec) -> int | None:
             return 0 if scalar is None else WIDTH[scalar]
         case wire.Number(_, scalar) | wire.Computed(_, scalar) | wire.Padding(scalar):
             return WIDTH[scalar]
+        case wire.Unsent():
+            return 0
         case wire.Constant(_, value, scalar, _, _):
             return len(value) if isinstance(value, bytes) else WIDTH[scalar]
         case wire.Seq(items):

@@ -1,6 +1,7 @@
 """The types of ROS 2 that follow types of ROS 1: `sensor_msgs/Imu` became `sensor_msgs/msg/Imu`, and its fields were renamed by rule.
 
-Names are in lower case (`K` became `k`), `time` is `builtin_interfaces/Time` with other names, and a header has no `seq`.
+Names are in lower case (`K` became `k`), `time` is `builtin_interfaces/Time` with other names, and a header has no `seq`. Some types have
+got new fields: they are zero or empty in what comes from ROS 1, and must be so in what goes there.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.frameworks.ros import gathered
 from rosetta_jit.frameworks.ros2.empty import DUMMY
 from rosetta_jit.frameworks.ros2.idl import ROS2
-from rosetta_jit.wire.other_type import UnlikeError
+from rosetta_jit.wire.other_type import Partners, UnlikeError
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -21,6 +22,13 @@ if TYPE_CHECKING:
 RENAMED = {"sec": "secs", "nanosec": "nsecs"}
 DROPPED = frozenset({"seq", DUMMY})
 """Fields that only one of them has: the number of a header in ROS 1, and what stands for nothing in ROS 2."""
+
+ADDED = {
+    "sensor_msgs/Range": frozenset({"variance"}),
+    "shape_msgs/SolidPrimitive": frozenset({"polygon"}),
+    "visualization_msgs/Marker": frozenset({"texture_resource", "texture", "uv_coordinates", "mesh_file"}),
+}
+"""What ROS 2 has added to types of ROS 1, in its releases up to Kilted."""
 
 LINE = "=" * 80
 
@@ -40,8 +48,8 @@ def predecessor(field: str, there: Collection[str]) -> str | None:
     return next((each for each in there if each.lower() == field), None)
 
 
-def fields_of(older: Struct, newer: Struct, shown: str) -> dict[str, str | None]:
-    """For a struct of ROS 1 and the one of ROS 2 that followed it: what became of each field of the older one; None of what was dropped.
+def fields_of(older: Struct, newer: Struct, shown: str) -> Partners:
+    """For a struct of ROS 1 and the one of ROS 2 that followed it: what became of each field of the older one, and what was added.
 
     Raises
     ------
@@ -49,15 +57,16 @@ def fields_of(older: Struct, newer: Struct, shown: str) -> dict[str, str | None]
         A field has no successor, or none that it comes from.
     """
     there = [each.name for each in older.fields]
-    origins = {each.name: predecessor(each.name, there) for each in newer.fields}
+    added = ADDED.get(older.name, frozenset())
+    origins = {each.name: None if each.name in added else predecessor(each.name, there) for each in newer.fields}
     for name, origin in origins.items():
-        if origin is None and name not in DROPPED:
+        if origin is None and name not in DROPPED and name not in added:
             raise UnlikeError(f"{shown}.{name}", "nothing of the message is called so")
     found: dict[str, str | None] = dict.fromkeys(there) | {origin: name for name, origin in origins.items() if origin is not None}
     for name, became in found.items():
         if became is None and name not in DROPPED:
             raise UnlikeError(f"{shown}.{name}", "the other type has no such field")
-    return found
+    return Partners(found, added)
 
 
 def definition(type_: str, load: Load) -> str | None:

@@ -73,6 +73,7 @@ def _parts(codec: wire.Codec) -> tuple[wire.Codec, ...]:
             return ()
         case (
             wire.Number()
+            | wire.Unsent()
             | wire.Table()
             | wire.Blob()
             | wire.Repeat()

@@ -13,7 +13,7 @@ from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.lowering.codec.counts import LIMITS, agrees, as_scalar, evaluate, read_count, write_count
 from rosetta_jit.lowering.codec.fields import scalar_name
 from rosetta_jit.lowering.writer import Where, Writer, integer
-from rosetta_jit.wire.codec import Align, Blob, Computed, Constant, Number, Padding, Table, Utf16
+from rosetta_jit.wire.codec import Align, Blob, Computed, Constant, Number, Padding, Table, Unsent, Utf16
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.codec.fields import Fields
     from rosetta_jit.model import expr
 
-Leaf = Number | Table | Constant | Computed | Padding | Align | Blob | Utf16
+Leaf = Number | Unsent | Table | Constant | Computed | Padding | Align | Blob | Utf16
 
 SHOWN_NUMBERS = 12
 """How many numbers of a table an error lists."""
@@ -32,6 +32,8 @@ def leaf(codec: Leaf, fields: Fields, writer: Writer) -> None:
     match codec:
         case Number():
             _number(writer, fields, codec)
+        case Unsent(path, scalar):
+            _unsent(writer, fields, path, scalar_name(scalar))
         case Table():
             _table(writer, fields, codec)
         case Constant(_, bytes(value)):
@@ -65,6 +67,15 @@ def _number(writer: Writer, fields: Fields, number: Number) -> None:
     else:
         fitting = value if number.holder_scalar is None else _fitting(writer, where, value, scalar, writer.position)
         writer.store(as_scalar(scalar, fitting), where, number.order)
+
+
+def _unsent(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: ir.Scalar) -> None:
+    zero = ir.Const(scalar, False if scalar == "bool" else 0)
+    if writer.direction == "decode":
+        fields.put(path, zero)
+    elif writer.direction == "encode" and (value := fields.get(path)) is not None:
+        same = ir.Compare("eq", as_scalar(scalar, value), zero)
+        writer.expect(same, "range", fields.shown(path), "the type that is written has no such field: must be 0")
 
 
 def _fitting(writer: Writer, where: Where, value: ir.Expr, target: str, at: ir.Expr) -> ir.Expr:

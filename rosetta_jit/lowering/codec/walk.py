@@ -34,7 +34,17 @@ def walk(codec: wire.Codec, fields: Fields, writer: Writer) -> None:
         case wire.Seq(items):
             for item in items:
                 walk(item, fields, writer)
-        case wire.Number() | wire.Table() | wire.Constant() | wire.Computed() | wire.Padding() | wire.Align() | wire.Blob() | wire.Utf16():
+        case (
+            wire.Number()
+            | wire.Unsent()
+            | wire.Table()
+            | wire.Constant()
+            | wire.Computed()
+            | wire.Padding()
+            | wire.Align()
+            | wire.Blob()
+            | wire.Utf16()
+        ):
             leaves.leaf(codec, fields, writer)
         case wire.Repeat():
             _repeat(writer, fields, codec)

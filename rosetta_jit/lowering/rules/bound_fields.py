@@ -74,7 +74,7 @@ class BoundFields:
             case wire.Seq(items):
                 for item in items:
                     yield from self.walk(item, here)
-            case wire.Number(path) | wire.Table(path):
+            case wire.Number(path) | wire.Unsent(path) | wire.Table(path):
                 yield from self.number(path, here)
             case wire.Computed(path, _, value):
                 yield from self.computed(path, value, here)
