@@ -117,6 +117,17 @@ class Bridge(BridgeBase):
         """What the bridge became, as text: of both halves, or of the code, which is one."""
         return _build(self._request).stage(stage)
 
+    @property
+    def differences(self) -> tuple[str, ...]:
+        """Where the two types are of ROS 1 and ROS 2: what becomes of fields that the other one names otherwise or does not have.
+
+        It is made anew each time.
+        """
+        build = _build(self._request)
+        from rosetta_jit.pipeline.bridge import BridgeBuild
+
+        return build.differences if isinstance(build, BridgeBuild) else ()
+
     def announced(self, framework: str, half: Literal["decode", "encode"] = "encode") -> dict[str, str]:
         """What a publisher says of the type that this bridge writes, by the names of transports' options. It is made anew: keep it.
 

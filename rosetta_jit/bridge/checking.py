@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rosetta_jit.bridge.announcing import announced
 from rosetta_jit.bridge.configuration import read
 from rosetta_jit.bridge.patterns import is_pattern
-from rosetta_jit.bridge.translating import Unchanged, translator, translator_of
+from rosetta_jit.bridge.translating import Unchanged, differences, translator, translator_of
 from rosetta_jit.catalogue import bridge as words
 from rosetta_jit.errors import AddressError, BridgeError, RosettaError
 from rosetta_jit.transports.address import parse, settle
@@ -127,10 +127,11 @@ def _compiled(
 
 def explained(configuration: Configuration) -> list[dict[str, Any]]:
     """Each route as plain data: from where to where, by what, and what happens to messages that are too many."""
-    return [*map(_explained_route, configuration.routes), *map(_explained_rpc, configuration.rpcs)]
+    routes = [_explained_route(each, configuration.search_path) for each in configuration.routes]
+    return [*routes, *(_explained_rpc(each, configuration.search_path) for each in configuration.rpcs)]
 
 
-def _explained_route(route: Route) -> dict[str, Any]:
+def _explained_route(route: Route, search_path: tuple[str, ...]) -> dict[str, Any]:
     return {
         "route": route.name,
         "from": route.source,
@@ -138,6 +139,7 @@ def _explained_route(route: Route) -> dict[str, Any]:
         "on": route.on,
         "to": route.target,
         "by": _by(route.translation),
+        "differences": [] if route.sources else list(differences(route.translation, search_path)),
         "asks": route.calls,
         "rate": route.rate,
         "queue": route.queue,
@@ -145,13 +147,14 @@ def _explained_route(route: Route) -> dict[str, Any]:
     }
 
 
-def _explained_rpc(rpc: Rpc) -> dict[str, Any]:
+def _explained_rpc(rpc: Rpc, search_path: tuple[str, ...]) -> dict[str, Any]:
     return {
         "route": rpc.name,
         "from": rpc.serve,
         "to": rpc.call,
         "by": _by(rpc.request),
         "back": _by(rpc.reply),
+        "differences": [*differences(rpc.request, search_path), *differences(rpc.reply, search_path)],
         "timeout_s": rpc.timeout_s,
     }
 
@@ -181,7 +184,8 @@ def lines(configuration: Configuration) -> list[str]:
         shown.append(f"  by   {each['by']}")
         if "back" in each:
             shown.append(f"  back {each['back']}, within {each['timeout_s']:g} s")
-        else:
+        shown += [f"       {line}" for line in each["differences"]]
+        if "queue" in each:
             rate = f"at most {each['rate']:g} a second, " if each["rate"] else ""
             if each["sources"]:
                 shown.append(f"       behind messages of {each['on'] or 'any of them'}, once all have come")

@@ -197,6 +197,11 @@ def translator(translation: Translation, search_path: tuple[str, ...]) -> Transl
     return Bridged(_bridge(json.loads(translation.text), search_path)) if translation.text else Unchanged()
 
 
+def differences(translation: Translation, search_path: tuple[str, ...]) -> tuple[str, ...]:
+    """As of `rosetta_jit.Bridge.differences`. Raises as `translator`."""
+    return _bridge(json.loads(translation.text), search_path).differences if translation.text else ()
+
+
 def _bridge(given: dict[str, Any], search_path: tuple[str, ...]) -> Bridge:
     from rosetta_jit.api.bridges import Bridge
 

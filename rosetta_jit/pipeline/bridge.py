@@ -22,7 +22,7 @@ from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref, same_name
 from rosetta_jit.pipeline.build import Build, plain_site
 from rosetta_jit.pipeline.kept import kept_of
-from rosetta_jit.pipeline.successors import joined
+from rosetta_jit.pipeline.successors import SuccessorBuild, joined
 from rosetta_jit.pipeline.user_functions import check_compiled
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.garbage import imported
@@ -61,6 +61,12 @@ class BridgeBuild:
             span = second.checked.mapping.holder_span if second.request.mapping is not None else None
             raise MappingError((words.do_not_meet(filled.name, packed.name, span, same_name=is_same),))
         return self._referring(first), second
+
+    @property
+    def differences(self) -> tuple[str, ...]:
+        """What becomes of fields where one half is of a type that followed the other's, in sentences."""
+        pairs = zip(self.halves, (True, False), strict=True)
+        return tuple(line for half, is_read in pairs if isinstance(half, SuccessorBuild) for line in half.differences(is_read=is_read))
 
     def _referring(self, build: Build) -> Build:
         """What decodes, with bytes left in the message where nothing else is written to their lane."""

@@ -9,6 +9,7 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.model.types import Schema
 from rosetta_jit.pipeline.build import Build, Types
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.wire.differences import differences
 from rosetta_jit.wire.other_type import Partners, UnlikeError, for_other_type
 
 if TYPE_CHECKING:
@@ -42,6 +43,11 @@ class SuccessorBuild(Build):
 
     def files(self) -> dict[str, str | None]:
         return self._own.files()
+
+    def differences(self, *, is_read: bool) -> tuple[str, ...]:
+        """What becomes of fields, where messages come from this type (``is_read``) or go there."""
+        types = self.types
+        return differences(types.wire, types.holder, types.schema, self._pairs, is_read=is_read)
 
 
 def joined(first: Build, second: Build) -> tuple[Build, Build]:

@@ -153,3 +153,11 @@ def test_the_files_of_the_documents_are_right(tmp_path, name):
         except rj.BridgeError as error:
             if "takes a package" not in str(error):
                 raise
+
+
+def test_what_two_types_do_not_share_is_said(tmp_path):
+    options = 'decode = { encoding = "ros1" }\nencode = { encoding = "cdr" }\n'
+    types = 'decode_type = "sensor_msgs/Range"\nencode_type = "sensor_msgs/msg/Range"\n'
+    (tmp_path / "b.toml").write_text(f'[[route]]\nsource = "tcp:9001"\ntarget = "tcp:9002"\n{types}{options}')
+    found = lines(checked(str(tmp_path / "b.toml")))
+    assert [each.strip() for each in found if each.strip().startswith("`")][-1] == "`.variance` is zero or empty"

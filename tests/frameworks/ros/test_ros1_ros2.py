@@ -138,3 +138,21 @@ pack-rules:
     schema = {"echo.mapping": rules, "a/Echo.bottle-schema": '"a.Echo"\n( ("distance" :float32) )\n'}
     with pytest.raises(rj.SchemaError, match=r"`\.variance` the data-holder has no such field"):
         rj.Bridge(None, "echo.mapping", decode_type="sensor_msgs/msg/Range", encode={"encoding": "yarp3", "schema": schema})
+
+
+def test_differences_are_said():
+    there, back = bridges("visualization_msgs/Marker")
+    assert there.differences == (
+        "`.header.seq` is left out",
+        "`.header.stamp.secs` becomes `.header.stamp.sec`",
+        "`.header.stamp.secs`: uint32 becomes int32, and a value that does not fit is refused",
+        "`.header.stamp.nsecs` becomes `.header.stamp.nanosec`",
+        "`.lifetime.secs` becomes `.lifetime.sec`",
+        "`.lifetime.nsecs` becomes `.lifetime.nanosec`",
+        "`.lifetime.nsecs`: int32 becomes uint32, and a value that does not fit is refused",
+        *(f"`.{name}` is zero or empty" for name in ("mesh_file", "texture", "texture_resource", "uv_coordinates")),
+    )
+    assert back.differences[0] == "`.header.seq` is written as 0"
+    assert back.differences[2] == "`.header.stamp.sec`: int32 becomes uint32, and a value that does not fit is refused"
+    assert back.differences[-1] == "`.uv_coordinates` is left out, and refused where it is not zero or empty"
+    assert rj.Bridge.of("sensor_msgs/msg/Imu", decode={"encoding": "cdr"}, encode={"encoding": "cdr2"}).differences == ()
