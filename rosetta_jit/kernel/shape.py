@@ -163,6 +163,23 @@ def calls_to_host(kernels: Iterable[ir.Kernel]) -> list[ir.HostCall]:
     return [stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, ir.HostCall)]
 
 
+def leaves_something(kernel: ir.Kernel) -> bool:
+    """Whether a kernel writes into lanes, so that another one may find something there."""
+    return any(_writes(stmt) for block in (*kernel.bodies, *(each.body for each in kernel.routines)) for stmt, _ in statements(block))
+
+
+def _writes(stmt: ir.Stmt) -> bool:
+    match stmt:
+        case ir.SetField() | ir.Advance():
+            return True
+        case ir.Copy(target=target) | ir.Fill(target=target):
+            return isinstance(target, ir.Place)
+        case ir.HostCall():
+            return stmt.target is not None
+        case _:
+            return False
+
+
 def our_functions(kernels: Iterable[ir.Kernel]) -> list[str]:
     """The names of the functions that kernels ask and that are not the user's, in order."""
     return sorted({call.function for call in calls_to_host(kernels) if "." in call.function})

@@ -11,7 +11,7 @@ import pytest
 from rosetta_jit.backends.entry.link import assembly, compile_program, llvm_text, object_file
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.ir import Binary, Const, Convert, Let, Load, Local, Place, SetField
-from rosetta_jit.kernel.shape import are_straight_and_compute, has_loops_for_vectors
+from rosetta_jit.kernel.shape import are_straight_and_compute, has_loops_for_vectors, leaves_something
 from rosetta_jit.kernel.terms import BEGIN, ROW, add
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request
@@ -83,6 +83,23 @@ def test_short_kernels_are_part_of_the_call():
     assert not is_called(kernels.fixed(10))
     assert not is_called(kernels.attempts())
     assert is_called(kernels.fixed(300))
+
+
+@pytest.mark.parametrize(
+    ("type_", "encoding", "leaves"),
+    [
+        ("tf2_msgs/msg/TFMessage", "cdr", False),
+        ("rst.kinematics.JointAngles", "protobuf", False),
+        ("rst.vision.HeadObjects", "protobuf", True),
+    ],
+)
+def test_messages_are_measured_before_they_are_written_where_that_leaves_something(type_, encoding, leaves):
+    """Lengths of nested messages; else only where the size is asked for."""
+    writes, size = Build(Request("encode", type=type_, encoding=encoding)).kernels
+    assert leaves_something(size) is leaves
+    text = llvm_text((writes, size), "encode", with_numba=False)
+    loop = text[text.index("@many(") :].partition("\n}")[0]
+    assert ("@size(" in loop) is leaves
 
 
 def test_a_later_form_of_a_message_is_another_function():

@@ -57,7 +57,6 @@ opened:
   %fits = and i1 %inside, %into.usable
   br i1 %fits, label %prepare, label %close, !prof !0
 prepare:
-  ; though the size is not asked for: the kernel looks up the lengths of nested messages that measuring leaves in the scratch lane
   call void @enter(ptr %state, i64 %into.epoch, i64 0)
   call void @lend_registers(ptr %context, ptr %state)
   call void @tell(ptr %context, ptr %state)

@@ -22,7 +22,7 @@ measure:
   call void @enter(ptr %state, i64 %epoch, i64 0)
   call void @lend_registers(ptr %context, ptr %state)
   call void @tell(ptr %context, ptr %state)
-  %size = call i64 @prepare(ptr %state, i64 0)
+  %size = call i64 @measure(ptr %state, i64 0)
   %measured = icmp sge i64 %size, 0
   br i1 %measured, label %allocate, label %stop, !prof !0
 allocate:

@@ -38,6 +38,7 @@ from rosetta_jit.kernel.shape import (
     is_moderate,
     is_short,
     is_short_and_straight,
+    leaves_something,
     our_functions,
 )
 from rosetta_jit.kernel.state import ERROR_SITE, USED, lane_word, state_words
@@ -63,7 +64,7 @@ USUAL: dict[EntryName, tuple[str, ...]] = {
 REST: dict[EntryName, tuple[str, ...]] = {
     "decode": ("any_decode.ll", "unmeasured.ll", "many.ll"),
     "borrow": ("borrowing.ll", "any_borrow.ll", "unmeasured.ll", "many.ll"),
-    "encode": ("usable.ll", "measured.ll", "any_encode.ll", "many.ll", "sizes.ll"),
+    "encode": ("usable.ll", "measured.ll", "unmeasured.ll", "any_encode.ll", "many.ll", "sizes.ll"),
     "bridge": (),
 }
 """Whatever else is called."""
@@ -186,6 +187,8 @@ def _own_parts(kernels: Sequence[Kernel], entry: EntryName, options: Options, *,
 def _surrounding_texts(kernels: Sequence[Kernel], entry: EntryName) -> tuple[str, ...]:
     """The modules that a program's surroundings are linked from."""
     rest = ALONE if _has_own_many(kernels, entry) else REST[entry]
+    if entry == "encode" and leaves_something(kernels[1]):
+        rest = tuple("leaving.ll" if each == "unmeasured.ll" else each for each in rest)
     around = (rest,) if _is_inside(kernels, entry) else (USUAL[entry], rest)
     return tuple(_entry_text(templates, kernels) for templates in around if templates)
 

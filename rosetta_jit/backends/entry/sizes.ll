@@ -7,7 +7,7 @@ head:
   %more = icmp slt i64 %index, %count
   br i1 %more, label %each, label %done
 each:
-  %result = call i64 @prepare(ptr %state, i64 %index)
+  %result = call i64 @measure(ptr %state, i64 %index)
   %good = icmp sge i64 %result, 0
   br i1 %good, label %place, label %broken, !prof !0
 place:
