@@ -17,6 +17,7 @@ from rosetta_jit.api.programs import program_of
 from rosetta_jit.errors import ReportError
 from rosetta_jit.pipeline.request import Request, plain_parameters
 from rosetta_jit.runtime.attributes.code import make_ready
+from rosetta_jit.runtime.decoder import complete
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -119,7 +120,7 @@ def _made(request: Request, *, usual: bool) -> tuple[Warmed, ...]:
     try:
         program = program_of(request)
         if request.direction == "decode" and not usual:
-            program.complete_()
+            complete(program)
     except ReportError as error:
         match error.diagnostics[0].code:
             case "no-rules":

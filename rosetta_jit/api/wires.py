@@ -11,6 +11,7 @@ from rosetta_jit.api.options import Options, request_of
 from rosetta_jit.api.programs import Decoder, Encoder, program_of
 from rosetta_jit.kernel.state import VALID
 from rosetta_jit.runtime.arrivals import ages
+from rosetta_jit.runtime.program import shared_of, wires_of
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
@@ -48,12 +49,12 @@ class _Programs(Mapping[str, _Program], Generic[_Program]):
         encodings = dict(options.pop("encodings", {}))
         request = request_of(self._direction, options, mapping=os.fspath(mapping))
         first = program_of(_of_wire(request, next(iter(encodings), ""), encodings))
-        wires = first.wires_
+        wires = wires_of(first)
         for unknown in sorted(set(encodings) - set(wires)):
             program_of(replace(request, wire=unknown))  # raises
-        self.make_([_of_wire(request, wire, encodings) for wire in wires])
+        self._make([_of_wire(request, wire, encodings) for wire in wires])
 
-    def make_(self, requests: list[Request]) -> None:
+    def _make(self, requests: list[Request]) -> None:
         self._requests = requests
         self._programs: dict[str, _Program] = {}
         for request in requests:
@@ -142,8 +143,8 @@ class Decoders(_Programs[Decoder]):
 
     _direction = "decode"
 
-    def make_(self, requests: list[Request]) -> None:
-        super().make_(requests)
+    def _make(self, requests: list[Request]) -> None:
+        super()._make(requests)
         self._times: dict[str, Any] = {}
 
     def decode(self, wire: str, message: Buffer, *, time: Any = None) -> Any:
@@ -162,7 +163,7 @@ class Decoders(_Programs[Decoder]):
     @property
     def holder(self) -> Any:
         """The holder that the decoders fill where they are given none: that of the thread that decodes first."""
-        return self._first.shared_()[1]
+        return shared_of(self._first)[1]
 
     @property
     def ages(self) -> dict[str, int | None]:
@@ -173,7 +174,7 @@ class Decoders(_Programs[Decoder]):
         InUse
             Another thread's call has not returned.
         """
-        registers = self._first.shared_()[0]
+        registers = shared_of(self._first)[0]
         return {} if registers is None else ages(registers.shown(), list(self))
 
     @property
@@ -184,7 +185,7 @@ class Decoders(_Programs[Decoder]):
     @property
     def missing(self) -> tuple[str, ...]:
         """The wires without a message so far, and those whose last message was refused: without any, `holder` is complete."""
-        _, holder, owners = self._first.shared_()
+        _, holder, owners = shared_of(self._first)
         broken = set[int]() if holder.lanes_.words[VALID] else owners.get("broken", {}).get(holder.lanes_, set[int]())
         return tuple(wire for number, (wire, age) in enumerate(self.ages.items()) if age is None or number in broken)
 
@@ -213,6 +214,6 @@ def _of_wire(request: Request, wire: str, encodings: Mapping[str, str]) -> Reque
 
 
 def _made_again(programs: type[_Programs[Any]], requests: list[Request]) -> _Programs[Any]:
-    made = programs.__new__(programs)
-    made.make_(requests)
+    made: Any = programs.__new__(programs)
+    made._make(requests)
     return made

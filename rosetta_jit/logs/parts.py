@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 
 from rosetta_jit.errors import DecodeError
+from rosetta_jit.runtime.decoder import borrows, fill, filling_of
 from rosetta_jit.runtime.message_spans import MessageSpans
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -128,7 +129,7 @@ class Collector:
                 self._take(block, rows.only(slice(done, done + taken)))
                 self._bytes += int(ends[done + taken - 1]) - before
                 done += taken
-            if done < len(rows) or self._decoder.borrows_:  # one batch borrows from one block
+            if done < len(rows) or borrows(self._decoder):  # one batch borrows from one block
                 yield from self.rest()
 
     @property
@@ -136,15 +137,15 @@ class Collector:
         return 0 if self._filling is None else self._filling.count
 
     def _take(self, block: Block, rows: Rows) -> None:
-        filling = self._filling = self._filling or self._decoder.filling_(self._likely(rows), self._batch, self._on_error)
+        filling = self._filling = self._filling or filling_of(self._decoder, self._likely(rows), self._batch, self._on_error)
         self._batch, first = filling.batch, filling.count
         count = first + len(rows)
         for own, given in zip(self._rows, (rows.begins, rows.ends, rows.log_ns, rows.publish_ns), strict=True):
             own[first:count] = given
         try:
             with filling.batch.lanes as lanes:
-                self._decoder.fill_(filling, block.data, self._spans, count)
-                lanes.source[0] = block.data.data if self._decoder.borrows_ else None
+                fill(self._decoder, filling, block.data, self._spans, count)
+                lanes.source[0] = block.data.data if borrows(self._decoder) else None
         except DecodeError as error:
             number, _, path = error.path.removeprefix("[").partition("]")
             raise DecodeError(error.kind, f"[{self._first + int(number)}]{path}", error.detail, error.offset) from None

@@ -172,22 +172,22 @@ class DecoderBase(Program):
         """
         source, spans = laid_out(cast("Any", messages), offsets)
         data = run.readable(source)
-        filling = self.filling_(len(spans), into, on_error)
+        filling = self._filling(len(spans), into, on_error)
         lanes = filling.batch.lanes
         before = lanes.source[0]
         with lanes:
-            self.fill_(filling, data, spans, len(spans))
+            self._fill(filling, data, spans, len(spans))
             lanes.source[0] = source if self._loaded.borrow else None
             batch = filling.end()
         del before  # outside: what ends with it may run any code
         return batch
 
     @property
-    def borrows_(self) -> bool:
+    def _borrows(self) -> bool:
         """Whether bytes fields show the messages that they came in."""
         return self._loaded.borrow
 
-    def filling_(self, count: int, into: Batch | None = None, on_error: OnError = "raise") -> Filling:
+    def _filling(self, count: int, into: Batch | None = None, on_error: OnError = "raise") -> Filling:
         """What decodes many messages step by step, about so many: into a batch, or into a new one.
 
         Raises
@@ -204,7 +204,7 @@ class DecoderBase(Program):
         self._lanes_of(batch)
         return Filling(self._loaded, batch, on_error, count, self._compiled_many, self._made_for)
 
-    def fill_(self, filling: Filling, data: NDArray[np.uint8], spans: MessageSpans, count: int) -> None:
+    def _fill(self, filling: Filling, data: NDArray[np.uint8], spans: MessageSpans, count: int) -> None:
         """One step, inside ``with lanes:``. Message ``i`` of all steps lies at place ``i``; there are ``count`` behind this step."""
         lanes, first = filling.batch.lanes, filling.count
         with self._keeping(lanes):
@@ -259,10 +259,10 @@ class DecoderBase(Program):
         is_ours = -1 - result < len(self._loaded.sites)  # else the other program has seen the message
         if on_demand is None or not is_ours or not on_demand.is_for_other(data, begin, end):
             return False
-        self.complete_()
+        self._complete()
         return True
 
-    def complete_(self) -> None:
+    def _complete(self) -> None:
         """Make the program now that is made on demand, if there is one."""
         on_demand = self._loaded.on_demand
         if on_demand is not None and on_demand.place.sites is None:
@@ -315,3 +315,26 @@ class DecoderBase(Program):
         if not hasattr(holders, "own"):
             holders.own = self.new()
         return holders.own
+
+
+# --- what other modules need of a decoder, and users do not -------------------------------------------------------------
+
+
+def filling_of(decoder: DecoderBase, count: int, into: Batch | None, on_error: OnError) -> Filling:
+    """What decodes many messages step by step, about so many: into a batch, or into a new one. Raises as `DecoderBase.many`."""
+    return decoder._filling(count, into, on_error)  # noqa: SLF001 # pyright: ignore[reportPrivateUsage]
+
+
+def fill(decoder: DecoderBase, filling: Filling, data: NDArray[np.uint8], spans: MessageSpans, count: int) -> None:
+    """One step, inside ``with lanes:``. Message ``i`` of all steps lies at place ``i``; there are ``count`` behind this step."""
+    decoder._fill(filling, data, spans, count)  # noqa: SLF001 # pyright: ignore[reportPrivateUsage]
+
+
+def borrows(decoder: DecoderBase) -> bool:
+    """Whether bytes fields show the messages that they came in."""
+    return decoder._borrows  # noqa: SLF001 # pyright: ignore[reportPrivateUsage]
+
+
+def complete(decoder: DecoderBase) -> None:
+    """Make the program now that is made on demand, if there is one."""
+    decoder._complete()  # noqa: SLF001 # pyright: ignore[reportPrivateUsage]

@@ -62,6 +62,8 @@ class EncoderBase(Program):
     def into(self, holder: Any, buffer: Buffer, offset: int = 0) -> int:
         """Write a message into a buffer; returns the offset behind it.
 
+        Where that fails, a part of the message may stand in the buffer.
+
         Raises
         ------
         EncodeError

@@ -215,7 +215,7 @@ class Program(ProgramBase):
             made = type.__call__(loaded.holder_type)  # one holder is not worth the time to compile how classes are called
             self._registers, self._holder, self._owners = loaded.state.registers(), made, {}
         else:
-            self._registers, self._holder, self._owners = beside.shared_()
+            self._registers, self._holder, self._owners = shared_of(beside)
         self._plan = loaded.holder_type.family_.plan
         if library() is not None:
             vars(self)["new"] = maker(loaded.holder_type, self._plan)
@@ -224,11 +224,11 @@ class Program(ProgramBase):
         bind_call(self, entry_of(loaded.library, loaded.state), context)
 
     @property
-    def wires_(self) -> tuple[str, ...]:
+    def _wires(self) -> tuple[str, ...]:
         """The names of the mapping's wires, where it has several."""
         return self._loaded.wires
 
-    def shared_(self) -> tuple[Registers | None, Holder, dict[str, Any]]:
+    def _shared(self) -> tuple[Registers | None, Holder, dict[str, Any]]:
         """What programs for several wires have together: registers, the own holder, and which threads have which holder."""
         return self._registers, self._holder, self._owners
 
@@ -329,3 +329,13 @@ def one_by_one(
             run.note(lanes, result or 0)
             return number
     return count
+
+
+def wires_of(program: Program) -> tuple[str, ...]:
+    """The names of the wires of a program's mapping, where it has several."""
+    return program._wires  # noqa: SLF001 # pyright: ignore[reportPrivateUsage]
+
+
+def shared_of(program: Program) -> tuple[Registers | None, Holder, dict[str, Any]]:
+    """What programs for several wires have together: registers, the own holder, and which threads have which holder."""
+    return program._shared()  # noqa: SLF001 # pyright: ignore[reportPrivateUsage]

@@ -38,6 +38,12 @@ def test_help_shows_fields_and_no_internals(decoder):
     assert "sensor_msgs" not in pydoc.render_doc(rj.Decoder, renderer=pydoc.plaintext)
 
 
+@pytest.mark.parametrize("of", [rj.Decoder, rj.Encoder, rj.Bridge, rj.Decoders, rj.Encoders])
+def test_classes_show_no_internals(of):
+    text = pydoc.render_doc(of, renderer=pydoc.plaintext)
+    assert not re.findall(r"^ \|  (?!__)(?:\w+_|_\w+)\b", text, re.MULTILINE)
+
+
 def test_units_and_enums_stand_in_the_docstring():
     schema = {
         "j.bottle-schema": '"j" (("angle" :double (:unit "degree")))',

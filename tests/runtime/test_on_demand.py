@@ -157,7 +157,7 @@ def test_another_thread_makes_it_between_failure_and_retry(decode, package, monk
     whole = message(">", COUNTS)
 
     def late(decoder, *failed):
-        other.complete_()
+        other._complete()
         return made_for(decoder, *failed)
 
     monkeypatch.setattr(type(decode), "_made_for", late)
