@@ -88,7 +88,7 @@ LANGUAGES = (
     ),
     Language(
         "lisp",
-        "Common Lisp: an ASDF system of structures, for SBCL",
+        "Common Lisp: an ASDF system of classes, for SBCL",
         "rosetta_jit.generate.lisp.language:files",
         borrows=True,
         low_byte_first=True,

@@ -115,9 +115,42 @@ def test_a_hostile_schema_stays_in_its_place(tmp_path):
     assert other.startswith(f"ok {(outer + inner + bytes(4)).hex()} ")
 
 
-def test_structures_are_the_systems_own():
+def test_classes_are_the_systems_own():
     with pytest.raises(SchemaError, match="unknown-holder"):
         generated(TORSO, "lisp", BOTH, "torso", Wishes(holder="protobuf"))
+
+
+@lisp.needs_sbcl
+def test_holders_are_classes(tmp_path):
+    """They have `make-instance`, typed slots and methods; accessors read and set doubles without boxing them."""
+    unit = lisp.write(tmp_path, generated(SUBJECTS["joints"][0], "lisp", BOTH, "joints"))
+    (tmp_path / "runtime.lisp").write_text(lisp.runtime("runtime"))
+    wide = type_request("decode", "w.Part", {"encoding": "protobuf", "schema": {"w.proto": WIDE}})
+    part = lisp.write(tmp_path, generated(wide, "lisp", BOTH, "part"))
+    forms = [f'(load "{lisp.MAIN}")', '(runtime "runtime.lisp")', f'(unit "{tmp_path}/" "{unit}")', f'(unit "{tmp_path}/" "{part}")']
+    forms += [
+        "(defgeneric sequence-of (message))",
+        "(defmethod sequence-of ((message joints:header)) (joints:header-seq message))",
+        "(defmethod sequence-of ((message joints:joint-state)) (sequence-of (slot-value message 'joints::header)))",
+        "(defvar *made* (make-instance 'joints:joint-state :header (make-instance 'joints:header :seq 7) :name (vector \"a\")))",
+        "(print (list (sequence-of *made*) (sequence-of (joints:decode (joints:encode *made*)))))",
+        "(print (handler-case (make-instance 'joints:header :seq -1) (type-error () :type-error)))",
+        "(print (handler-case (setf (joints:header-seq (joints:make-header)) (first '(1.5))) (type-error () :type-error)))",
+        "(print (eq (joints:joint-state-header (joints:make-joint-state)) (joints:joint-state-header (joints:make-joint-state))))",
+        "(print (documentation 'joints:header 'type))",
+        "(defun next (part) (setf (part:part-x part) (+ 1 (part:part-x part)) (part:part-y part) (logxor 1 (part:part-y part))) part)",
+        "(compile 'next)",
+        "(defvar *part* (part:make-part :x 1.5d0 :y (1- (ash 1 64))))",
+        LOOP.replace("%s", '(consed "next" (lambda () (next *part*)))'),
+    ]
+    assert lisp.run(*forms, cwd=tmp_path).split("\n")[1:] == [
+        "(7 7) ",
+        ":TYPE-ERROR ",
+        ":TYPE-ERROR ",
+        "NIL ",
+        '"std_msgs/Header." next 0',
+        "",
+    ]
 
 
 WIDE = """syntax = "proto3"; package w; message Part { double x = 1; uint64 y = 2; }

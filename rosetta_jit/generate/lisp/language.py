@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.language import named_parts
+from rosetta_jit.generate.lisp.classes import classes_of, definitions, function_symbols, wire_symbols
 from rosetta_jit.generate.lisp.functions import About, computes_with_floats, print_kernel
 from rosetta_jit.generate.lisp.lanes import lanes_of
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.objects import Put, Take
-from rosetta_jit.generate.lisp.structs import definitions, function_symbols, structures_of, wire_symbols
 from rosetta_jit.generate.lisp.texts import comment, literal
 from rosetta_jit.generate.lisp.words import package_of, runtime_text
 from rosetta_jit.generate.shares import changed_lanes
@@ -44,7 +44,7 @@ NAMES: dict[Role, str] = {"borrow": "decode", "encode": "encode", "size": "size"
 def files(unit: Unit) -> dict[str, str]:
     """The texts of the system's files by their names."""
     if unit.holder not in ("", "own"):
-        raise SchemaError((words.unknown_holder(unit.holder, (("own", "structures"),)),))
+        raise SchemaError((words.unknown_holder(unit.holder, (("own", "classes"),)),))
     package = package_of(unit.name)
     made = _Source(unit)
     return {
@@ -63,11 +63,11 @@ class _Source:
     """Prints the unit's own file."""
 
     def __init__(self, unit: Unit) -> None:
-        self.unit, self.structures = unit, structures_of(unit)
-        self.wires = wire_symbols(self.structures, filter(None, map(wire_of, unit.kernels)))
+        self.unit, self.classes = unit, classes_of(unit)
+        self.wires = wire_symbols(self.classes, filter(None, map(wire_of, unit.kernels)))
         self.verbs = {role: f"decode-{self.wires[wire_of(role)]}" if wire_of(role) else NAMES[role] for role in unit.kernels}
         self.shares: dict[Role, str] = {}
-        self.functions = function_symbols(self.structures, [each.name for each in unit.functions])
+        self.functions = function_symbols(self.classes, [each.name for each in unit.functions])
         longest = max(unit.kernels.values(), key=lambda each: len(each.strides))
         c = named_parts(unit, frozenset())(longest.strides)
         self.lanes = lanes_of(c.all, c.own)
@@ -88,7 +88,7 @@ class _Source:
         walks = self._walks()  # which name what the constants must have
         parts = [
             self._package(package),
-            definitions(self.structures),
+            definitions(self.classes),
             self._constants(),
             self._codec(),
             *(text for role in self.unit.kernels for text in (self._sites(role), self.printed[role].text)),
@@ -103,9 +103,10 @@ class _Source:
         lines.line("")
         lines.line("(declaim (sb-ext:muffle-conditions sb-ext:compiler-note))")
         lines.line("")
-        names = [*self.structures.exported(), *self.functions.values(), *(["*codec*"] if self.unit.state else [])]
-        names += [f"{verb}-{wire}" for wire in self.wires.values() for verb in ("decode", "age")]
-        lines.line(f"(export '({' '.join(names)}))")
+        more = [*self.functions.values(), *(["*codec*"] if self.unit.state else [])]
+        more += [f"{verb}-{wire}" for wire in self.wires.values() for verb in ("decode", "age")]
+        lines.groups("(export '(", [*self.classes.exported(), more])
+        lines.close(2)
         return lines.text()
 
     def _constants(self) -> str:
@@ -129,7 +130,7 @@ class _Source:
 
     def _walks(self) -> list[str]:
         found: list[str] = []
-        take, put = Take(self.structures, self.lanes, "take"), Put(self.structures, self.lanes, "put")
+        take, put = Take(self.classes, self.lanes, "take"), Put(self.classes, self.lanes, "put")
         if "borrow" in self.unit.kernels:
             take.whole()
         self.shares = {role: take.whole(self.wires[wire_of(role)], ways) for role, ways in self.unit.shares.items() if wire_of(role)}
@@ -156,7 +157,7 @@ class _Source:
         sections = dict(part.split("\n", 1) for part in API.read_text("utf-8").split(";; == ")[1:])
         told = asks_host(self.unit.kernels.values())
         given = {
-            "type": self.structures.types[self.unit.type],
+            "type": self.classes.types[self.unit.type],
             "codec": "*codec*" if self.unit.state else "(make-codec)",
             "tell": "(tell codec)" if told else "",
             "measure": "(size-of-rows codec)" if self._needs_measures() else "",

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import field
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.lisp.texts import broken, comment
+from rosetta_jit.generate.lisp.texts import WIDTH, broken, comment
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
+    from collections.abc import Generator, Iterable, Sequence
 
 MAX_LINE = 140
 
@@ -40,6 +41,30 @@ class Lines:
             text = ""
         self.lines.append(Line(self.column, first, text))
         self.lines += [Line(0, each) for each in others]
+
+    def slots(self, slots: Sequence[Sequence[str]]) -> None:
+        """The list of a class's slots, of which each is a name and its options: in one line where that fits, else an option a line."""
+        if not slots:
+            self.line("()")
+        for number, (first, *options) in enumerate(slots):
+            column, opened = self.column + bool(number), "" if number else "("
+            whole = f"{opened}({' '.join((first, *options))})"
+            if column + len(whole) <= WIDTH:
+                self.lines.append(Line(column, whole))
+                continue
+            self.lines.append(Line(column, f"{opened}({first}"))
+            below = self.column + 3 + first.index(" ")
+            self.lines += [Line(below, each) for each in options]
+            self.close()
+        if slots:
+            self.close()
+
+    def groups(self, opened: str, groups: Iterable[Sequence[str]]) -> None:
+        """Symbols within an open form: each group begins a line, and goes on in the next one where that is full."""
+        column = self.column + len(opened)
+        found = [line for group in groups for line in wrap(" ".join(group), WIDTH - column, break_long_words=False, break_on_hyphens=False)]
+        self.lines.append(Line(self.column, opened + "".join(found[:1])))
+        self.lines += [Line(column, line) for line in found[1:]]
 
     def close(self, many: int = 1) -> None:
         """End forms."""

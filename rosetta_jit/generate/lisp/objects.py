@@ -11,17 +11,17 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
+from rosetta_jit.generate.lisp.classes import ABSENT_BOOL, UNKNOWN
 from rosetta_jit.generate.lisp.expressions import access, row_start
 from rosetta_jit.generate.lisp.lines import Lines
-from rosetta_jit.generate.lisp.structs import ABSENT_BOOL, UNKNOWN
 from rosetta_jit.generate.shares import WHOLE, Ways, within
 from rosetta_jit.model.layout import Number, Row, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bool, Bytes, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from rosetta_jit.generate.lisp.classes import Classes
     from rosetta_jit.generate.lisp.lanes import Lanes
-    from rosetta_jit.generate.lisp.structs import Structures
     from rosetta_jit.model.layout import Member, Slot
     from rosetta_jit.model.types import Field, Type
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 class Walk:
     """Functions that are printed for one direction: ``verb`` begins their names, ``done`` are those by lane, offset and struct."""
 
-    structures: Structures
+    classes: Classes
     lanes: Lanes
     verb: str
     done: dict[tuple[int, int, str, Ways], str] = field(default_factory=dict[tuple[int, int, str, Ways], str])
@@ -40,17 +40,17 @@ class Walk:
 
     def element(self, lane: int) -> Slot:
         """The slot of a lane's rows."""
-        return self.structures.unit.layout.lanes[lane].element
+        return self.classes.unit.layout.lanes[lane].element
 
     def resolved(self, type_: Type) -> Type:
-        return self.structures.schema.resolve(type_)
+        return self.classes.schema.resolve(type_)
 
     def function(self, struct: Struct, slot: Row, lane: int, path: str, ways: Ways = WHOLE) -> str:
         """The function for the structs at a slot of a lane's rows, or for some of their fields."""
         key = lane, slot.offset, struct.name, ways
         if key not in self.done:
             named = "\0".join(map(str, (self.verb, *key[:3], *map(".".join, sorted(ways)))))
-            self.done[key] = self.structures.names.symbol(named, wanted=f"{self.verb}-{path}")
+            self.done[key] = self.classes.names.symbol(named, wanted=f"{self.verb}-{path}")
             self.pending.append((struct, slot, lane, self.done[key], ways))
         return self.done[key]
 
@@ -65,7 +65,7 @@ class Walk:
 
     def whole(self, path: str = "message", ways: Ways = WHOLE) -> str:
         """The function for the message."""
-        unit = self.structures.unit
+        unit = self.classes.unit
         root = self.resolved(Ref(unit.type))
         assert isinstance(root, Struct)
         assert isinstance(unit.layout.root, Row)
@@ -92,16 +92,16 @@ class Take(Walk):
     """From rows to objects: an expression for each value."""
 
     def one(self, struct: Struct, slot: Row, lane: int, name: str, ways: Ways) -> None:
-        type_, row = self.structures.types[struct.name], "row" if lane else "0"
+        type_, row = self.classes.types[struct.name], "row" if lane else "0"
         with self.lines.form(f"(defun {name} (codec data row before)"):
             self.lines.line("(declare (type codec codec) (type octets data) (type fixnum row) (ignorable codec data row))")
             with self.lines.form(f"(let ((object (if (typep before '{type_}) before (make-{type_}))))"):
                 for each, member in zip(struct.fields, slot.members, strict=True):
                     if part := within(ways, each.name):
-                        place = self.structures.accessor(struct, each.name)
+                        place = self.classes.accessor(struct, each.name)
                         self.lines.line(f"(setf {place} {self.member(each, member, slot, lane, row, place, part)})")
                 if slot.unknown is not None and () in ways:
-                    place = self.structures.accessor(struct, UNKNOWN)
+                    place = self.classes.accessor(struct, UNKNOWN)
                     self.lines.line(f"(setf {place} {self.sequence(Bytes(), slot.unknown, lane, row, place, '')})")
                 self.lines.line("object")
 
@@ -177,7 +177,7 @@ class Take(Walk):
 
     def union(self, union: Union, slot: Variant, lane: int, row: str, path: str) -> str:
         cases = [
-            f"({number} (cons {self.structures.case(union, each.name)} "
+            f"({number} (cons {self.classes.case(union, each.name)} "
             f"{self.value(each.type, member.slot, lane, row, 'nil', f'{path}-{each.name}')}))"
             for number, (each, member) in enumerate(zip(union.cases, slot.members, strict=True), 1)
         ]
@@ -191,10 +191,10 @@ class Put(Walk):
     def one(self, struct: Struct, slot: Row, lane: int, name: str, ways: Ways) -> None:
         del ways  # all fields are written
         with self.lines.form(f"(defun {name} (codec row object)"):
-            type_, row = self.structures.types[struct.name], "row" if lane else "0"
+            type_, row = self.classes.types[struct.name], "row" if lane else "0"
             self.lines.line(f"(declare (type codec codec) (type fixnum row) (type {type_} object) (ignorable codec row object))")
             for each, member in zip(struct.fields, slot.members, strict=True):
-                place = self.structures.accessor(struct, each.name)
+                place = self.classes.accessor(struct, each.name)
                 if member.presence is None:
                     self.value(each.type, member.slot, lane, row, place, each.name)
                     continue
@@ -206,7 +206,7 @@ class Put(Walk):
                     self.lines.line(f"(set-bit {self.lanes.place(lane)} {self.at(lane, slot.offset + 8 * word, 'u64', row)} {bit})")
                     self.value(each.type.value, member.slot, lane, row, "value", each.name)
             if slot.unknown is not None:
-                self.sequence(Bytes(), slot.unknown, lane, row, self.structures.accessor(struct, UNKNOWN), "")
+                self.sequence(Bytes(), slot.unknown, lane, row, self.classes.accessor(struct, UNKNOWN), "")
             self.lines.line("object")
 
     def value(self, type_: Type, slot: Slot, lane: int, row: str, at: str, path: str) -> None:
@@ -301,7 +301,7 @@ class Put(Walk):
             with self.lines.form(f"(ecase (car {which})"):
                 self.lines.line("((nil))")
                 for number, (each, member) in enumerate(zip(union.cases, slot.members, strict=True), 1):
-                    with self.lines.form(f"({self.structures.case(union, each.name)}", by=1):
+                    with self.lines.form(f"({self.classes.case(union, each.name)}", by=1):
                         self.lines.line(f"(setf {self.scalar(lane, slot.offset, 'i64', row)} {number})")
                         self.value(each.type, member.slot, lane, row, value, f"{path}-{each.name}")
         self.depth -= 1

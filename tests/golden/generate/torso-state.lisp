@@ -16,10 +16,15 @@
 
 (export '(joint-angles make-joint-angles joint-angles-angles joint-angles-unknown-fields))
 
-(defstruct (joint-angles (:copier nil) (:predicate nil))
-  "rst.kinematics.JointAngles. Angles of the joints of a kinematic chain."
-  (angles (make-array 0 :element-type 'f32) :type (simple-array f32 (*)))  ; Joint angles, in rad.
-  (unknown-fields (no-octets) :type octets))  ; fields that the schema does not know, as they came
+(defclass joint-angles ()
+  ((angles :initarg :angles :type (simple-array f32 (*))
+           :initform (make-array 0 :element-type 'f32)
+           :documentation "Joint angles, in rad.")
+   (unknown-fields :initarg :unknown-fields :type octets
+                   :initform (no-octets)
+                   :documentation "Fields that the schema does not know, as they came."))
+  (:metaclass structure-class))
+(define-operators joint-angles "rst.kinematics.JointAngles. Angles of the joints of a kinematic chain.")
 
 (defconstant +angles.start+ 16)
 (defconstant +angles.count+ 24)

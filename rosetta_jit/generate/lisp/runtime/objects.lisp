@@ -1,3 +1,33 @@
+;;; Classes of messages.
+
+(defmacro define-operators (name documentation)
+  "(make-NAME &key SLOT ...) for a class of structure-class, and an inline accessor NAME-SLOT for each slot, which boxes no number."
+  (flet ((named (&rest parts)
+           (intern (format nil "~{~A~}" parts)))
+         (keyword (slot)
+           (intern (string slot) :keyword)))
+    (loop for each in (sb-mop:class-direct-slots (find-class name))
+          for slot = (sb-mop:slot-definition-name each)
+          for value = (gensym "VALUE")
+          for accessor = (named name "-" slot)
+          collect `((,(keyword slot) ,value) ,(sb-mop:slot-definition-initform each)) into parameters
+          append `((slot-value object ',slot) ,value) into values
+          append `((declaim (inline ,accessor (setf ,accessor)))
+                   (defun ,accessor (object)
+                     (slot-value (the ,name object) ',slot))
+                   (defun (setf ,accessor) (value object)
+                     (setf (slot-value (the ,name object) ',slot) value)))
+            into accessors
+          finally (return
+                    `(progn
+                       (setf (documentation ',name 'type) ,documentation)
+                       (defun ,(named "MAKE-" name) (&key ,@parameters)
+                         (let ((object (copy-structure (load-time-value (allocate-instance (find-class ',name))))))
+                           (declare (type ,name object))
+                           (setf ,@values)
+                           object))
+                       ,@accessors)))))
+
 ;;; From rows to objects: what was there before is used again where it fits.
 
 (defmacro define-numbers (type width)

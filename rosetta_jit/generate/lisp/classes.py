@@ -1,4 +1,4 @@
-"""Structures for the types of a schema, and not classes: `defstruct` alone keeps numbers unboxed, so that setting one allocates nothing."""
+"""Classes for the types of a schema, and not classes: `defstruct` alone keeps numbers unboxed, so that setting one allocates nothing."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.model.types import Schema, Type
+    from rosetta_jit.model.types import Field, Schema, Type
 
 KERNELS = frozenset({"decode-kernel", "encode-kernel", "size-kernel", "unknown-fields", "forget-rows", "writer"})
 UNKNOWN = "unknown fields"
@@ -28,7 +28,7 @@ EMPTY = "(no-octets)"
 
 
 @dataclass(slots=True)
-class Structures:
+class Classes:
     """The symbols for the types of a unit, of their slots and enums, and of functions."""
 
     unit: Unit
@@ -56,17 +56,15 @@ class Structures:
         scope = Names(frozenset())
         return next(f":{symbol}" for each in union.cases if (symbol := scope.symbol(each.name)) and each.name == name)
 
-    def exported(self) -> list[str]:
-        """What who uses the package needs, in order."""
-        found: list[str] = []
-        for name, symbol in self.types.items():
-            declared = self.schema.types[name]
-            if isinstance(declared, Enum):
-                found += [constant for constant, _ in self.values(declared)]
-                continue
-            assert isinstance(declared, Struct)
-            found += [symbol, f"make-{symbol}", *(f"{symbol}-{self.slot(declared, each)}" for each in _slots(declared))]
-        return found
+    def exported(self) -> list[list[str]]:
+        """What who uses the package needs: for each type its symbols, in order."""
+        return [self._exported(self.schema.types[name], symbol) for name, symbol in self.types.items()]
+
+    def _exported(self, declared: Type, symbol: str) -> list[str]:
+        if isinstance(declared, Enum):
+            return [constant for constant, _ in self.values(declared)]
+        assert isinstance(declared, Struct)
+        return [symbol, f"make-{symbol}", *(f"{symbol}-{self.slot(declared, each)}" for each in _slots(declared))]
 
     def values(self, enum: Enum) -> list[tuple[str, int]]:
         """The constants of an enum."""
@@ -78,48 +76,58 @@ def _slots(struct: Struct) -> list[str]:
     return [*(each.name for each in struct.fields), *([UNKNOWN] if struct.option("unknown") else [])]
 
 
-def structures_of(unit: Unit) -> Structures:
+def classes_of(unit: Unit) -> Classes:
     """The symbols of a unit: none is another's, or one of the language, whatever the schema says (`Time` is `time-message`)."""
     names, types = Names(symbols() | runtime_names() | KERNELS), dict[str, str]()
     for name in reached_types(unit):
         simple = hyphenated(re.split(r"[./:]+", name)[-1])
         known = {simple, f"make-{simple}"} & names.reserved
         types[name] = names.symbol(name, "{}", "make-{}", wanted=f"{simple}-message" if known else simple)
-    made = Structures(unit, names, types, frozenset(struct for _, struct in unit.layout.recursive))
+    made = Classes(unit, names, types, frozenset(struct for _, struct in unit.layout.recursive))
     made.exported()
     return made
 
 
-def definitions(structures: Structures) -> str:
-    """The structures, each behind those that it contains."""
+def definitions(classes: Classes) -> str:
+    """The classes, each behind those that it contains."""
     lines = Lines()
-    for name, symbol in structures.types.items():
-        declared = structures.schema.types[name]
+    for name, symbol in classes.types.items():
+        declared = classes.schema.types[name]
         if lines.lines:
             lines.line("")
         if isinstance(declared, Enum):
-            for constant, value in structures.values(declared):
+            for constant, value in classes.values(declared):
                 lines.line(f"(defconstant {constant} {value})")
         else:
             assert isinstance(declared, Struct)
-            _structure(lines, structures, symbol, declared)
+            _class(lines, classes, symbol, declared)
     return lines.text()
 
 
-def _structure(lines: Lines, structures: Structures, symbol: str, struct: Struct) -> None:
-    with lines.form(f"(defstruct ({symbol} (:copier nil) (:predicate nil))"):
-        lines.line(doc(f"{struct.name}. {struct.doc}".rstrip(". ") + "."))
-        for each in struct.fields:
-            said = " ".join(part for part in (each.doc, f"[{each.unit}]" if each.unit else "") if part)
-            type_, value = slot_type(structures, each.type), default(structures, each.type)
-            lines.line(f"({structures.slot(struct, each.name)} {value} :type {type_})", said)
-        if struct.option("unknown"):
-            lines.line(f"({structures.slot(struct, UNKNOWN)} {EMPTY} :type octets)", "fields that the schema does not know, as they came")
+def _class(lines: Lines, classes: Classes, symbol: str, struct: Struct) -> None:
+    slots = [_slot(classes, struct, each) for each in struct.fields]
+    if struct.option("unknown"):
+        slots.append(_options(classes.slot(struct, UNKNOWN), "octets", EMPTY, "Fields that the schema does not know, as they came."))
+    with lines.form(f"(defclass {symbol} ()"):
+        lines.slots(slots)
+        lines.line("(:metaclass structure-class)")
+    lines.line(f"(define-operators {symbol} {doc(f'{struct.name}. {struct.doc}'.rstrip('. ') + '.')})")
 
 
-def slot_type(structures: Structures, type_: Type) -> str:
+def _slot(classes: Classes, struct: Struct, each: Field) -> list[str]:
+    said = " ".join(part for part in (each.doc, f"[{each.unit}]" if each.unit else "") if part)
+    return _options(classes.slot(struct, each.name), slot_type(classes, each.type), default(classes, each.type), said)
+
+
+def _options(name: str, type_: str, value: str, said: str) -> list[str]:
+    """A slot in parts, between which a line may end."""
+    first = f"{name} :initarg :{name} :type {type_}"
+    return [first, f":initform {value}", *([f":documentation {doc(said)}"] if said else [])]
+
+
+def slot_type(classes: Classes, type_: Type) -> str:
     """The type of a slot."""
-    schema = structures.schema
+    schema = classes.schema
     match type_:
         case Bool() | Int() | Float():
             return LISP_TYPES[scalar_of(type_)]
@@ -128,36 +136,36 @@ def slot_type(structures: Structures, type_: Type) -> str:
         case Bytes(_, length):
             return f"(simple-array u8 ({length if isinstance(length, int) else '*'}))"
         case Array(element, length):
-            return vector_type(structures, element, length if isinstance(length, int) else None)
+            return vector_type(classes, element, length if isinstance(length, int) else None)
         case Map():
             return "hash-table"
         case Optional(value) if isinstance(schema.resolve(value), Bool):
             return f"(member t nil {ABSENT_BOOL})"
         case Optional(value):
-            return f"(or null {slot_type(structures, value)})"
+            return f"(or null {slot_type(classes, value)})"
         case Union():
             return "(or null (cons keyword t))"
         case Ref(name):
             if isinstance(schema.types[name], Enum):
                 return "i32"
-            return "(or null structure-object)" if name in structures.recursive else structures.types[name]
+            return "(or null structure-object)" if name in classes.recursive else classes.types[name]
         case Enum() | Struct():
             raise AssertionError(type_)
         case _:
             assert_never(type_)
 
 
-def vector_type(structures: Structures, element: Type, length: int | None) -> str:
+def vector_type(classes: Classes, element: Type, length: int | None) -> str:
     """Of an array: numbers lie in it unboxed."""
-    resolved, many = structures.schema.resolve(element), "*" if length is None else length
+    resolved, many = classes.schema.resolve(element), "*" if length is None else length
     if isinstance(resolved, Int | Float | Enum):
         return f"(simple-array {LISP_TYPES[scalar_of(resolved)]} ({many}))"
     return "simple-vector" if length is None else f"(simple-vector {length})"
 
 
-def default(structures: Structures, type_: Type) -> str:
+def default(classes: Classes, type_: Type) -> str:
     """The first value of a slot."""
-    match structures.schema.resolve(type_):
+    match classes.schema.resolve(type_):
         case Bool() | Union():
             return "nil"
         case Int() | Enum():
@@ -171,38 +179,38 @@ def default(structures: Structures, type_: Type) -> str:
         case Bytes():
             return EMPTY
         case Array(element, length):
-            return _vector(structures, element, length if isinstance(length, int) else 0)
+            return _vector(classes, element, length if isinstance(length, int) else 0)
         case Map():
             return "(make-hash-table :test 'equal)"
         case Optional(value):
-            return ABSENT_BOOL if isinstance(structures.schema.resolve(value), Bool) else "nil"
+            return ABSENT_BOOL if isinstance(classes.schema.resolve(value), Bool) else "nil"
         case Struct(name):
-            return "nil" if name in structures.recursive else f"(make-{structures.types[name]})"
+            return "nil" if name in classes.recursive else f"(make-{classes.types[name]})"
         case Ref():
             raise AssertionError(type_)
 
 
-def _vector(structures: Structures, element: Type, length: int) -> str:
-    resolved = structures.schema.resolve(element)
+def _vector(classes: Classes, element: Type, length: int) -> str:
+    resolved = classes.schema.resolve(element)
     if isinstance(resolved, Int | Float | Enum):
         return f"(make-array {length} :element-type '{LISP_TYPES[scalar_of(resolved)]})"
     if isinstance(resolved, Bool) or not length:
         return f"(make-array {length} :initial-element nil)"
-    return f"(map-into (make-array {length}) (lambda () {_element(structures, element)}))"
+    return f"(map-into (make-array {length}) (lambda () {_element(classes, element)}))"
 
 
-def _element(structures: Structures, element: Type) -> str:
+def _element(classes: Classes, element: Type) -> str:
     """What is in an array of a fixed length at first: objects, of recursive types too."""
-    resolved = structures.schema.resolve(element)
-    return f"(make-{structures.types[resolved.name]})" if isinstance(resolved, Struct) else default(structures, element)
+    resolved = classes.schema.resolve(element)
+    return f"(make-{classes.types[resolved.name]})" if isinstance(resolved, Struct) else default(classes, element)
 
 
-def wire_symbols(structures: Structures, wires: Iterable[str]) -> dict[str, str]:
+def wire_symbols(classes: Classes, wires: Iterable[str]) -> dict[str, str]:
     """What stands for wires in the symbols of their functions, as `decode-WIRE`."""
     taken = ("decode-{}", "age-{}", "decode-{}-kernel")
-    return {each: structures.names.symbol(f"wire {each}", *taken, wanted=each) for each in wires}
+    return {each: classes.names.symbol(f"wire {each}", *taken, wanted=each) for each in wires}
 
 
-def function_symbols(structures: Structures, functions: Iterable[str]) -> dict[str, str]:
+def function_symbols(classes: Classes, functions: Iterable[str]) -> dict[str, str]:
     """The symbols of the mapping's functions."""
-    return {each: structures.names.symbol(f"function {each}", wanted=each) for each in functions}
+    return {each: classes.names.symbol(f"function {each}", wanted=each) for each in functions}
