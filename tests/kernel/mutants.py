@@ -35,6 +35,7 @@ PROOF = (
     "loops",
     "record",
     "meetings",
+    "less",
 )
 PASSES = ("affine", "bulk", "drop", "fold", "forget", "hoist", "join", "merge", "reuse", "simplify", "sink", "unroll", "widen", "order")
 MODULES = tuple(

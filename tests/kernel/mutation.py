@@ -86,6 +86,7 @@ class Expected:
         if not self.refusals:
             yield from probes.theorems()
             yield from probes.owed({**kernels.ALL, **{f"safe twin of {name}": kernel for name, kernel in ACCEPTED.items()}})
+            yield from probes.less()
             yield from probes.texts()
             yield from probes.outcomes()
             yield from probes.corpus(self.corpus)

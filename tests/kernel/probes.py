@@ -7,6 +7,7 @@ do by the interpreter.
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 from hashlib import sha256
 from itertools import product
 from random import Random
@@ -14,13 +15,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rosetta_jit.kernel.ir import If, Return
 from rosetta_jit.kernel.passes import order as passes
+from rosetta_jit.kernel.passes.drop import without
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.formula import All, Any, negated
+from rosetta_jit.kernel.proof.less import is_less
 from rosetta_jit.kernel.proof.linear import Linear, plus, times
 from rosetta_jit.kernel.proof.prove import Facts
 from rosetta_jit.kernel.proof.record import Record
-from rosetta_jit.kernel.proof.verify import VerificationError, verify
+from rosetta_jit.kernel.proof.verify import VerificationError, settled, verify
+from rosetta_jit.kernel.terms import BEGIN, index
 from tests.kernel import kernels
 from tests.kernel.unsafe import ACCEPTED, REFUSED
 
@@ -164,6 +169,28 @@ def texts() -> Iterator[Probe]:
         yield f"passes: {name}", digest("\n".join((*said, last)))
     for name, kernel in {**kernels.ALL, **PASSED}.items():
         yield f"passes for any machine: {name}", digest(to_text(passes.run(kernel, passes.ANY_MACHINE)))
+
+
+def less() -> Iterator[Probe]:
+    """Which kernels need no proof because of another's, and which do."""
+    from tests.kernel import test_less as cases
+
+    for number, proven in enumerate((cases.TWICE, cases.INSIDE)):
+        known = settled(proven)
+        made = without(proven, known)
+        first, second, *rest = made.bodies[0]
+        bodies = [(), (first,), (second, *rest), (first, *rest), (first, second, *rest, *rest), (second, first, *rest), made.bodies[0]]
+        others = [replace(made, bodies=(body,)) for body in bodies]
+        others += [replace(made, bodies=made.bodies * 2), replace(made, strides=(*made.strides, 8)), proven]
+        others += [replace(made, bodies=((first, replace(second, name="j"), *rest),))] if number == 0 else []
+        yield f"less {number}", str([(is_less(each, proven, known), is_less(each, proven, frozenset())) for each in others])
+    first, let, end = cases.of(cases.need(BEGIN, 16)).bodies[0]
+    proven = kernels.kernel((first, let, end))
+    yield "less: a value", str(is_less(kernels.kernel((first, end)), proven, frozenset({id(let)})))
+    for way in (cases.need(BEGIN, 24), Return(BEGIN)):
+        proven = cases.of(cases.need(BEGIN, 16), If(cases.compare("ge", index(1), 0), (way,)))
+        known = frozenset({id(proven.bodies[0][1])})
+        yield f"less: {type(way).__name__}", str([is_less(each, proven, known) for each in (without(proven, known), proven)])
 
 
 def outcomes() -> Iterator[Probe]:

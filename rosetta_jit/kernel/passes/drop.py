@@ -16,7 +16,11 @@ if TYPE_CHECKING:
 
 def drop(kernel: Kernel) -> Kernel:
     """The kernel without what follows from what is known before it."""
-    known = settled(kernel)
+    return without(kernel, settled(kernel))
+
+
+def without(kernel: Kernel, known: frozenset[int]) -> Kernel:
+    """The kernel without the statements that are known to choose nothing, by their ids."""
     if not known:
         return kernel
 

@@ -7,7 +7,7 @@ from operator import is_
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.passes.bulk import bulk, bulk_of_bytes, group
-from rosetta_jit.kernel.passes.drop import drop
+from rosetta_jit.kernel.passes.drop import drop, without
 from rosetta_jit.kernel.passes.forget import forget
 from rosetta_jit.kernel.passes.hoist import hoist
 from rosetta_jit.kernel.passes.join import join
@@ -16,7 +16,8 @@ from rosetta_jit.kernel.passes.reuse import reuse
 from rosetta_jit.kernel.passes.simplify import simplify
 from rosetta_jit.kernel.passes.sink import sink
 from rosetta_jit.kernel.passes.unroll import unroll
-from rosetta_jit.kernel.proof.verify import VerificationError, check_shape, verify
+from rosetta_jit.kernel.proof.less import is_less
+from rosetta_jit.kernel.proof.verify import VerificationError, check_shape, settled, verify
 from rosetta_jit.kernel.shape import is_large
 
 if TYPE_CHECKING:
@@ -73,15 +74,39 @@ def run(kernel: Kernel, passes: tuple[Pass, ...] = PASSES) -> Kernel:
 
 
 def _all(kernel: Kernel, passes: tuple[Pass, ...]) -> Kernel:
+    """All passes, and one proof more where a pass has changed what `drop` had proven."""
     check_shape(kernel)
     results: dict[Pass, Kernel] = {}
-    large = is_large(kernel)
-    for transform in passes:
+    proven: Kernel | None = None
+    for transform in _once(passes) if is_large(kernel) else passes:
         made = results.get(transform)
-        if made is None or (not large and not all(map(is_, made.bodies, kernel.bodies))):
-            kernel = results[transform] = transform(kernel)
-    verify(kernel)
+        if made is not None and _is_same(made, kernel):
+            continue
+        if transform is drop:
+            kernel, proven = _dropped(kernel)
+        else:
+            kernel = transform(kernel)
+        results[transform] = kernel
+    if proven is None or not _is_same(kernel, proven):
+        verify(kernel)
     return kernel
+
+
+def _once(passes: tuple[Pass, ...]) -> tuple[Pass, ...]:
+    """Each pass once, `drop` at the end: its proof is the last one then."""
+    return (*(each for each in dict.fromkeys(passes) if each is not drop), drop)
+
+
+def _is_same(kernel: Kernel, other: Kernel) -> bool:
+    """Whether two kernels, one made from the other by passes, have the same bodies."""
+    return all(map(is_, kernel.bodies, other.bodies))
+
+
+def _dropped(kernel: Kernel) -> tuple[Kernel, Kernel | None]:
+    """The kernel after `drop`; again, if it is proven by what `drop` has proven: the kernel before."""
+    known = settled(kernel)
+    changed = without(kernel, known)
+    return changed, changed if is_less(changed, kernel, known) else None
 
 
 def _proven(transform: Pass, kernel: Kernel) -> Kernel:

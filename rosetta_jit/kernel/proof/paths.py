@@ -114,10 +114,8 @@ def _meet(scope: Scope, before: dict[str, Typed], arrivals: list[Arrival]) -> No
     if all(arrival.used == first.used for arrival in arrivals):
         scope.used = list(first.used)
         return
-    scope.used = [
-        first.used[lane] if all(a.used[lane] == first.used[lane] for a in arrivals) else grown(scope, lane, used)
-        for lane, used in enumerate(scope.used)
-    ]
+    lanes = zip(scope.used, *[arrival.used for arrival in arrivals], strict=True)
+    scope.used = [grown(scope, lane, used) if met.count(met[0]) < len(met) else met[0] for lane, (used, *met) in enumerate(lanes)]
 
 
 def _met(scope: Scope, old: Typed, arrivals: list[Arrival], name: str) -> Typed:
