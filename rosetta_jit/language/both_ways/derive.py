@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
+from rosetta_jit.language.both_ways.bit_sums import with_sums
 from rosetta_jit.language.both_ways.bits import Bits
 from rosetta_jit.language.both_ways.checks import checks_of
 from rosetta_jit.language.both_ways.inverse import condition_in
@@ -43,7 +44,7 @@ def derive(mapping: model.Mapping, type_of: TypeOf, constant_of: ConstantOf, pro
         return mapping
     found: list[Diagnostic] = []
     packing, bits = Packing.of(mapping.pack_rules or (), type_of, found), Bits(type_of, constant_of, {})
-    rules = bits.rules(mapping.rules)
+    rules = bits.rules(with_sums(mapping.rules, packing.is_completed, constant_of))
     pack_rules = packing.block(with_flags(rules, packing.is_completed), ())
     conditional = _conditional(rules, packing)
     if conditional and depth < MAX_CONDITIONS:
