@@ -172,7 +172,7 @@ def counts(value: Expr) -> bool:
             return 0 <= mask < LARGEST_COUNT
         case Call("modulo", (_, Const(int(divisor)))):
             return 0 < divisor <= LARGEST_COUNT
-        case Binary(">>", Convert(part), Const()):
+        case Binary(">>", Convert(part), Const()) | Call("floor_divide", (Convert(part), Const())):
             return isinstance(part.type, Int) and part.type.bits <= 32
         case Binary("*", Convert(part), Const(int(factor))):
             return isinstance(part.type, Int) and abs(factor) << part.type.bits <= LARGEST_COUNT

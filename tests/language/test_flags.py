@@ -170,3 +170,13 @@ def test_bits_need_no_conversion_to_what_holds_them():
     for value in (".n & 0xffffffff", "modulo(.k, 3000000000)", ".k >> 40"):
         with pytest.raises(rj.MappingError, match="lossy-conversion"):
             programs("required int32 low = 1;", f"  .low <-> {value}", "uint32 n\nint64 k\n")
+
+
+def test_all_bits_above_meet_floats():
+    decode, encode, read, write = programs("required double volts = 1;", "  .volts <-> (.n >> 8) * 0.0625", "uint32 n\n")
+    for n in (0, 0x100, 0xFFFFFF00):
+        holder = decode(write(write.holder_type.from_dict({"n": n})))
+        assert (holder.volts, read(encode(holder)).n) == ((n >> 8) * 0.0625, n)
+    with pytest.raises(rj.EncodeError) as error:
+        encode(encode.holder_type.from_dict({"volts": (1 << 24) * 0.0625}))
+    assert error.value.kind == "range"

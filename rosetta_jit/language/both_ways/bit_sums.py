@@ -67,10 +67,13 @@ def _sum(expr: Expr, constant_of: ConstantOf) -> Expr:
     if not isinstance(expr, Binary) or expr.operator not in ("|", "<<"):
         return rebuilt(expr, lambda part: _sum(part, constant_of))
     pieces = sorted(_pieces(expr, 0, constant_of), key=lambda each: -each[1])
+    if len(pieces) == 1:
+        return expr
     total, at = pieces[0]
-    for piece, shift in pieces[1:]:
+    for piece, shift in pieces[1:-1]:
         total, at = Binary("+", _times(total, at - shift, expr.span), piece, expr.span), shift
-    return _times(total, at, expr.span)
+    last, shift = pieces[-1]
+    return Binary("+", _times(total, at, expr.span), _times(last, shift, expr.span), expr.span)
 
 
 def _pieces(expr: Expr, shift: int, constant_of: ConstantOf) -> list[tuple[Expr, int]]:
