@@ -15,7 +15,7 @@ COUNT = 10_000
 WHAT = f"mapping, flags and numbers in the bits of {COUNT:,} words"
 FILES = {
     "lab/msg/Drives.msg": "uint32[] status\n",
-    "lab/msg/Flags.msg": "bool[] ready\nbool[] braked\nuint8[] mode\nfloat64[] volts\n",
+    "lab/msg/Flags.msg": "bool[] ready\nbool[] braked\nuint16[] mode\nfloat64[] volts\n",
     "flags.mapping": """import "lab/msg/Drives.msg"
 import "lab/msg/Flags.msg"
 data-holder: lab/msg/Flags
@@ -61,7 +61,7 @@ def test_flags(effort, compare, record):
     decode, encode = (made("flags.mapping", schema=FILES, encoding="cdr") for made in (rj.Decoder, rj.Encoder))
     holder = decode(message)
     assert encode(holder) == message
-    found = np.empty(COUNT, bool), np.empty(COUNT, bool), np.empty(COUNT, np.uint8), np.empty(COUNT)
+    found = np.empty(COUNT, bool), np.empty(COUNT, bool), np.empty(COUNT, np.uint16), np.empty(COUNT)
     data = np.frombuffer(message, np.uint8)
     for way in (by_loop, by_numpy):
         way(data, *found)

@@ -45,7 +45,11 @@ def test_what_the_block_to_pack_says_counts(backend):
 def test_what_says_no_single_value_is_refused(rules):
     holder = HOLDER + (" required int32 id = 2;" if "same" in rules else "")
     with pytest.raises(rj.MappingError) as error:
-        rj.Decoder("m.mapping", schema=files('("id" :int) ("x" :double) ("a" :double)', holder, f"rules:\n  .a <-> .a\n  {rules}\n"), encoding="yarp3")
+        rj.Decoder(
+            "m.mapping",
+            schema=files('("id" :int) ("x" :double) ("a" :double)', holder, f"rules:\n  .a <-> .a\n  {rules}\n"),
+            encoding="yarp3",
+        )
     assert "unknown-condition" in [problem.code for problem in error.value.diagnostics]
 
 

@@ -12,8 +12,8 @@ import rosetta_jit as rj
 from tests.language.test_random_laws import is_near
 from tests.random_mappings.blocks import Relations
 from tests.random_mappings.digits import digits, divided, moment, taken_apart
-from tests.random_mappings.flags import flags, joined
 from tests.random_mappings.fields import plain
+from tests.random_mappings.flags import flags, joined
 from tests.random_mappings.meaning import Refused
 from tests.random_mappings.message_types import Kind, Message
 from tests.random_mappings.nested import date, listed, parameter, unit, via, widened
