@@ -23,6 +23,7 @@ ORDER = (
     "wires",
     "filters",
     "lookup",
+    "flags",
     "mapped",
     "bridges",
     "peers",

@@ -136,7 +136,23 @@ def convert(value: Expr, target: Type) -> Expr | None:
         return value
     if isinstance(target, Float) and target.bits == 64 and counts(value):
         return Convert(value, target, "nearest", value.span)
+    if isinstance(target, Int) and (known := few_bits(value)) is not None and holds(target, known[0]) and holds(target, known[1]):
+        return Convert(value, target, "exact", value.span)
     return Convert(value, target, "widen", value.span) if widens(value.type, target) else None
+
+
+def few_bits(value: Expr) -> tuple[int, int] | None:
+    """The least and the greatest value that some bits of an integer have, or its remainder by a constant; None of all else."""
+    match value:
+        case Binary("&", _, Const(int(mask))) | Binary("&", Const(int(mask)), _) if mask >= 0:
+            return 0, mask
+        case Call("modulo", (_, Const(int(divisor)))) if divisor > 0:
+            return 0, divisor - 1
+        case Binary(">>", Convert(part, _, "widen"), Const(int(count))) if isinstance(part.type, Int) and 0 <= count < INT64.bits:
+            low, high = bounds(part.type)
+            return low >> count, high >> count
+        case _:
+            return None
 
 
 def counts(value: Expr) -> bool:
@@ -150,11 +166,13 @@ def counts(value: Expr) -> bool:
             return value.counts
         case Reduce(function="count"):
             return True
+        case Reduce(function="min" | "max", value=Convert(part)):
+            return isinstance(part.type, Int) and part.type.bits <= 32
         case Binary("&", _, Const(int(mask))) | Binary("&", Const(int(mask)), _):
             return 0 <= mask < LARGEST_COUNT
         case Call("modulo", (_, Const(int(divisor)))):
             return 0 < divisor <= LARGEST_COUNT
-        case Binary(">>", Convert(part), Const()):
+        case Binary(">>", Convert(part), Const()) | Call("floor_divide", (Convert(part), Const())):
             return isinstance(part.type, Int) and part.type.bits <= 32
         case Binary("*", Convert(part), Const(int(factor))):
             return isinstance(part.type, Int) and abs(factor) << part.type.bits <= LARGEST_COUNT

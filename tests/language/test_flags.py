@@ -117,3 +117,67 @@ def test_a_relation_to_all_of_it_counts():
     decode, encode, read, _ = programs("required uint32 all = 1; required bool fast = 2;", rules)
     assert str(decode.mapping.laws) == "messages: exact inverse\nholders: exact inverse"
     assert read(encode(encode.holder_type.from_dict({"all": 0x91, "fast": True}))).status == 0x91
+
+
+JOINED = "bool ready\nuint8 mode\nuint16 turns\n"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(
+    "joined",
+    [
+        "uint32(int32(.ready) | .mode << 1 | .turns << 4)",
+        "uint32(.turns << 4 | (.mode << 1 | int32(.ready)))",
+        "uint32((.turns << 3 | .mode) << 1 | int32(.ready))",
+    ],
+)
+def test_an_integer_of_several_fields(joined, backend):
+    decode, encode, read, write = programs("required uint32 status = 1;", f"  .status <-> {joined}", JOINED, backend)
+    assert str(decode.mapping.laws.messages) == "exact inverse"
+    for ready, mode, turns in ((False, 0, 0), (True, 7, 65535), (True, 2, 4096)):
+        message = write(write.holder_type.from_dict({"ready": ready, "mode": mode, "turns": turns}))
+        assert decode(message).status == ready | mode << 1 | turns << 4
+        assert encode(decode(message)) == message
+    with pytest.raises(rj.DecodeError) as error:  # its bits would be those of `.turns`
+        decode(write(write.holder_type.from_dict({"ready": True, "mode": 8, "turns": 0})))
+    assert error.value.kind == "rejected"
+    assert "`.mode` is not from 0 to 7" in str(error.value)
+    with pytest.raises(rj.EncodeError) as refused:
+        encode(encode.holder_type.from_dict({"status": 1 << 20}))
+    assert refused.value.kind == "range"
+    assert read(encode(encode.holder_type.from_dict({"status": 0x1234F}))).turns == 0x1234
+
+
+def test_bits_of_fields_that_other_rules_know_may_overlap():
+    rules = "  .low <-> .mode\n  .high <-> .turns\n  .status <-> uint32(.mode | .turns << 1)"
+    fields = "required uint32 status = 1; required uint32 low = 2; required uint32 high = 3;"
+    decode, encode, _, write = programs(fields, rules, JOINED.replace("bool ready\n", ""))
+    message = write(write.holder_type.from_dict({"mode": 2, "turns": 1}))
+    assert decode(message).status == 2
+    assert encode(decode(message)) == message
+    rules = "  .status <-> uint32(.mode | .turns << 1)\npack-rules:\n  .mode = uint8(.status)\n  .turns = 0"
+    decode, _, _, write = programs("required uint32 status = 1;", rules, JOINED.replace("bool ready\n", ""))
+    assert decode(write(write.holder_type.from_dict({"mode": 2, "turns": 1}))).status == 2
+
+
+def test_bits_need_no_conversion_to_what_holds_them():
+    fields = "required int32 low = 1; required int32 high = 2; required int32 rest = 3; required double most = 4;"
+    rules = "  .low <-> .n & 0x7fff\n  .high <-> .n >> 16\n  .rest <-> modulo(.k, 100)\nunpack-rules:\n  .most = max(.a[]) * 0.5\n"
+    rules += "pack-rules:\n  ignore .most\n  default .a"
+    decode, encode, read, write = programs(fields, rules, "uint32 n\nint64 k\nuint16[] a\n")
+    holder = decode(write(write.holder_type.from_dict({"n": 0x12345678, "k": -1, "a": [3, 65535]})))
+    assert holder.to_dict() == {"low": 0x5678, "high": 0x1234, "rest": 99, "most": 32767.5}
+    assert read(encode(holder)).n == 0x12345678
+    for value in (".n & 0xffffffff", "modulo(.k, 3000000000)", ".k >> 40"):
+        with pytest.raises(rj.MappingError, match="lossy-conversion"):
+            programs("required int32 low = 1;", f"  .low <-> {value}", "uint32 n\nint64 k\n")
+
+
+def test_all_bits_above_meet_floats():
+    decode, encode, read, write = programs("required double volts = 1;", "  .volts <-> (.n >> 8) * 0.0625", "uint32 n\n")
+    for n in (0, 0x100, 0xFFFFFF00):
+        holder = decode(write(write.holder_type.from_dict({"n": n})))
+        assert (holder.volts, read(encode(holder)).n) == ((n >> 8) * 0.0625, n)
+    with pytest.raises(rj.EncodeError) as error:
+        encode(encode.holder_type.from_dict({"volts": (1 << 24) * 0.0625}))
+    assert error.value.kind == "range"

@@ -13,6 +13,7 @@ from tests.language.test_random_laws import is_near
 from tests.random_mappings.blocks import Relations
 from tests.random_mappings.digits import digits, divided, moment, taken_apart
 from tests.random_mappings.fields import plain
+from tests.random_mappings.flags import flags, joined
 from tests.random_mappings.meaning import Refused
 from tests.random_mappings.message_types import Kind, Message
 from tests.random_mappings.nested import date, listed, parameter, unit, via, widened
@@ -26,7 +27,7 @@ from tests.random_mappings.wires import WIRES, package
 from tests.random_mappings.wrapped import held, repeated, united
 
 MESSAGES = 15
-FORMS = (parameter, date, unit, digits, taken_apart, divided, moment, rejected, within_blocks, same)
+FORMS = (parameter, date, unit, digits, taken_apart, flags, joined, divided, moment, rejected, within_blocks, same)
 ARRAY_FORMS = (listed, widened, octets, searched, maps, separated, of_elements, same_arrays)
 WRAPPED = (held, repeated, united)
 ORDERS = (ordered, padded, flagged, sliced, members, chosen_element, elementwise_digits)

@@ -10,8 +10,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
+from rosetta_jit.language.both_ways.bit_sums import with_sums
 from rosetta_jit.language.both_ways.bits import Bits
 from rosetta_jit.language.both_ways.checks import checks_of
+from rosetta_jit.language.both_ways.demanded import demanded
 from rosetta_jit.language.both_ways.inverse import condition_in
 from rosetta_jit.language.both_ways.packing import Packing
 from rosetta_jit.language.both_ways.presence import with_flags
@@ -42,8 +44,9 @@ def derive(mapping: model.Mapping, type_of: TypeOf, constant_of: ConstantOf, pro
     if mapping.rules is None:
         return mapping
     found: list[Diagnostic] = []
-    packing, bits = Packing.of(mapping.pack_rules or (), type_of, found), Bits(type_of, constant_of, {})
-    rules = bits.rules(mapping.rules)
+    own = (*(mapping.pack_rules or ()), *demanded(mapping.rules, mapping.pack_rules or (), type_of))
+    packing, bits = Packing.of(own, type_of, found), Bits(type_of, constant_of, {})
+    rules = bits.rules(with_sums(mapping.rules, packing.is_completed, constant_of))
     pack_rules = packing.block(with_flags(rules, packing.is_completed), ())
     conditional = _conditional(rules, packing)
     if conditional and depth < MAX_CONDITIONS:
@@ -53,7 +56,7 @@ def derive(mapping: model.Mapping, type_of: TypeOf, constant_of: ConstantOf, pro
     return replace(
         mapping,
         unpack_rules=(*_unpacking(rules, packing.known.beside, bits.written), *(mapping.unpack_rules or ())),
-        pack_rules=(*pack_rules, *(mapping.pack_rules or ())),
+        pack_rules=(*pack_rules, *own),
     )
 
 

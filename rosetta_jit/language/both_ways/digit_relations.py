@@ -146,11 +146,14 @@ def _number(rule: Relation, type_of: TypeOf) -> tuple[_Taken, Expr]:
     number = until(rule.value, rule.place, taken.call, type_of)
     type_ = type_of(number)
     if isinstance(type_, Float) and may_round(rule.value):
-        return taken, Nearest(number, named(rule.value, taken.call), rule.place, _type_below(taken.below), rule.span)
+        return taken, Nearest(number, named(rule.value, taken.call), rule.place, _type_of_digit(taken, type_of), rule.span)
     return taken, Call("int64", (number,), rule.span) if isinstance(type_, Bool | Enum) else number
 
 
-def _type_below(below: int | None) -> Int:
-    """The narrowest type of a digit, so that it meets floats as the digit does."""
+def _type_of_digit(taken: _Taken, type_of: TypeOf) -> Int:
+    """The narrowest type of a digit, so that it meets floats as the digit does; all that is above has at most the type of the whole."""
+    whole = type_of(taken.whole)
+    if taken.below is None and isinstance(whole, Int) and whole.bits <= 32:
+        return whole
     narrow = (Int(8, signed=False), Int(16, signed=False), Int(32, signed=False))
-    return next((each for each in narrow if below is not None and below <= 1 << each.bits), Int(64))
+    return next((each for each in narrow if taken.below is not None and taken.below <= 1 << each.bits), Int(64))

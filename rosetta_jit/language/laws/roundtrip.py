@@ -108,7 +108,7 @@ class Trip:
                 self.know(left, ranges, holds=holds)
                 self.know(right, ranges, holds=holds)
             case Binary("==" | "!=" as operator, left, right):
-                if (operator == "==") == holds:
+                if (operator == "==") == holds and _equal_to_the_bit(left, right):
                     self.same(left, right, ranges)
                 self.true(replace(condition, operator="=="), ranges, holds=(operator == "==") == holds)
                 self.true(replace(condition, operator="!="), ranges, holds=(operator == "!=") == holds)
@@ -382,3 +382,10 @@ def _undoing(expr: Expr) -> Expr | None:
 def _without_span(expr: Expr) -> Expr:
     """An expression that is the same wherever it is written."""
     return replace(expr, span=None) if isinstance(expr, Binary) else expr
+
+
+def _equal_to_the_bit(left: Expr, right: Expr) -> bool:
+    """Whether two values of which a condition says that they are equal are the same: -0 equals 0."""
+    if not isinstance(left.type, Float) and not isinstance(right.type, Float):
+        return True
+    return any(isinstance(each, Const) and each.value != 0 for each in (left, right))
