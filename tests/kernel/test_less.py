@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from rosetta_jit.kernel.ir import Expect, For, If, Let, Load, Place, Require, Return, SetField
+from rosetta_jit.kernel.ir import Expect, For, If, Let, Load, Place, Require, Return, Routine, SetField
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.passes.drop import drop, without
 from rosetta_jit.kernel.passes.simplify import simplify
@@ -142,3 +142,14 @@ def test_expects_go_as_requires_do():
     known = settled(proven)
     assert is_less(without(proven, known), proven, known)
     assert Expect not in body(without(proven, known))
+
+
+def test_a_routine_that_changes_behind_the_proof_is_proven_again():
+    """Its new text reads what nothing has checked, so the pass is refused."""
+    routine = Routine("r", (), (), (Let("x", index(0)),), (), (), TWICE.sites[:1])
+    calling = replace(TWICE, routines=(routine,))
+
+    def spoil(made):
+        return replace(made, routines=(replace(routine, body=(Let("x", Load("i64", add(BEGIN, 1 << 20))),)),))
+
+    assert passes.run(calling, (drop, spoil)).routines == (routine,)

@@ -21,7 +21,7 @@ from rosetta_jit.kernel.proof.verify import VerificationError, check_shape, sett
 from rosetta_jit.kernel.shape import is_large
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Kernel
+    from rosetta_jit.kernel.ir import Block, Kernel
 
 Pass = Callable[["Kernel"], "Kernel"]
 
@@ -98,8 +98,13 @@ def _once(passes: tuple[Pass, ...]) -> tuple[Pass, ...]:
 
 
 def _is_same(kernel: Kernel, other: Kernel) -> bool:
-    """Whether two kernels, one made from the other by passes, have the same bodies."""
-    return all(map(is_, kernel.bodies, other.bodies))
+    """Whether two kernels, one made from the other by passes, have the same statements."""
+    blocks, others = _blocks(kernel), _blocks(other)
+    return len(blocks) == len(others) and all(map(is_, blocks, others))
+
+
+def _blocks(kernel: Kernel) -> list[Block]:
+    return [*kernel.bodies, *(each.body for each in kernel.routines)]
 
 
 def _dropped(kernel: Kernel) -> tuple[Kernel, Kernel | None]:
