@@ -44,7 +44,7 @@ def _summed(rules: tuple[Rule, ...], own: Set[Field], constant_of: ConstantOf) -
 
 def _rule(rule: Rule, own: Set[Field], constant_of: ConstantOf) -> Rule:
     match rule:
-        case Relation(Path(), value) if _joins(value) and own.issuperset(fields_in(value)):
+        case Relation(Path(), value) if _joins(value) and own >= set(fields_in(value)):
             return replace(rule, value=_sum(value, constant_of))
         case For(body=body):
             return replace(rule, body=_summed(body, own, constant_of))
