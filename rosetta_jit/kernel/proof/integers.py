@@ -8,16 +8,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.proof.formula import equal
-from rosetta_jit.kernel.proof.linear import Linear, coefficient_of, minus, plus, shifted, times
+from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.proof.prove import Facts
 
 FACTS_TO_MULTIPLY = 8
-
-LARGE = (1 << 63) - 1
-"""Sums above it do not fit the widest integer."""
 
 WORD = 64
 """Bits of the widest integer: by more nothing is shifted where a kernel runs, but a mapping may say so."""
@@ -36,25 +32,7 @@ def product(facts: Facts, left: Linear, right: Linear) -> Linear:
     for a, c in left.terms:
         for b, d in right.terms:
             total = plus(total, times(_monomial(facts, a, b), c * d))
-    if max(len(left.terms), len(right.terms)) > 1 and not -LARGE <= facts.lower(total) <= facts.upper(total) <= LARGE:
-        facts.derive(equal(total, product(facts, _as_atom(facts, left), _as_atom(facts, right))))
     return total
-
-
-def _as_atom(facts: Facts, total: Linear) -> Linear:
-    """An atom that stands for a sum, with what is known of that as a whole: of ``a - b`` it may be little, while each may be anything."""
-    if len(total.terms) < 2:
-        return total
-    atom = facts.named(("sum", total), *facts.widest(total))
-    facts.derive(equal(atom, total))
-    facts.derive(shifted(atom, -facts.lower(total)))
-    facts.derive(shifted(times(atom, -1), facts.upper(total)))
-    one, coefficient = total.terms[0]
-    for fact in facts.sums_about(one, FACTS_TO_MULTIPLY):
-        factor, left = divmod(coefficient_of(fact, one), coefficient)
-        if not left:
-            facts.derive(plus(minus(fact, times(total, factor)), times(atom, factor)))
-    return atom
 
 
 def _monomial(facts: Facts, a: int, b: int) -> Linear:
