@@ -39,3 +39,71 @@ def test_pairs_of_a_map_that_are_gone_are_not_put_back(view):
     with pytest.raises(KeyError):
         next(pairs)
     assert holder.to_dict()["k"] == {}
+
+
+TEXTS = {"texts.proto": 'syntax = "proto3"; package p; message T { repeated string s = 1; repeated T m = 2; map<int32, T> k = 3; }'}
+
+
+def _texts(*texts):
+    options = {"schema": TEXTS, "imports": ["texts.proto"], "encoding": "protobuf"}
+    return rj.Encoder.of("p.T", **options).holder_type.from_dict({"s": list(texts), "m": [{"s": [each]} for each in texts]})
+
+
+def test_a_list_read_backwards_ends_where_another_thread_has_cut_it():
+    holder = _texts("a", "b", "c", "d")
+    backwards = reversed(holder.s)
+    assert next(backwards) == "d"
+    del holder.s[1:]
+    assert list(backwards) == []
+    assert list(reversed(holder.s)) == ["a"]
+    assert [each.s[0] for each in reversed(holder.m)] == ["d", "c", "b", "a"]
+
+
+def test_a_list_that_changes_while_it_is_sorted_loses_nothing():
+    holder = _texts("b", "a")
+
+    def key(text):
+        if "late" not in holder.s:
+            holder.s.append("late")
+        return text
+
+    with pytest.raises(rj.InUse):
+        holder.s.sort(key=key)
+    assert list(holder.s) == ["b", "a", "late"]
+
+
+class Interrupting:
+    """A value that equals "b" and changes the list when it is first compared."""
+
+    def __init__(self, change):
+        self.changes = [change]
+
+    def __eq__(self, other):
+        while self.changes:
+            self.changes.pop()()
+        return other == "b"
+
+    __hash__ = None
+
+
+def test_an_element_is_removed_only_where_it_still_stands():
+    holder = _texts("a", "b", "c")
+    with pytest.raises(rj.InUse):
+        holder.s.remove(Interrupting(lambda: holder.s.insert(0, "new")))
+    assert sorted(set(holder.s)) == ["a", "b", "c", "new"]
+    holder.s.remove("b")
+    assert "b" not in holder.s
+    with pytest.raises(ValueError):  # noqa: PT011 - Python's own, which has no words
+        holder.s.remove("b")
+
+
+def test_a_slice_is_put_only_where_its_list_is_as_it_was():
+    holder = _texts("a", "b", "c")
+
+    def elements():
+        holder.s.append("late")
+        yield "x"
+
+    with pytest.raises(rj.InUse):
+        holder.s[0:1] = elements()
+    assert list(holder.s) == ["a", "b", "c", "late"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, ItemsView, Iterable, Iterator, Mapping, MutableMapping, MutableSequence, ValuesView
+from contextlib import suppress
 from copy import copy
 from typing import TYPE_CHECKING, Any, Self, cast
 
@@ -13,6 +14,7 @@ from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import Message, View, element, place, writable
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.lanes import in_use
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Entry, Node
@@ -82,6 +84,12 @@ class Sequence(MutableSequence[Any], Base):
                 return
             yield element
 
+    def __reversed__(self) -> Iterator[Any]:
+        """From the last element that there is now; like a list's, it ends where elements that it has not reached are gone."""
+        with suppress(IndexError):
+            for index in range(len(self))[::-1]:
+                yield self[index]
+
     def _element(self, lanes: Lanes, start: int, index: int) -> Any:
         match self.node.element:
             case Record():
@@ -91,7 +99,10 @@ class Sequence(MutableSequence[Any], Base):
 
     def __setitem__(self, index: Any, value: Any) -> None:
         if isinstance(index, slice):
-            self._replace(_listed(self, cast("slice", index), value))
+            epoch = self._epoch()
+            elements = list(self)
+            elements[index] = value
+            self._replace(elements, epoch)
             return
         plain = raw(value)
         with self.message.lanes_:
@@ -102,10 +113,7 @@ class Sequence(MutableSequence[Any], Base):
 
     def __delitem__(self, index: Any) -> None:
         with self.message.lanes_:
-            count = len(self)
-            gone = set(range(count)[index]) if isinstance(index, slice) else {_checked(index, count)}
-            self._allow(count - len(gone))
-            self._order([each for each in range(count) if each not in gone])
+            self._remove(index)
 
     def insert(self, index: int, value: Any) -> None:
         plain = raw(value)
@@ -129,10 +137,21 @@ class Sequence(MutableSequence[Any], Base):
 
     def pop(self, index: int = -1) -> Any:
         """Remove an element and return it; a message as one of its own."""
+        epoch = self._epoch()
         value = self[index]
         popped = copy(value) if isinstance(value, Message) else value
-        del self[index]
+        with self.message.lanes_:
+            self._check_unchanged(epoch)
+            self._remove(index)
         return popped
+
+    def remove(self, value: Any) -> None:
+        """Remove the first element that equals a value; ValueError if there is none."""
+        epoch = self._epoch()
+        index = self.index(value)
+        with self.message.lanes_:
+            self._check_unchanged(epoch)
+            self._remove(index)
 
     def clear(self) -> None:
         self._allow(0)
@@ -141,14 +160,24 @@ class Sequence(MutableSequence[Any], Base):
 
     def sort(self, *, key: Callable[[Any], Any] | None = None, reverse: bool = False) -> None:
         """Sort the elements in place."""
+        epoch = self._epoch()
         elements = list(self)
         order = sorted(range(len(elements)), key=lambda each: key(elements[each]) if key else elements[each], reverse=reverse)
         with self.message.lanes_:
+            self._check_unchanged(epoch)
             self._order(order)
 
     def reverse(self) -> None:
         with self.message.lanes_:
             self._order(list(range(len(self)))[::-1])
+
+    def _epoch(self) -> int:
+        return self.message.lanes_.words[EPOCH]
+
+    def _check_unchanged(self, epoch: int) -> None:
+        """Inside ``with home_:``, refuse to go on from what was read at an epoch if the message has changed since then: InUse."""
+        if self._epoch() != ~epoch:
+            raise in_use()
 
     def _allow(self, count: int) -> None:
         """Refuse a number of elements that the type does not have: ValueError."""
@@ -167,10 +196,19 @@ class Sequence(MutableSequence[Any], Base):
             arena.resize(lanes, node, row, count)
             raise
 
-    def _replace(self, elements: list[Any]) -> None:
+    def _remove(self, index: Any) -> None:
+        """Inside ``with home_:``, remove an element, or those of a slice."""
+        count = len(self)
+        gone = set(range(count)[index]) if isinstance(index, slice) else {_checked(index, count)}
+        self._allow(count - len(gone))
+        self._order([each for each in range(count) if each not in gone])
+
+    def _replace(self, elements: list[Any], epoch: int) -> None:
+        """Make these the elements, unless the message has changed since an epoch."""
         self._allow(len(elements))
         plain = [raw(each) for each in elements]
         with self.message.lanes_:
+            self._check_unchanged(epoch)
             count = len(self)
             self._append(plain)
             self._order(list(range(count, count + len(plain))))
@@ -195,12 +233,6 @@ def _checked(index: int, count: int) -> int:
         return range(count)[index]
     except IndexError:
         raise IndexError("list index out of range") from None
-
-
-def _listed(sequence: Sequence, index: slice, value: Iterable[Any]) -> list[Any]:
-    elements = list(sequence)
-    elements[index] = value
-    return elements
 
 
 class _OfSequences:
