@@ -107,3 +107,36 @@ def test_a_slice_is_put_only_where_its_list_is_as_it_was():
     with pytest.raises(rj.InUse):
         holder.s[0:1] = elements()
     assert list(holder.s) == ["a", "b", "c", "late"]
+
+
+def test_a_message_taken_out_of_a_map_stays_what_it_was():
+    maps = _texts()
+    maps.CopyFrom(type(maps).from_dict({"k": {each: {"s": [str(each)]} for each in (1, 2, 3)}}))
+    popped = maps.k.pop(1)
+    key, other = maps.k.popitem()
+    assert (list(popped.s), other.s, maps.to_dict()["k"].keys()) == (["1"], [str(key)], {2, 3} - {key})
+    maps.k.clear()
+    assert list(popped.s) == ["1"]
+    assert maps.k.pop(1, None) is None
+    for missing in (lambda: maps.k.pop(1), maps.k.popitem):
+        with pytest.raises(KeyError):
+            missing()
+
+
+class LateKey:
+    """The key 1, which changes the map when the map asks what key it is."""
+
+    def __init__(self, change):
+        self.change = change
+
+    def __index__(self):
+        self.change()
+        return 1
+
+
+def test_a_key_is_taken_out_only_of_the_map_that_was_read():
+    holder = _texts()
+    holder.k[1].s.append("one")
+    with pytest.raises(rj.InUse):
+        holder.k.pop(LateKey(lambda: holder.k[1].s.append("late")))
+    assert list(holder.k[1].s) == ["one", "late"]

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from rosetta_jit.runtime.holder import coerce, holder_class, values
+from rosetta_jit.runtime.holder.dictionary import Dictionary
 from rosetta_jit.runtime.holder.merge import append_numbers
 from rosetta_jit.runtime.holder.message import Message, View, place, writable
 from rosetta_jit.runtime.holder.record import Items, Numbers, Record
-from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence
+from rosetta_jit.runtime.holder.sequence import Sequence
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import Holder
@@ -205,15 +206,6 @@ class MapField(Dictionary):
 
     def get(self, key: Any, default: Any = None) -> Any:
         return self.found(key) if key in self else default
-
-    def pop(self, key: Any, *default: Any) -> Any:
-        if key not in self:
-            if default:
-                return default[0]
-            raise KeyError(key)
-        value = self.found(key)
-        del self[key]
-        return value
 
     def GetEntryClass(self) -> type[Holder]:  # noqa: N802  as protobuf names it
         """The class of messages with a ``key`` and a ``value``, as the pairs are in bytes and in protobuf's text format."""

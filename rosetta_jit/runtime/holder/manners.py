@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rosetta_jit.runtime.holder.classes import Holder
+from rosetta_jit.runtime.holder.dictionary import Dictionary
 from rosetta_jit.runtime.holder.objects.foreign import ORDINARY, Foreign
-from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence
+from rosetta_jit.runtime.holder.sequence import Sequence
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -10,9 +10,10 @@ from rosetta_jit.errors import EncodeError
 from rosetta_jit.model.layout import UNKNOWN
 from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import raw, view_of
+from rosetta_jit.runtime.holder.dictionary import Dictionary
 from rosetta_jit.runtime.holder.message import Message, make_present, writable
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
-from rosetta_jit.runtime.holder.sequence import Dictionary, store_row
+from rosetta_jit.runtime.holder.sequence import store_row
 from rosetta_jit.runtime.limits import MAX_DEPTH
 
 if TYPE_CHECKING:
