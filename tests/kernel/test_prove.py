@@ -297,3 +297,16 @@ def test_what_is_unknown_is_not_known_again():
     facts.assume(half)
     assert facts.proves(Any((shifted(n, -9), shifted(times(n, -1), 1))))
     assert not facts.proves(half)
+
+
+def test_a_product_of_a_sum_of_which_more_is_known_than_of_its_parts():
+    """``(a - b) * s``, where both may be anything and their difference is the number of an element."""
+    facts = Facts()
+    a, b = facts.fresh(*I64), facts.fresh(*I64)
+    count, size = facts.fresh(0, 1 << 57), facts.fresh(0, 12)
+    number = minus(a, b)
+    facts.assume(All((number, shifted(minus(count, number), -1))))
+    found = integers.product(facts, number, size)
+    integers.look_at_whole_sums(facts, number, size)
+    assert facts.proves_thoroughly(All((found, shifted(times(found, -1), 12 << 57))))
+    assert not facts.proves_thoroughly(shifted(times(found, -1), 1 << 57))

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
+from rosetta_jit.kernel.proof.formula import equal
+from rosetta_jit.kernel.proof.linear import Linear, coefficient_of, minus, plus, shifted, times
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.proof.prove import Facts
@@ -33,6 +34,30 @@ def product(facts: Facts, left: Linear, right: Linear) -> Linear:
         for b, d in right.terms:
             total = plus(total, times(_monomial(facts, a, b), c * d))
     return total
+
+
+def look_at_whole_sums(facts: Facts, left: Linear, right: Linear) -> None:
+    """Learn of ``left * right`` what follows from their bounds as wholes: of ``a - b`` these may be narrow where each may be anything.
+
+    The facts are many, and each is one more among which a later proof has to look: they are for a product that is not proven without.
+    """
+    facts.derive(equal(product(facts, left, right), product(facts, _as_atom(facts, left), _as_atom(facts, right))))
+
+
+def _as_atom(facts: Facts, total: Linear) -> Linear:
+    """An atom that stands for a sum, with what is known of the sum as a whole."""
+    if len(total.terms) < 2:
+        return total
+    atom = facts.named(("sum", total), *facts.widest(total))
+    facts.derive(equal(atom, total))
+    facts.derive(shifted(atom, -facts.lower(total)))
+    facts.derive(shifted(times(atom, -1), facts.upper(total)))
+    one, coefficient = total.terms[0]
+    for fact in facts.sums_about(one, FACTS_TO_MULTIPLY):
+        factor, left = divmod(coefficient_of(fact, one), coefficient)
+        if not left:
+            facts.derive(plus(minus(fact, times(total, factor)), times(atom, factor)))
+    return atom
 
 
 def _monomial(facts: Facts, a: int, b: int) -> Linear:

@@ -120,6 +120,8 @@ class Terms:
         match self._facts.meanings.get(number):
             case ("mul", int(a), int(b)):
                 return it == self.atom(a) * self.atom(b)
+            case ("sum", Linear() as total):
+                return it == self.sum(total)
             case ("and" | "or" | "xor" as op, Linear() as left, Linear() as right, _) if self._as_bits:
                 a, b = self.sum(left), self.sum(right)
                 return it == (a & b if op == "and" else a | b if op == "or" else a ^ b)

@@ -227,8 +227,10 @@ def _logical(op: ir.Arithmetic, left: Formula, right: Formula) -> Formula:
 def _checked_binary(scope: Scope, op: ir.Arithmetic, type_: ir.Scalar, left: Linear, right: Linear) -> Linear:
     """``left op right``, with its obligations."""
     match op:
-        case "add" | "sub" | "mul":
+        case "add" | "sub":
             return in_range(scope, _integer_binary(scope, op, type_, left, right), type_)
+        case "mul":
+            return in_range(scope, _product(scope.facts, type_, left, right), type_)
         case "div" | "rem":
             oblige(scope, negated(equal(right, Linear(0))), claims.DIVISOR)
             low = limits(type_)[0]
@@ -239,6 +241,17 @@ def _checked_binary(scope: Scope, op: ir.Arithmetic, type_: ir.Scalar, left: Lin
         case _:
             pass
     return _integer_binary(scope, op, type_, left, right)
+
+
+def _product(facts: Facts, type_: ir.Scalar, left: Linear, right: Linear) -> Linear:
+    """``left * right``, of which more is learnt where it might not fit its type for all that is known."""
+    found = integers.product(facts, left, right)
+    low, high = limits(type_)
+    if max(len(left.terms), len(right.terms)) > 1 and not facts.proves_thoroughly(
+        All((shifted(found, -low), shifted(times(found, -1), high)))
+    ):
+        integers.look_at_whole_sums(facts, left, right)
+    return found
 
 
 def _integer_binary(scope: Scope, op: ir.Arithmetic, type_: ir.Scalar, left: Linear, right: Linear) -> Linear:

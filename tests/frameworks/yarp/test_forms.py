@@ -129,3 +129,22 @@ def test_a_dict_of_anything():
 def test_what_has_no_bytes(body, words):
     with pytest.raises(SchemaError, match=rf"\[{words}\]"):
         programs(body)
+
+
+def test_an_element_by_a_difference_that_may_be_anything():
+    """An element lies at its number times a step, which the message tells: codes stand before each of them, or once."""
+    schema = {
+        "s.bottle-schema": '"s.S" (("xs" (:list :double)) ("t" :string) ("i" :int64) ("j" :int16) ("b" :bool))',
+        "d.idl": "struct Dst { double v; };",
+        "m.mapping": 'import "s.bottle-schema"\nimport "d.idl"\ndata-holder: Dst\nwire-schema: s.S\n'
+        "unpack-rules:\n.v = .xs[integer(.t) - (.i if .b else .j)]\n",
+    }
+    decode = rj.Decoder("m.mapping", encoding="yarp4", schema=schema)
+    encode = rj.Encoder.of("s.S", encoding="yarp4", schema=schema, imports=["s.bottle-schema"])
+    values = {"xs": [0.5, 1.5, 2.5], "t": "9", "i": 7, "j": 9, "b": True}
+    assert decode(encode(values)).v == 2.5
+    assert decode(encode({**values, "b": False})).v == 0.5
+    for wrong in ({"xs": []}, {"i": -(1 << 62)}, {"i": 10}):
+        with pytest.raises(rj.DecodeError) as found:
+            decode(encode({**values, **wrong}))
+        assert found.value.path.startswith(".xs[")
