@@ -128,7 +128,7 @@ class _Session:
 
         self._configuration, self._arguments = configuration, arguments
         self._over = self._changed = False
-        self._told = threading.Event()
+        self._signalled = threading.Event()
         self._bridge = Running(configuration, self._say)
         self._out, self._errors = _Output(_printed_to(configuration)), _Output(sys.stderr)
         self._terminal = _Terminal()
@@ -184,13 +184,13 @@ class _Session:
 
     def _stop(self, *_: object) -> None:
         self._over = True
-        self._told.set()
+        self._signalled.set()
 
     def _read_again(self, *_: object) -> None:
         if self._terminal.is_gone:  # its end is told by the same signal
             self._over = True
         self._changed = True
-        self._told.set()
+        self._signalled.set()
 
     def _watch(self) -> None:
         from time import monotonic
@@ -198,8 +198,8 @@ class _Session:
         end = float("inf") if self._arguments.seconds is None else monotonic() + self._arguments.seconds
         due = monotonic() + self._interval_s
         while not self._over and monotonic() < end:
-            self._told.wait(max(0.0, min(due, end) - monotonic()))  # seldom: this thread holds up those that carry messages
-            self._told.clear()
+            self._signalled.wait(max(0.0, min(due, end) - monotonic()))  # seldom: this thread holds up those that carry messages
+            self._signalled.clear()
             if self._changed and not self._over:
                 self._changed = False
                 self._reload()

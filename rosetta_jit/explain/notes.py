@@ -100,8 +100,8 @@ def _changes(change: Change) -> Iterator[Note]:
 
 def _units(rule: typed.Assignment) -> Iterator[Note]:
     """From which unit to which; one that only one side declares is said to be so."""
-    wanted = _told(unit_at(rule.place) or unit_of(rule.value))
-    read = dict.fromkeys(_told(unit_at(place)) for place in places(rule.value, "wire" if rule.place.side == "holder" else "holder"))
+    wanted = _unit_text(unit_at(rule.place) or unit_of(rule.value))
+    read = dict.fromkeys(_unit_text(unit_at(place)) for place in places(rule.value, "wire" if rule.place.side == "holder" else "holder"))
     known = [unit for unit in read if unit is not None] or _taken(rule.value)
     for unit in known:
         if wanted is None:
@@ -112,7 +112,7 @@ def _units(rule: typed.Assignment) -> Iterator[Note]:
         yield Note(f"in {wanted}, no unit declared for the value")
 
 
-def _told(unit: Unit) -> str | None:
+def _unit_text(unit: Unit) -> str | None:
     return None if unit is None else shown(unit)
 
 

@@ -89,7 +89,7 @@ def _fixed(field: types.Field) -> bool:
     return isinstance(field.length, Literal) or (isinstance(field.type, types.Array | types.Bytes) and isinstance(field.type.length, int))
 
 
-def _told(field: types.Field) -> bool:
+def _is_sized_by_field(field: types.Field) -> bool:
     """Whether other fields tell the length of a field."""
     length = field.length or (field.type.length if isinstance(field.type, types.Array | types.Bytes) else None)
     return length is not None and not isinstance(length, int | Literal)
@@ -146,11 +146,11 @@ FEATURES: Mapping[str, Arrived] = {
     "blob": _bytes(lambda each: each.length is None and each.maximum is None),
     "blob, fixed": _member(lambda each: isinstance(each.type, types.Bytes) and _fixed(each)),
     "blob, bounded": _bytes(lambda each: each.maximum is not None),
-    "blob, sized by a field": _member(lambda each: isinstance(each.type, types.Bytes) and _told(each)),
+    "blob, sized by a field": _member(lambda each: isinstance(each.type, types.Bytes) and _is_sized_by_field(each)),
     "array, fixed": _member(lambda each: isinstance(each.type, types.Array) and _fixed(each)),
     "array, variable": _array(lambda each: each.length is None and each.maximum is None),
     "array, bounded": _array(lambda each: each.maximum is not None),
-    "array, sized by a field": _member(lambda each: isinstance(each.type, types.Array) and _told(each)),
+    "array, sized by a field": _member(lambda each: isinstance(each.type, types.Array) and _is_sized_by_field(each)),
     "array, several fixed dimensions": _array(
         lambda each: each.fixed is not None and isinstance(each.element, types.Array) and each.element.fixed is not None
     ),

@@ -116,7 +116,7 @@ def typed_integers(numbers: list[typed.Expr], scope: Scope) -> list[typed.Expr] 
 def _lower_measure(call: typed.Call, values: Evaluation) -> Expr:
     """A number of a compressed image."""
     what = index(MEASURES.index(call.function))
-    return _asked(MEASURE, (what,), (bytes_of(call.arguments[0], values),), values)
+    return _host_answer(MEASURE, (what,), (bytes_of(call.arguments[0], values),), values)
 
 
 def _lower_image(call: typed.Call, values: Evaluation) -> View:
@@ -139,12 +139,12 @@ def bytes_of(value: typed.Expr, values: Evaluation) -> Extent:
         case typed.Call("decompress", (image, *measures)):
             source = bytes_of(image, values)
             _check_measures(source, measures, values)
-            size = _asked(MEASURE, (index(SIZE),), (source,), values)
+            size = _host_answer(MEASURE, (index(SIZE),), (source,), values)
             return _filled(DECOMPRESS, (), source, size, values)
         case typed.Call("compress", (pixels, typed.Const(str(format_)), *given)):
             source = bytes_of(pixels, values)
             numbers = (index(FORMATS.index(format_)), *(values.writer.let("number", values.of(each)) for each in given))
-            size = _asked(COMPRESSED, numbers, (source,), values)
+            size = _host_answer(COMPRESSED, numbers, (source,), values)
             return _filled(COMPRESS, numbers, source, size, values)
         case typed.Call():
             made = cast("View", lowered(value, values))
@@ -161,7 +161,7 @@ def _check_measures(source: Extent, measures: list[typed.Expr], values: Evaluati
         case _:
             return
     for number, (name, value) in enumerate(zip(("width", "height", "number of channels", "depth"), wanted, strict=True)):
-        found = _asked(MEASURE, (index(number),), (source,), values)
+        found = _host_answer(MEASURE, (index(number),), (source,), values)
         values.writer.expect(Compare("eq", found, value), "image", values.where, f"an image of another {name}", line=values.line)
 
 
@@ -173,11 +173,13 @@ def _filled(function: str, numbers: tuple[Expr, ...], source: Extent, size: Loca
     start = writer.let("computed", Used(lane))
     writer.emit(Advance(lane, size))
     target = Extent(Place(lane, start), size)
-    _asked(function, numbers, (source,), values, target)
+    _host_answer(function, numbers, (source,), values, target)
     return target
 
 
-def _asked(function: str, numbers: tuple[Expr, ...], inputs: tuple[Extent, ...], values: Evaluation, target: Extent | None = None) -> Local:
+def _host_answer(
+    function: str, numbers: tuple[Expr, ...], inputs: tuple[Extent, ...], values: Evaluation, target: Extent | None = None
+) -> Local:
     """What the host answers, which is no problem."""
     writer = values.writer
     found = Local("i64", writer.fresh(function.rpartition(".")[2]))
@@ -202,7 +204,7 @@ def _undone(other: str) -> Callable[[model.Call, model.Expr], tuple[model.Expr, 
 def _pixels_again(call: typed.Call) -> typed.Expr | None:
     """The pixels that were compressed with the same format and measures, but by JPEG."""
     match call.arguments:
-        case typed.Call("compress", (pixels, *told)), *asked if told == asked and told[0] != typed.Const("jpeg", String()):
+        case typed.Call("compress", (pixels, *options)), *wanted if options == wanted and options[0] != typed.Const("jpeg", String()):
             return pixels
         case _:
             return None

@@ -107,7 +107,7 @@ def _restated(stmt: ir.Stmt, parts: list[ir.Expr]) -> ir.Stmt:
         case ir.Call():
             return replace(stmt, arguments=tuple(map(change, stmt.arguments)), indices=tuple(map(change, stmt.indices)))
         case ir.HostCall():
-            return _asked(stmt, change)
+            return _host_call(stmt, change)
         case _:
             assert_never(stmt)
 
@@ -222,7 +222,7 @@ def _moved(stmt: ir.Effect, change: Callable[[ir.Expr], ir.Expr]) -> ir.Effect:
             assert_never(stmt)
 
 
-def _asked(call: ir.HostCall, change: Callable[[ir.Expr], ir.Expr]) -> ir.HostCall:
+def _host_call(call: ir.HostCall, change: Callable[[ir.Expr], ir.Expr]) -> ir.HostCall:
     values = tuple(map(change, call.arguments))
     read = tuple(_extent(extent, change) for extent in call.inputs)
     written = None if call.target is None else _extent(call.target, change)

@@ -105,7 +105,7 @@ class Evaluation(Protocol):
         """The same where these names alone have values, and nothing is decided yet."""
         ...
 
-    def look_ahead(self, asked: tuple[typed.Expr, ...]) -> None:
+    def look_ahead(self, exprs: tuple[typed.Expr, ...]) -> None:
         """Before a loop that computes some expressions: what is the same in each round, and takes a loop of its own."""
         ...
 

@@ -78,9 +78,9 @@ def declared_types(request: Request, files: Files) -> Types:
 def _imported(request: Request, files: Files) -> Schema:
     """All that the named files declare; without names, the files given as text, or the file where such a type should be."""
     readers = readers_of(request)
-    asked = request.type or ""
+    type_name = request.type or ""
     given = tuple(name for name in files.given if not name.endswith(SUFFIX))
-    names = request.imports or given or tuple(readers.guesses(asked))
+    names = request.imports or given or tuple(readers.guesses(type_name))
     types: dict[str, Any] = {}
     constants: dict[str, Any] = {}
     left_out: dict[str, Any] = {}
@@ -95,7 +95,7 @@ def _imported(request: Request, files: Files) -> Schema:
             types |= found.types
             constants |= found.constants
             left_out |= found.left_out
-            if not request.imports and not request.files and any(same_name(each, asked) for each in types):
+            if not request.imports and not request.files and any(same_name(each, type_name) for each in types):
                 break
         elif request.imports:
             raise SchemaError((words.no_such_file(name, tuple(map(str, files.search.folders))),))

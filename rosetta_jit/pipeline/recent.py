@@ -47,17 +47,17 @@ def recently(request: Request, files: Files, say: Callable[[], _Said]) -> _Said:
 
     ``say`` must depend on nothing of the request that `_texts` leaves out. What it raises is not remembered.
     """
-    asked = (_texts(request), files.search, here())
-    known = _recent.get(asked)
+    question = (_texts(request), files.search, here())
+    known = _recent.get(question)
     if known is not None and known.holds():
         files.reading.take(known.files.reading)
         with suppress(KeyError):  # another thread has removed it
-            _recent.move_to_end(asked)
+            _recent.move_to_end(question)
         return cast("_Said", known.said)
     said = say()
     if files.reading.size_bytes <= MAX_RECENT_BYTES:
-        _recent[asked] = _Recent(said, files, installed(), offered())
-        _recent.move_to_end(asked)
+        _recent[question] = _Recent(said, files, installed(), offered())
+        _recent.move_to_end(question)
         while len(_recent) > MAX_RECENT:
             _recent.popitem(last=False)
     return said

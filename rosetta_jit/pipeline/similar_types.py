@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from rosetta_jit.parsing.idl import FrontEnds
 
 
-def similar_types(asked: str, front_ends: FrontEnds, search: SearchPath) -> list[str]:
-    """The names of types that are declared where ``asked`` would be; for a name without a package, in all packages that are shipped."""
-    package = name_parts(asked)[:-1]
-    guesses = tuple(each for each in islice(front_ends.guesses(asked), MAX_GUESSES) if not refusal(each))
+def similar_types(wanted: str, front_ends: FrontEnds, search: SearchPath) -> list[str]:
+    """The names of types that are declared where ``wanted`` would be; for a name without a package, in all packages that are shipped."""
+    package = name_parts(wanted)[:-1]
+    guesses = tuple(each for each in islice(front_ends.guesses(wanted), MAX_GUESSES) if not refusal(each))
     if not package:
-        return list(dict.fromkeys(name for name in _packaged(asked, guesses, front_ends, search)))
-    separator = next(each for each in ("::", ".", "/") if each in asked)
+        return list(dict.fromkeys(name for name in _packaged(wanted, guesses, front_ends, search)))
+    separator = next(each for each in ("::", ".", "/") if each in wanted)
     stems = [stem for folder in search.folders for guess in guesses for stem in _stems(folder / guess)]
     return [separator.join((*package, stem)) for stem in dict.fromkeys(stems)]
 
@@ -36,18 +36,18 @@ def _stems(path: Path) -> Iterator[str]:
         yield from [each.stem for each in islice(path.parent.glob(f"*{path.suffix}"), MAX_FILES)]
 
 
-def _packaged(asked: str, guesses: Iterable[str], front_ends: FrontEnds, search: SearchPath) -> Iterator[str]:
+def _packaged(wanted: str, guesses: Iterable[str], front_ends: FrontEnds, search: SearchPath) -> Iterator[str]:
     """Types with that last name, of any package."""
-    for path in islice(_named(asked, guesses), MAX_READ):
+    for path in islice(_named(wanted, guesses), MAX_READ):
         source, front_end = search.named(str(path)), front_ends.find(str(path))
         if source is not None and front_end is not None:
             with suppress(ReportError):  # of another framework
                 types = front_end(source, search.find).types
-                yield from [name for name in types if name_parts(name)[-1].casefold() == asked.casefold()]
+                yield from [name for name in types if name_parts(name)[-1].casefold() == wanted.casefold()]
 
 
-def _named(asked: str, guesses: Iterable[str]) -> Iterator[Path]:
+def _named(wanted: str, guesses: Iterable[str]) -> Iterator[Path]:
     """Shipped files that are named as the type, whatever the case."""
     folders = dict.fromkeys(((folder / guess).parent, (folder / guess).suffix) for guess in guesses for folder in shipped_folders())
     found = (path for place, suffix in folders for path in islice(place.rglob(f"*{suffix}"), MAX_FILES))
-    return (path for path in dict.fromkeys(found) if path.stem.casefold() == asked.casefold())
+    return (path for path in dict.fromkeys(found) if path.stem.casefold() == wanted.casefold())

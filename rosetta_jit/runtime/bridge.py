@@ -221,7 +221,7 @@ class BridgeBase(ProgramBase):
         target = None if len(arguments) == 1 else run.writable(arguments[1])
         if target is not None and np.may_share_memory(data, target):
             data = data.copy()
-        with self._free() as lanes, self._told(lanes):
+        with self._free() as lanes, self._numbered(lanes):
             size = self._taken(lanes, data, 0, data.size)
             if target is None:
                 with run.encoding():

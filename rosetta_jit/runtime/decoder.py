@@ -235,7 +235,7 @@ class DecoderBase(Program):
         if self._loaded.wire is not None:
             self._join(data, holder, self._loaded.wire)
             return holder
-        with holder.lanes_ as lanes, self._told(lanes):
+        with holder.lanes_ as lanes, self._numbered(lanes):
             lanes.begin_filling()
             self._decode(data, lanes)
             lanes.source[0] = source if self._loaded.borrow else None
@@ -281,7 +281,7 @@ class DecoderBase(Program):
         words = self._context[1]
         has_failed, words[FAILED] = bool(words[FAILED]), 0
         broken = broken_wires(self._owners.setdefault("broken", WeakKeyDictionary()), holder)
-        with holder.lanes_ as lanes, self._told(lanes), joining(holder, wire, broken, has_failed=has_failed):
+        with holder.lanes_ as lanes, self._numbered(lanes), joining(holder, wire, broken, has_failed=has_failed):
             self._decode(data, lanes)
 
     def _into_foreign(self, message: Any, value: object) -> object:

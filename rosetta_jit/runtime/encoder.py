@@ -219,7 +219,7 @@ class EncoderBase(Program):
         if self._is_to_be_taken(arguments[0]):
             return self._call_with_foreign(*arguments)
         holder, target = self._checked(arguments[0]), _target(*arguments[1:])
-        with holder.lanes_ as lanes, self._told(lanes):
+        with holder.lanes_ as lanes, self._numbered(lanes):
             self._make_usable(holder)
             return self._written_row(lanes, 0, target)
 

@@ -145,7 +145,7 @@ class ProgramBase:
             lanes.words[NOW], lanes.words[NUMBER] = time.time_ns(), int(number)
 
     @contextmanager
-    def _told(self, lanes: Lanes) -> Generator[None]:
+    def _numbered(self, lanes: Lanes) -> Generator[None]:
         """Around one message. Where it cannot be made, the next one gets its number, unless another thread has taken one since."""
         with self._keeping(lanes), self._as_before():
             self._tell(lanes, 1)

@@ -248,11 +248,11 @@ def _located(site: Site, lanes: Lanes, at: int, end: int) -> tuple[str, int]:
 
 
 def _sentence(site: Site, lanes: Lanes) -> str:
-    detail = site.detail if site.detail_lane is None else _told(site, site.detail_lane, lanes)
+    detail = site.detail if site.detail_lane is None else _text_of_kernel(site, site.detail_lane, lanes)
     return f"{detail} ({site.line})" if site.line else detail
 
 
-def _told(site: Site, lane: int, lanes: Lanes) -> str:
+def _text_of_kernel(site: Site, lane: int, lanes: Lanes) -> str:
     """The text that a kernel has put together; a character that it cut shows as a mark."""
     assert lanes.hidden is not None, "a kernel that writes to a hidden lane has made it grow"
     first = ERROR_INDICES + site.path.count("{}")

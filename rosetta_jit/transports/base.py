@@ -219,8 +219,8 @@ class Server(End):
         super().__init__(address, lost)
         self._answer = answer
         self._most = max(queue, 1)
-        self._asked: deque[tuple[Message, Callable[[bytes | None, str | None], object]]] = deque()
-        self._asked_bytes = 0
+        self._questions: deque[tuple[Message, Callable[[bytes | None, str | None], object]]] = deque()
+        self._question_bytes = 0
         self._changed = threading.Condition()
         self._closed = False
         self._close: Callable[[], None] = _nothing
@@ -230,11 +230,11 @@ class Server(End):
         """Take a question; ``reply`` gets the answer, or None and an error's text. For transports."""
         message.keep()
         with self._changed:
-            has_room = not self._asked or self._asked_bytes + len(message.data) <= MAX_QUEUE_BYTES
-            taken = len(self._asked) < self._most and has_room and not self._closed
+            has_room = not self._questions or self._question_bytes + len(message.data) <= MAX_QUEUE_BYTES
+            taken = len(self._questions) < self._most and has_room and not self._closed
             if taken:
-                self._asked_bytes += len(message.data)
-                self._asked.append((message, reply))
+                self._question_bytes += len(message.data)
+                self._questions.append((message, reply))
                 self._changed.notify()
         if not taken:
             self.lose("queue full")
@@ -260,11 +260,11 @@ class Server(End):
     def _run(self) -> None:
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: self._asked or self._closed)
-                if not self._asked:
+                self._changed.wait_for(lambda: self._questions or self._closed)
+                if not self._questions:
                     return
-                message, reply = self._asked.popleft()
-                self._asked_bytes -= len(message.data)
+                message, reply = self._questions.popleft()
+                self._question_bytes -= len(message.data)
             self.passed(len(message.data))
             try:
                 answer = self._answer(message)

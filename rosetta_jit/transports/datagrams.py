@@ -117,22 +117,22 @@ class Datagrams:
             if self.socket.fileno() < 0:
                 return
             try:
-                size, told, _, sender = self.socket.recvmsg_into((buffer,), _ROOM)
+                size, ancillary, _, sender = self.socket.recvmsg_into((buffer,), _ROOM)
             except BlockingIOError:
                 return
             except OSError as error:
                 counts.lose(error.strerror or "the socket failed", 0)
                 return
-            if told:
-                self._overflow(told)
+            if ancillary:
+                self._overflow(ancillary)
             if size == len(buffer):
                 counts.lose("a message larger than max_message")
                 continue
             take(buffer[:size], sender)
 
-    def _overflow(self, told: list[tuple[int, int, bytes]]) -> None:
+    def _overflow(self, ancillary: list[tuple[int, int, bytes]]) -> None:
         """The system says how many datagrams it has dropped since the socket was made."""
-        for level, kind, data in told:
+        for level, kind, data in ancillary:
             if (level, kind, len(data)) == (socket.SOL_SOCKET, SO_RXQ_OVFL, _COUNT.size):
                 (count,) = _COUNT.unpack(data)
                 if missed := (count - self._overflown) & 0xFFFFFFFF:

@@ -250,7 +250,7 @@ def test_questions_that_are_too_many_are_counted(run):
         for number, each in enumerate(threads):
             each.start()
             until(lambda: bridge.snapshot()[0]["taken"] == 1)
-            until(lambda number=number: len(bridge.live["a"].server._asked) == number)
+            until(lambda number=number: len(bridge.live["a"].server._questions) == number)
         with pytest.raises(rj.TransportError, match="closed"):
             asks[2](b"one more")
         goes_on.set()

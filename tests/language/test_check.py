@@ -185,7 +185,7 @@ def test_warnings_and_reading() -> None:
     reading = Reading()
     result = checked("t.Number", "t.Number", ".x = .x", reading=reading)
     assert [warning.code for warning in result.warnings] == ["import-unused"]
-    assert [lookup.asked for lookup in reading.lookups] == list(NAMES)
+    assert [lookup.name for lookup in reading.lookups] == list(NAMES)
 
 
 def test_exponential_loops_end_in_a_report() -> None:

@@ -118,6 +118,6 @@ def test_reading_records_what_was_found(tmp_path: Path) -> None:
     assert load("y.proto") is None
     assert load("x.proto") == Source(str(path), "abc")
     missing, lookup = reading.lookups
-    assert (missing.asked, missing.importer, missing.found) == ("y.proto", "m", None)
-    assert (lookup.asked, lookup.importer, lookup.found) == ("x.proto", "m", str(path))
+    assert (missing.name, missing.importer, missing.found) == ("y.proto", "m", None)
+    assert (lookup.name, lookup.importer, lookup.found) == ("x.proto", "m", str(path))
     assert lookup.digest.startswith("ba7816bf8f01cfea")

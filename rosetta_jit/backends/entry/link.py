@@ -142,15 +142,15 @@ def _optimise(
     vectors made of statements that stand side by side, for arithmetic without loops. docs/performance.md has the figures.
     """
     make_private(module, (*SYMBOLS[entry], HOST, ON_DEMAND))
-    asked = bool(options.get("functions") or options.get("thorough"))
+    wants_thorough = bool(options.get("functions") or options.get("thorough"))
     loops = [kernel for kernel in kernels if has_loops_for_vectors(kernel)]
     is_straight = are_straight_and_compute(kernels)
     is_vast = are_vast(kernels)
-    if is_vast or not (asked or loops or is_straight):
+    if is_vast or not (wants_thorough or loops or is_straight):
         # Of protobuf's TestAllTypesProto3, fewer branches take longer than all other passes, and make the encoder a tenth slower.
         run_few_passes(module, machine, branches=not (is_vast and entry == "encode"))
         return
-    thorough = asked or any(map(is_moderate, loops))
+    thorough = wants_thorough or any(map(is_moderate, loops))
     tuning = binding.create_pipeline_tuning_options(speed_level=3 if thorough else 1)
     tuning.loop_vectorization, tuning.slp_vectorization = True, thorough or is_straight
     builder = binding.create_pass_builder(machine, tuning)
@@ -276,12 +276,12 @@ def _typed(kernel: Kernel) -> tuple[str, str]:
 
 def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel]) -> str:
     """A module of an entry's functions. `#0` to `#2` are the attributes of the calls of kernels that are to be quick."""
-    told = "told.ll" if asks_host(kernels) else "untold.ll"
+    host = "told.ll" if asks_host(kernels) else "untold.ll"
     hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
     count = max(kernel.registers for kernel in kernels)
     kept = _template("registers.ll").replace("COUNT", str(count)) if count else _template("no_registers.ll")
     joined = "joined.ll" if any(kernel.kept for kernel in kernels) else "alone.ll"
-    texts = (*map(_template, ("objects.ll", told, hosted, joined, _thread_template(), _large_template())), kept, *map(_template, templates))
+    texts = (*map(_template, ("objects.ll", host, hosted, joined, _thread_template(), _large_template())), kept, *map(_template, templates))
     inline = ("alwaysinline" if is_short_and_straight(kernel) else "" for kernel in kernels)
     attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline))
     return "\n".join((*texts, *attributes))

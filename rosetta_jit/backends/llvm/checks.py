@@ -38,7 +38,7 @@ BITS: dict[ir.Type, ir.Type] = {I32: I32, I64: I64, F32: I32, F64: I64}
 
 def body(frame: Frame, statements: Block) -> None:
     """Print a body's statements."""
-    asked: Counter[str] = Counter()
+    reads: Counter[str] = Counter()
     stores = 0
     many = sum(isinstance(each, Expect | If) for each in statements) > OFTEN
     for part in llvm_stmt.parts(frame, statements):
@@ -48,10 +48,10 @@ def body(frame: Frame, statements: Block) -> None:
             frame.builder.asm(ANY_MEMORY, "", "~{memory}", [], side_effect=True)
             stores = 0
         if many and isinstance(part, Expect | If):
-            asked.update(locals_in(part.condition))
-            for name in [name for name, times in asked.items() if times >= OFTEN]:
+            reads.update(locals_in(part.condition))
+            for name in [name for name, times in reads.items() if times >= OFTEN]:
                 _renew(frame, name)
-                del asked[name]
+                del reads[name]
 
 
 def _renew(frame: Frame, name: str) -> None:

@@ -74,7 +74,7 @@ def _known(frame: Frame, expr: kernel.Known) -> ir.Value:
         case kernel.Capacity(lane):
             return frame.capacity(lane)
         case kernel.HostValue(what):
-            return frame.told(what)
+            return frame.host_value(what)
         case kernel.Register(number):
             return frame.register(number)
         case _:

@@ -175,7 +175,7 @@ class Frame:
         """How many rows the lane has room for."""
         return self._word(lane, CAPACITY, I64, f"capacity{lane}")
 
-    def told(self, what: str) -> ir.Value:
+    def host_value(self, what: str) -> ir.Value:
         """What the host tells of the message; messages of one call are numbered by their rows."""
         word = NOW if what == "now" else NUMBER
         value = self.builder.load(state_word(self.builder, self.parameters.state, word), typ=I64, align=8, name=what)

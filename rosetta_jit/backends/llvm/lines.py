@@ -166,9 +166,9 @@ class Lines(ir.IRBuilder):
     # --- arithmetic ----------------------------------------------------------------------------------------------------------
 
     def _two(self, operation: str, lhs: ir.Value, rhs: ir.Value, flags: Sequence[str] = ()) -> ir.Value:
-        told = "".join([f" {each}" for each in flags])
+        marks = "".join([f" {each}" for each in flags])
         type_ = lhs.type
-        return self._line(type_, f"{operation}{told} {type_} {lhs.get_reference()}, {rhs.get_reference()}")
+        return self._line(type_, f"{operation}{marks} {type_} {lhs.get_reference()}, {rhs.get_reference()}")
 
     def add(self, lhs: ir.Value, rhs: ir.Value, flags: Sequence[str] = ()) -> ir.Value:
         return self._two("add", lhs, rhs, flags)

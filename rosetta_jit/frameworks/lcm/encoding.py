@@ -80,9 +80,9 @@ class _Fields:
             case String():
                 return Blob(path, STRING, text=True, terminated=True)
             case Bytes(_, length):
-                return Blob(path, _told(length, around))
+                return Blob(path, _implied_count(length, around))
             case Array(element, length):
-                return Repeat(path, _told(length, around), self.value(element, (), around))
+                return Repeat(path, _implied_count(length, around), self.value(element, (), around))
             case Enum():
                 return Number(path, "i32", ">")
             case Ref(name) if name in self.recursive:
@@ -97,7 +97,7 @@ class _Fields:
                 assert_never(type_)
 
 
-def _told(length: int | expr.Expr | None, around: Path) -> Count:
+def _implied_count(length: int | expr.Expr | None, around: Path) -> Count:
     """The count that stands nowhere, but that the type or a field tells."""
     if isinstance(length, expr.Path):
         return Count(None, value=expr.Path("wire", (*map(expr.Member, around), *length.steps)))

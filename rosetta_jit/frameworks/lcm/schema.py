@@ -103,7 +103,7 @@ class _Struct:
         """A size that a number, a constant or a field tells; where it is wrong, any other stands for it."""
         text = size.text
         if text in self.members:
-            return self.told(size, self.members[text])
+            return self.size_field(size, self.members[text])
         if text in self.texts:
             return self.fixed(size, self.constants.get(text))
         value = integer(text)
@@ -115,7 +115,7 @@ class _Struct:
             return value
         return 1
 
-    def told(self, size: Name, member: Member) -> expr.Path:
+    def size_field(self, size: Name, member: Member) -> expr.Path:
         if member.sizes:
             self.problems.append(say.size_is_array(size))
         elif member.type.text not in INTEGERS:

@@ -44,7 +44,7 @@ class _Condition:
 
 @dataclass(slots=True)
 class _File:
-    asked: str
+    name: str
     lines: Iterator[list[Token]]
     conditions: list[_Condition] = field(default_factory=list["_Condition"])
 
@@ -73,9 +73,9 @@ class _Preprocessor:
     macros: dict[str, tuple[Token, ...]] = field(default_factory=dict[str, tuple[Token, ...]])
     expanded: int = 0
 
-    def open(self, asked: str, source: Source) -> None:
+    def open(self, name: str, source: Source) -> None:
         self.seen[source.name] = None
-        self.stack.append(_File(asked, _lines(source)))
+        self.stack.append(_File(name, _lines(source)))
 
     def run(self) -> None:
         """Line after line of the innermost file that is open; each `#include` opens one more."""
@@ -159,14 +159,14 @@ class _Preprocessor:
 
     def include(self, word: Token, rest: list[Token], file: _File) -> None:
         path, span = _path(word, rest if rest[0].kind == "string" or rest[0].text == "<" else [*self.expand(rest[:-1]), rest[-1]])
-        found = find(path, file.asked, self.load)
+        found = find(path, file.name, self.load)
         if found is None:
             raise SyntaxProblem(say.missing_file(span, path))
-        asked, source = found
+        found_as, source = found
         if source.name not in self.seen:
             if len(self.seen) >= MAX_FILES:
                 raise SyntaxProblem(say.too_many_files(span, MAX_FILES))
-            self.open(asked, source)
+            self.open(found_as, source)
 
     def expand(self, line: Iterable[Token]) -> Iterator[Token]:
         """The tokens of a line, with macros in place of their names; a macro is not expanded within itself."""
@@ -226,25 +226,25 @@ SHIPPED = ("", "openrtm", "ros2")
 """Folders of the search path in which files know each other by their names alone."""
 
 
-def find(path: str, asked: str, load: Load) -> tuple[str, Source] | None:
+def find(path: str, name: str, load: Load) -> tuple[str, Source] | None:
     """The file that an `#include` means, and the name under which it was found.
 
     Parameters
     ----------
     path
         As the `#include` writes it.
-    asked
+    name
         The name under which the file around it was found: its folder comes first.
     """
-    for candidate in dict.fromkeys(_candidates(path, asked)):
+    for candidate in dict.fromkeys(_candidates(path, name)):
         source = load(candidate)
         if source is not None:
             return candidate, source
     return None
 
 
-def _candidates(path: str, asked: str) -> Iterator[str]:
-    folder = PurePosixPath(asked).parent
+def _candidates(path: str, name: str) -> Iterator[str]:
+    folder = PurePosixPath(name).parent
     for start in (*(() if folder.is_absolute() else (str(folder),)), *SHIPPED):
         candidate = _normal(f"{start}/{path}" if start not in ("", ".") else path)
         if candidate is not None:

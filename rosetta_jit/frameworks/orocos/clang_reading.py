@@ -201,8 +201,8 @@ class Reading:
         unit = self.parse({**self.request["files"], main: text})
         if any(each.severity >= self.cindex.Diagnostic.Error for each in unit.diagnostics):
             return
-        asked = [each for each in unit.cursor.get_children() if each.spelling == "rosetta_jit_offsets"]
-        for (_, member), value in zip(unique, asked[-1].get_children(), strict=True):
+        offsets = [each for each in unit.cursor.get_children() if each.spelling == "rosetta_jit_offsets"]
+        for (_, member), value in zip(unique, offsets[-1].get_children(), strict=True):
             member["offset"] = value.enum_value
 
     # --- types and names ---------------------------------------------------------------------------------------------

@@ -81,14 +81,14 @@ def gather(source: Source, load: Load) -> Texts:
     while unread:
         path, including = unread.pop()
         for name, span in _includes(including):
-            for asked in _candidates(path, name):
-                if USER + asked in found:
+            for candidate in _candidates(path, name):
+                if USER + candidate in found:
                     break
-                text = load(asked)
+                text = load(candidate)
                 if text is None:
                     continue
-                found[USER + asked] = text
-                unread.append((USER + asked, text))
+                found[USER + candidate] = text
+                unread.append((USER + candidate, text))
                 size += len(text.text)
                 if len(found) > MAX_FILES or size > MAX_CHARACTERS:
                     raise SchemaError((words.too_many_files(span, MAX_FILES, MAX_CHARACTERS),))

@@ -83,19 +83,19 @@ class _Gathering:
         if type_.base in self.found or type_.base in self.missing or type_.base in self.foreign:
             return
         package, short = split(type_.base)
-        asked = tuple(places(type_.base, user.source.name, self.dialect))
-        sources = (self.load(place) for place in asked)
+        candidates = tuple(places(type_.base, user.source.name, self.dialect))
+        sources = (self.load(place) for place in candidates)
         source = next(
             (each for each in sources if each is not None and declared_in(each.name, self.dialect).package in ("", package)), None
         )
         usual = self.usual(type_)
-        if type_.base + self.dialect.foreign in self.files or (source is None and self.declared_elsewhere(asked)):
+        if type_.base + self.dialect.foreign in self.files or (source is None and self.declared_elsewhere(candidates)):
             self.foreign.add(type_.base)
         elif source is None and usual is not None:
             self.waiting.append((usual, user))
         elif source is None:
             self.missing.add(type_.base)
-            self.problems.append(say.unknown_message(type_.span, type_.base, type_.written, asked, tuple(self.dialect.scalars)))
+            self.problems.append(say.unknown_message(type_.span, type_.base, type_.written, candidates, tuple(self.dialect.scalars)))
         elif len(self.found) >= MAX_MESSAGES:
             self.problems.append(say.too_many(type_.span, MAX_MESSAGES))
             self.waiting.clear()

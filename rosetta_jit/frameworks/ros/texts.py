@@ -28,10 +28,10 @@ def file_of(framework: Framework, type_: str, text: str) -> str:
     dashes = len(DASHES.findall(first))
     if kind == "idl" or (".idl" in framework.idl and not dashes and IDL.search(first)):
         return "/".join(parts) + ".idl"
-    told = next((each for each in (kind, *parts[:-1]) if each in OF_DASHES.values()), OF_DASHES.get(dashes, ""))
-    if not dashes or f".{told}" not in framework.several:
+    ending = next((each for each in (kind, *parts[:-1]) if each in OF_DASHES.values()), OF_DASHES.get(dashes, ""))
+    if not dashes or f".{ending}" not in framework.several:
         return "/".join(parts) + ".msg"
-    return next(framework.files_of_kind(parts, f".{told}"))
+    return next(framework.files_of_kind(parts, f".{ending}"))
 
 
 def _first(text: str) -> tuple[str, str]:

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 def announcement(struct: Struct, schema: Schema) -> dict[str, str]:
     """Its name, and its hash, which types that ROS 2 cannot describe do not have."""
-    told = {"type": struct.name.replace("::", "/")}
+    identity = {"type": struct.name.replace("::", "/")}
     try:
-        return {**told, "hash": rihs01(struct, schema)}
+        return {**identity, "hash": rihs01(struct, schema)}
     except SchemaError:
-        return told
+        return identity

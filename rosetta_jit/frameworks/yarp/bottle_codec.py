@@ -299,8 +299,8 @@ class Bottles:
         code = Table(teller, "i32", tuple((code, label) for label, (code, _) in enumerate(bodies)))
         general = (LIST, Seq((count, *(self.place(each, path, tagged=True) for each in head), code)))
         form = Choice(teller, "i32", (*special.values(), general), labels=tuple(special))
-        told = Cases(cases, form, tuple(((label,), body) for label, (_, body) in enumerate(bodies)))
-        return Seq((told, *absent)) if (absent := self.absent(struct, path)) else told
+        chosen = Cases(cases, form, tuple(((label,), body) for label, (_, body) in enumerate(bodies)))
+        return Seq((chosen, *absent)) if (absent := self.absent(struct, path)) else chosen
 
     def case_form(self, case: Field, path: Path) -> Form:
         """The code that announces a case of a union, and what follows it."""

@@ -127,10 +127,10 @@ class _Expansion:
             self.scope.problems.append(error.problem)
             return ()
         pieces = tuple(substituted(piece, elements, Name(name)) for piece in refusal.pieces)
-        asked = replace(rule, condition=substituted(rule.condition, elements, Name(name)), then=(replace(refusal, pieces=pieces),))
+        refusing = replace(rule, condition=substituted(rule.condition, elements, Name(name)), then=(replace(refusal, pieces=pieces),))
         wrong = [When(condition, (Reject(why, rule.span),), (), rule.span) for view in views.values() for condition, why in view.refused]
         same_lengths = [check for total in others for check in _unless_equal(total, first, rule.span)]
-        return (*wrong, *same_lengths, For(name, Literal(0), first, self.block((asked,), {}, level + 1), rule.span))
+        return (*wrong, *same_lengths, For(name, Literal(0), first, self.block((refusing,), {}, level + 1), rule.span))
 
     def chosen(self, rule: Assignment, choice: Choice, lengths: Lengths, level: int) -> tuple[Rule, ...]:
         """A choice among arrays, as one rule a case."""
@@ -177,9 +177,9 @@ class _Expansion:
 
     def filtered(self, rule: Assignment, lengths: Lengths, level: int) -> tuple[Rule, ...]:
         """A rule with `where`, as a loop of which some rounds are kept."""
-        asked = [part for side in (rule.place, rule.value, rule.where) if side is not None for part in open_parts(side)]
+        opened = [part for side in (rule.place, rule.value, rule.where) if side is not None for part in open_parts(side)]
         is_one = isinstance(rule.value, Path) and not isinstance(self.type_of(rule.value), Array | Bytes | Map | None)
-        if not any(map(is_many, asked)) and is_one:
+        if not any(map(is_many, opened)) and is_one:
             raise LayoutError(words.filter_without_elements(rule.span))
         found = filter_of(rule, self.variable(level), self.variable(level, "kept"))
         array = found.target.array

@@ -65,17 +65,17 @@ def asked_of_holder(rule: When[Rule, Expr], type_of: TypeOf) -> Expr:
                     pairs |= {fields[0]: place} if len(fields) == 1 and may_be_absent(place, type_of) else {}
                 case _:
                     pass
-    return _asked(rule.condition, pairs)
+    return _in_holder(rule.condition, pairs)
 
 
-def _asked(expr: Expr, pairs: dict[Expr, Path]) -> Expr:
+def _in_holder(expr: Expr, pairs: dict[Expr, Path]) -> Expr:
     match expr:
         case Call("has", (path,)) if path in pairs:
             return replace(expr, arguments=(pairs[path],))
         case Call("has"):
             return expr
         case _:
-            return rebuilt(expr, lambda part: _asked(part, pairs))
+            return rebuilt(expr, lambda part: _in_holder(part, pairs))
 
 
 def test_between(then: tuple[Rule, ...], otherwise: tuple[Rule, ...], type_of: TypeOf) -> Expr | None:

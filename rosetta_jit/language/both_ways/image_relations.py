@@ -34,7 +34,7 @@ class Image:
     def solved(self, type_of: TypeOf) -> Solution:
         """The image that has these pixels and measures; raises NoInverseError."""
         known = {call: until(rule.value, rule.place, call, type_of) for rule, _ in self.measures if (call := measure_in(rule)) is not None}
-        found = solve(_told(self.pixels[0].value, known), self.pixels[0].place, type_of)
+        found = solve(_with_measures(self.pixels[0].value, known), self.pixels[0].place, type_of)
         if fields_of(found.value, "wire"):
             raise NoInverseError(self.pixels[0].value, "no relation says what its measures are")
         return found
@@ -85,6 +85,6 @@ def _image_in(rule: Relation) -> Expr | None:
     return next((call.arguments[0] for call in found), None)
 
 
-def _told(expr: Expr, known: dict[Call, Expr]) -> Expr:
+def _with_measures(expr: Expr, known: dict[Call, Expr]) -> Expr:
     """An expression with what relations say of measures in place of them."""
-    return known[expr] if isinstance(expr, Call) and expr in known else rebuilt(expr, lambda part: _told(part, known))
+    return known[expr] if isinstance(expr, Call) and expr in known else rebuilt(expr, lambda part: _with_measures(part, known))

@@ -87,14 +87,14 @@ class Knowledge:
             self.sizes[key] = sum(1 for _ in parts(value))
             self.shapes.setdefault(_shape(place), []).append(key)
 
-    def learn_flag(self, flag: Path, asked: Path, loops: Loops) -> None:
+    def learn_flag(self, flag: Path, wire_field: Path, loops: Loops) -> None:
         """That a field of the wire is there where a bool of the holder is true."""
-        key, names = key_of(asked, loops)
+        key, names = key_of(wire_field, loops)
         self.flags.setdefault(key, renamed(flag, names))
 
-    def flag(self, asked: Path, loops: Loops) -> Expr | None:
+    def flag(self, wire_field: Path, loops: Loops) -> Expr | None:
         """What of the holder says whether a field of the wire is there."""
-        key, names = key_of(asked, loops)
+        key, names = key_of(wire_field, loops)
         found = self.flags.get(key)
         return None if found is None else renamed(found, {number.name: Name(name) for name, number in names.items()})
 
@@ -136,8 +136,8 @@ class Knowledge:
     def replaced(self, expr: Expr, loops: Loops) -> Expr:
         """An expression with what is known of the wire's fields in place of them; whether one is there does not follow from its value."""
         if isinstance(expr, Call) and expr.function == "has":
-            asked = expr.arguments[0]
-            flag = self.flag(asked, loops) if isinstance(asked, Path) else None
+            wire_field = expr.arguments[0]
+            flag = self.flag(wire_field, loops) if isinstance(wire_field, Path) else None
             return expr if flag is None else flag
         if isinstance(expr, Call) and expr in self.signals and not loops:
             return self.signals[expr]

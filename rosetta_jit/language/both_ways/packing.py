@@ -221,10 +221,10 @@ class Packing:
     # --- conditions ----------------------------------------------------------------------------------------------------
 
     def when(self, rule: When[Rule, Expr], loops: Loops) -> tuple[Rule, ...]:
-        asked = asked_of_holder(rule, self.known.type_of)
-        condition = self.known.replaced(asked, loops)
+        question = asked_of_holder(rule, self.known.type_of)
+        condition = self.known.replaced(question, loops)
         if not fields_of(condition, "wire"):
-            by_flag = asks_presence(asked, "wire")
+            by_flag = asks_presence(question, "wire")
             then, other = (
                 self.branch(rule, loops, holds=holds) if by_flag and not _rejects(block) else self.enter(block, loops)
                 for holds, block in ((True, rule.then), (False, rule.otherwise))

@@ -33,9 +33,9 @@ def presence_between(then: tuple[Rule, ...], otherwise: tuple[Rule, ...], type_o
     for block, other, is_first in ((then, otherwise, True), (otherwise, then, False)):
         for place in _set_by(block):
             for size in range(1, len(place.steps) + 1):
-                asked = replace(place, steps=place.steps[:size])
-                if may_be_absent(asked, type_of) and not _touches(other, "holder", names_of(asked)):
-                    test = Call("has", (asked,), place.span)
+                optional = replace(place, steps=place.steps[:size])
+                if may_be_absent(optional, type_of) and not _touches(other, "holder", names_of(optional)):
+                    test = Call("has", (optional,), place.span)
                     return test if is_first else Unary("not", test, place.span)
     return None
 
@@ -63,16 +63,16 @@ def asks_presence(condition: Expr, side: Side) -> bool:
 def told_by_setting(condition: Expr, known: Knowledge, block: tuple[Rule, ...], loops: Loops, *, other: tuple[Rule, ...] = ()) -> Expr:
     """A condition with what a block says of the presence of the wire's fields, which it sets or leaves to the ``other`` block."""
     if isinstance(condition, Call) and condition.function == "has" and isinstance(condition.arguments[0], Path):
-        asked = condition.arguments[0]
-        is_there = _is_set(asked, known, block, loops, other) if asked.side == "wire" else None
+        field = condition.arguments[0]
+        is_there = _is_set(field, known, block, loops, other) if field.side == "wire" else None
         return condition if is_there is None else Literal(is_there, condition.span)
     return rebuilt(condition, lambda part: told_by_setting(part, known, block, loops, other=other))
 
 
-def _is_set(asked: Path, known: Knowledge, block: tuple[Rule, ...], loops: Loops, other: tuple[Rule, ...]) -> bool | None:
+def _is_set(field: Path, known: Knowledge, block: tuple[Rule, ...], loops: Loops, other: tuple[Rule, ...]) -> bool | None:
     """Whether a block sets a field of the wire, or something in it, in each of its ways; None where that depends."""
-    (place, ranges), _ = key_of(asked, loops)
-    steps, names = path_of(place).steps, names_of(asked)
+    (place, ranges), _ = key_of(field, loops)
+    steps, names = path_of(place).steps, names_of(field)
     for setter, its in known.setters:
         below = path_of(setter).steps
         if isinstance(setter, Path) and its == ranges and below[: len(steps)] == steps and all(isinstance(each, Member) for each in below):
@@ -88,8 +88,8 @@ def _is_set(asked: Path, known: Knowledge, block: tuple[Rule, ...], loops: Loops
 def flag_of(rule: Rule) -> tuple[Path, Path] | None:
     """The place of the holder that says whether a field of the wire is there, and that field."""
     match rule:
-        case Relation(Path() as flag, Call("has", (Path(side="wire") as asked,))) if not fields_of(flag, "wire"):
-            return flag, asked
+        case Relation(Path() as flag, Call("has", (Path(side="wire") as field,))) if not fields_of(flag, "wire"):
+            return flag, field
         case _:
             return None
 
@@ -108,7 +108,7 @@ def with_flags(rules: tuple[Rule, ...], is_completed: Callable[[Path], bool]) ->
     for flag in rules:
         pair = flag_of(flag)
         if pair is not None and not is_completed(pair[1]):
-            found = tuple(_asked(each, pair[1]) for each in found)
+            found = tuple(_where_present(each, pair[1]) for each in found)
     return found
 
 
@@ -122,14 +122,14 @@ def _within(rule: Rule, is_completed: Callable[[Path], bool]) -> Rule:
             return rule
 
 
-def _asked(rule: Rule, asked: Path) -> Rule:
+def _where_present(rule: Rule, optional: Path) -> Rule:
     """A relation whose fields of the wire are all within one that may be absent, where that is there."""
     if not isinstance(rule, Relation) or flag_of(rule) is not None:
         return rule
     paths = [path_of(each) for each in fields_of(rule.value, "wire")]
-    if not paths or any(each.steps[: len(asked.steps)] != asked.steps for each in paths):
+    if not paths or any(each.steps[: len(optional.steps)] != optional.steps for each in paths):
         return rule
-    return When(Call("has", (asked,), rule.span), (rule,), (), rule.span)
+    return When(Call("has", (optional,), rule.span), (rule,), (), rule.span)
 
 
 # --- places --------------------------------------------------------------------------------------------------------------
@@ -147,31 +147,31 @@ def _set_by(block: tuple[Rule, ...]) -> Iterator[Path]:
                 pass
 
 
-def _touches(rules: tuple[Rule, ...], side: Side, asked: Names) -> bool:
+def _touches(rules: tuple[Rule, ...], side: Side, names: Names) -> bool:
     """Whether rules may set a place, something in it or around it, in some of their ways."""
-    return any(_may_set(rule, side, asked) for rule in rules)
+    return any(_may_set(rule, side, names) for rule in rules)
 
 
-def _may_set(rule: Rule, side: Side, asked: Names) -> bool:
+def _may_set(rule: Rule, side: Side, names: Names) -> bool:
     match rule:
         case Relation(place, value):
-            return (side == "holder" or flag_of(rule) is None) and _names_any((place if side == "holder" else value,), side, asked)
+            return (side == "holder" or flag_of(rule) is None) and _names_any((place if side == "holder" else value,), side, names)
         case Arranged(place, flag, cases):
-            return _names_any((place, flag) if side == "holder" else tuple(value for _, value in cases), side, asked)
+            return _names_any((place, flag) if side == "holder" else tuple(value for _, value in cases), side, names)
         case For(body=body):
-            return _touches(body, side, asked)
+            return _touches(body, side, names)
         case When(then=then, otherwise=otherwise):
-            return _touches((*then, *otherwise), side, asked)
+            return _touches((*then, *otherwise), side, names)
         case Ignore(place) | Default(place):
-            return place.side == side and names_of(place) != asked and _meet(names_of(place), asked)  # it is absent by default
+            return place.side == side and names_of(place) != names and _meet(names_of(place), names)  # it is absent by default
         case SameNames():
             return True
         case _:
             return False
 
 
-def _names_any(expressions: tuple[Expr, ...], side: Side, asked: Names) -> bool:
-    return any(_meet(names_of(path_of(field)), asked) for each in expressions for field in fields_of(each, side))
+def _names_any(expressions: tuple[Expr, ...], side: Side, names: Names) -> bool:
+    return any(_meet(names_of(path_of(field)), names) for each in expressions for field in fields_of(each, side))
 
 
 def _meet(one: Names, other: Names) -> bool:

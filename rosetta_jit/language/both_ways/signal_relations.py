@@ -77,9 +77,9 @@ def frames_of(relations: list[Related]) -> list[Frame]:
 def told_in_all(rule: When[Rule, Expr], type_of: TypeOf) -> dict[Call, Expr]:
     """What the signals of a condition must be, of which each block has the same relation; one that only refuses needs none."""
     found: dict[Call, Expr] = {}
-    asked = {part for part in parts(rule.condition) if isinstance(part, Call) and part.function == "signal"}
+    signals = {part for part in parts(rule.condition) if isinstance(part, Call) and part.function == "signal"}
     blocks = [block for block in _blocks(rule) if not (block and all(isinstance(each, Reject) for each in block))]
-    for call in asked:
+    for call in signals:
         relations = [{each for each in block if isinstance(each, Relation) and signal_in(each) == call} for block in blocks]
         shared = set[Relation]().union(*relations)
         if len(shared) == 1 and all(relations):

@@ -50,8 +50,8 @@ def wires_read(exprs: Iterable[Expr]) -> Wires:
 
 def asked_for(exprs: Iterable[Expr]) -> Wires:
     """The wires of which expressions ask whether a message has arrived: what reads them does not wait for one."""
-    asked = [part for expr in exprs for part in parts(expr) if asks_arrival(part)]
-    return frozenset[str]().union(*(wire_of(part.place) for part in asked if isinstance(part, typed.Has)))
+    arrivals = [part for expr in exprs for part in parts(expr) if asks_arrival(part)]
+    return frozenset[str]().union(*(wire_of(part.place) for part in arrivals if isinstance(part, typed.Has)))
 
 
 def runs_at(exprs: Iterable[Expr], wires: Wires) -> Wires:

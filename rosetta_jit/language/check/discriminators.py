@@ -54,7 +54,7 @@ def discriminators_of(rules: tuple[Rule, ...], message: Message) -> dict[Names, 
                 if isinstance(type_, Struct):
                     if id(type_) not in unions:
                         unions[id(type_)] = type_, [each for each in type_.fields if isinstance(each.type, Union)]
-                    nested = _told(*unions[id(type_)], step.field, message, names, named)
+                    nested = _of_struct(*unions[id(type_)], step.field, message, names, named)
                     found |= {(*names, each): discriminator for each, discriminator in nested}
                 names, type_ = (*names, step.field.name), message.value_type(step.field.type)
             elif isinstance(type_, Array | Bytes | Map):
@@ -62,7 +62,7 @@ def discriminators_of(rules: tuple[Rule, ...], message: Message) -> dict[Names, 
     return found
 
 
-def _told(
+def _of_struct(
     struct: Struct, unions: list[Field], touched: Field, message: Message, names: Names, named: set[Names]
 ) -> list[tuple[str, Discriminator]]:
     """The discriminators of a struct's ``unions``, where the union is ``touched`` or its discriminator is."""

@@ -126,11 +126,11 @@ class _Nested:
 NOTHING_AROUND = _Nested()
 
 
-def _told(rules: tuple[Rule, ...], target: Side) -> list[tuple[Rule, _Nested]]:
+def _with_needs(rules: tuple[Rule, ...], target: Side) -> list[tuple[Rule, _Nested]]:
     """Each rule that is no block, of all of a direction, with what it reads."""
     found = list(_walked(rules, target))
-    every = NO_WIRE.union(*(told.read for _, told in found))
-    return [(rule, replace(told, others=every) if asked_for(told.exprs) else told) for rule, told in found]
+    every = NO_WIRE.union(*(needs.read for _, needs in found))
+    return [(rule, replace(needs, others=every) if asked_for(needs.exprs) else needs) for rule, needs in found]
 
 
 def _walked(
@@ -154,13 +154,13 @@ def _walked(
 
 def _as_one(chosen: list[tuple[Rule, _Nested]]) -> Iterator[tuple[Rule, _Nested]]:
     together: dict[str, tuple[Wires, dict[int, Expr]]] = {}
-    for rule, told in chosen:
+    for rule, needs in chosen:
         for place in places_in((rule,)):
             wires, exprs = together.get(shown_place(place.steps), (NO_WIRE, dict[int, "Expr"]()))
-            together[shown_place(place.steps)] = wires | told.read, exprs | {id(each): each for each in told.exprs}
-    for rule, told in chosen:
+            together[shown_place(place.steps)] = wires | needs.read, exprs | {id(each): each for each in needs.exprs}
+    for rule, needs in chosen:
         found = [together[shown_place(place.steps)] for place in places_in((rule,))]
-        yield rule, _Nested(found[0][0], tuple(found[0][1].values())) if found else told
+        yield rule, _Nested(found[0][0], tuple(found[0][1].values())) if found else needs
 
 
 def _own(rule: Rule) -> tuple[Expr, ...]:
@@ -171,7 +171,9 @@ def _own(rule: Rule) -> tuple[Expr, ...]:
 
 def kept_values(rules: tuple[Rule, ...]) -> list[tuple[str, Expr]]:
     """What rules to unpack that read several wires need of other messages than the one at hand: each with its wire."""
-    found = [value for _, told in _told(rules, "holder") if len(told.wires) > 1 for value in values_of_others(told.exprs, told.wires)]
+    found = [
+        value for _, needs in _with_needs(rules, "holder") if len(needs.wires) > 1 for value in values_of_others(needs.exprs, needs.wires)
+    ]
     return [(wire, value) for value in dict.fromkeys(found) for wire in wires_read([value])]
 
 
@@ -183,8 +185,8 @@ def rules_of(rules: tuple[Rule, ...], wire: str, target: Side, holder: Message, 
     cut = _cutter(holder)
     owners = _owners(rules, cut) if target == "holder" else {}
     waits = _waits(rules, owners, cut) if memory.arrived else {}
-    told = {id(rule): each for rule, each in _told(rules, target)}
-    return tuple(_Chosen(wire, target, memory, cut, owners, waits, told).of(rules, NOTHING_AROUND, frozenset([wire])))
+    needs = {id(rule): each for rule, each in _with_needs(rules, target)}
+    return tuple(_Chosen(wire, target, memory, cut, owners, waits, needs).of(rules, NOTHING_AROUND, frozenset([wire])))
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,45 +205,45 @@ class _Chosen:
     cut: Callable[[Place], Names]
     owners: dict[Names, frozenset[Wires]]
     waits: dict[Names, Wires]
-    told: dict[int, _Nested]
+    needs: dict[int, _Nested]
 
     def of(self, rules: tuple[Rule, ...], around: _Nested, come: Wires) -> Iterator[Rule]:
         """Those of some rules that run, where the wires that have ``come`` are known to have sent a message."""
         for rule in rules:
-            told, own = around.within(rule, self.target), of_wire(rule, self.wire, self.memory)
-            read = wires_read(_own(rule)) - asked_for(told.exprs)
+            needs, own = around.within(rule, self.target), of_wire(rule, self.wire, self.memory)
+            read = wires_read(_own(rule)) - asked_for(needs.exprs)
             others = (self.needed(rule, around) | read) - come if self.memory.arrived else NO_WIRE
             match own:
                 case For(body=body):
-                    inner = tuple(self.of(body, told, come | others))
+                    inner = tuple(self.of(body, needs, come | others))
                     found = (replace(own, body=inner),) if inner else ()
                 case When(then=then, otherwise=otherwise):
-                    chosen, other = (tuple(self.of(each, told, come | others)) for each in (then, otherwise))
+                    chosen, other = (tuple(self.of(each, needs, come | others)) for each in (then, otherwise))
                     found = (replace(own, then=chosen, otherwise=other),) if chosen or other else ()
                 case _:
-                    found = (own,) if self.is_run(rule, self.told[id(rule)]) else ()
+                    found = (own,) if self.is_run(rule, self.needs[id(rule)]) else ()
             for each in sorted(others) if found else ():
                 found = (When(self.memory.arrived[each], found, (), rule.span),)
             yield from found
 
-    def is_run(self, rule: Rule, told: _Nested) -> bool:
+    def is_run(self, rule: Rule, needs: _Nested) -> bool:
         """Whether a rule that is no block runs."""
-        if told.wires:
-            return self.wire in told.runs_at
+        if needs.wires:
+            return self.wire in needs.runs_at
         set_ = [self.owners.get(self.cut(place), frozenset[Wires]()) for place in places_in((rule,))]
         return all(len(groups) != 1 or all(self.wire in each for each in groups) for groups in set_)
 
     def needed(self, rule: Rule, around: _Nested) -> Wires:
         """The wires without a message of which nothing in a rule runs."""
-        told = around.within(rule, self.target)
+        needs = around.within(rule, self.target)
         match rule:
             case For(body=inner):
                 pass
             case When(then=then, otherwise=otherwise):
                 inner = (*then, *otherwise)
             case _:
-                return told.waits_for.union(*(self.waits.get(self.cut(place), NO_WIRE) for place in places_in((rule,))))
-        first, *rest = [self.needed(each, told) for each in inner] or [NO_WIRE]
+                return needs.waits_for.union(*(self.waits.get(self.cut(place), NO_WIRE) for place in places_in((rule,))))
+        first, *rest = [self.needed(each, needs) for each in inner] or [NO_WIRE]
         return first.intersection(*rest)
 
 
@@ -251,11 +253,11 @@ def _waits(rules: tuple[Rule, ...], owners: dict[Names, frozenset[Wires]], cut: 
     The elements of an array that is joined are zeros until then.
     """
     found: dict[Names, Wires] = {}
-    for rule, told in _told(rules, "holder"):
+    for rule, needs in _with_needs(rules, "holder"):
         for place in places_in((rule,)):
             names = cut(place)
             if len(owners.get(names, ())) == 1:
-                found[names] = found.get(names, NO_WIRE) | told.waits_for
+                found[names] = found.get(names, NO_WIRE) | needs.waits_for
     return found
 
 
@@ -290,8 +292,8 @@ def value_of_wire(expr: Expr, wire: str, memory: Memory = NOTHING_KEPT) -> Expr:
     if known is not None:
         return known
     if isinstance(expr, typed.Has) and asks_arrival(expr):
-        (asked,) = wire_of(expr.place)
-        return typed.Const(True, typed.BOOL, expr.span) if asked == wire else memory.arrived.get(asked, expr)
+        (arrived,) = wire_of(expr.place)
+        return typed.Const(True, typed.BOOL, expr.span) if arrived == wire else memory.arrived.get(arrived, expr)
     found = rebuilt(expr, lambda part: value_of_wire(part, wire, memory))
     match found:
         case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place) | typed.Search(place):
@@ -325,10 +327,10 @@ def _owners(rules: tuple[Rule, ...], cut: Callable[[Place], Names]) -> dict[Name
     All rules of most fields run at messages of the same wires; a field whose rules do not has several sets of wires.
     """
     found: dict[Names, frozenset[Wires]] = {}
-    for rule, told in _told(rules, "holder"):
+    for rule, needs in _with_needs(rules, "holder"):
         for place in places_in((rule,)):
             names = cut(place)
-            found[names] = found.get(names, frozenset[Wires]()) | ({told.runs_at} if told.wires else frozenset[Wires]())
+            found[names] = found.get(names, frozenset[Wires]()) | ({needs.runs_at} if needs.wires else frozenset[Wires]())
     return found
 
 
@@ -355,8 +357,8 @@ def _cutter(holder: Message) -> Callable[[Place], Names]:
 
 def wrong_wires(rules: tuple[Rule, ...], target: Side, holder: Message) -> list[Diagnostic]:
     """Reports of rules that need several wires at once, and, of rules to unpack, of fields that several wires set."""
-    every = _told(rules, target)
-    problems = [words.apart(rule.span, sorted(told.wires)) for rule, told in every if told.wires and not told.runs_at]
+    every = _with_needs(rules, target)
+    problems = [words.apart(rule.span, sorted(needs.wires)) for rule, needs in every if needs.wires and not needs.runs_at]
     return problems or (_overlaps(rules, every, holder) if target == "holder" else [])
 
 
@@ -365,7 +367,7 @@ def _overlaps(rules: tuple[Rule, ...], every: list[tuple[Rule, _Nested]], holder
     cut = _cutter(holder)
     shared = [names for names, groups in _owners(rules, cut).items() if len(groups) > 1]
     for names in shared:
-        mine = [(rule, told.runs_at, place) for rule, told in every for place in places_in((rule,)) if cut(place) == names]
+        mine = [(rule, needs.runs_at, place) for rule, needs in every for place in places_in((rule,)) if cut(place) == names]
         if _can_be_joined(names, mine, holder):
             continue
         first: tuple[Wires, Span | None] | None = None

@@ -34,7 +34,7 @@ ENVIRONMENT_VARIABLE = "ROSETTA_JIT_PATH"
 class Lookup:
     """One file that was asked for: by which name, by whom, where it was (None where there was none), and the SHA-256 of its text."""
 
-    asked: str
+    name: str
     importer: str | None
     found: str | None
     digest: str | None
@@ -52,16 +52,16 @@ class Reading:
         self.lookups += other.lookups
         self.size_bytes += other.size_bytes
 
-    def record(self, asked: str, importer: Source | None, found: Source) -> None:
+    def record(self, name: str, importer: Source | None, found: Source) -> None:
         data = found.text.encode()
         self.size_bytes += len(data)
         if self.size_bytes > MAX_TEXT_BYTES:
             raise SchemaError((words.texts_too_large(found.name, MAX_TEXT_BYTES),))
         digest = sha256(data).hexdigest()
-        self.lookups.append(Lookup(asked, importer.name if importer else None, found.name, digest))
+        self.lookups.append(Lookup(name, importer.name if importer else None, found.name, digest))
 
-    def record_missing(self, asked: str, importer: Source | None) -> None:
-        self.lookups.append(Lookup(asked, importer.name if importer else None, None, None))
+    def record_missing(self, name: str, importer: Source | None) -> None:
+        self.lookups.append(Lookup(name, importer.name if importer else None, None, None))
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +127,7 @@ class SearchPath:
         if lookup.importer is None:
             return ()
         beside = () if lookup.importer in dict(self.files) else (Path(lookup.importer).parent,)
-        candidates = [str(folder / lookup.asked) for folder in (*beside, *self.folders)]
+        candidates = [str(folder / lookup.name) for folder in (*beside, *self.folders)]
         if lookup.found is None:
             return tuple(candidates)
         return tuple(candidates[: candidates.index(lookup.found)]) if lookup.found in candidates else ()

@@ -227,11 +227,11 @@ class Trip:
         """Whether a place is known not to be there, or another case of its union is."""
         for condition, (holds, ranges) in self.truths.items():
             if isinstance(condition, Has) and not ranges and condition.place.side == self.origin:
-                asked = field_names(condition.place)
+                subject = field_names(condition.place)
                 unions = union_depths(condition.place, message)
-                if not holds and names[: len(asked)] == asked:
+                if not holds and names[: len(subject)] == subject:
                     return True
-                if holds and any(asked[:size] == names[:size] and asked[size : size + 1] != names[size : size + 1] for size in unions):
+                if holds and any(subject[:size] == names[:size] and subject[size : size + 1] != names[size : size + 1] for size in unions):
                     return True
         return False
 

@@ -162,11 +162,11 @@ def _presence(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
     message = scope.messages[place.side]
     if place.side == "wire" and len(place.steps) == 1 and message.root.name.startswith(OF_WIRES):
         return Has(place, span=span)
-    schema, asked = message.schema, is_found(place, message)
+    schema, questions = message.schema, is_found(place, message)
     if any(isinstance(step, FieldStep) and isinstance(schema.resolve(step.field.type), Optional | Union) for step in place.steps):
-        asked.append(Has(place, span=span))
-    if asked:
-        return reduce(lambda left, right: Binary("and", left, right, BOOL, span), asked)
+        questions.append(Has(place, span=span))
+    if questions:
+        return reduce(lambda left, right: Binary("and", left, right, BOOL, span), questions)
     scope.problems.append(fields.always_there(span, describe(place.type)))
     return None
 

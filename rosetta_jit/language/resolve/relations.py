@@ -55,9 +55,9 @@ def derived(mapping: Mapping, schema: Schema, others: UsableMappings, problems: 
         found = typed(expr) if not fields_of(expr, "holder") and not fields_of(expr, "wire") else None
         return found.value if isinstance(found, Const) and type(found.value) is int else None
 
-    asked = [words.arrival_to_pack(call.span) for call in _arrivals(mapping)]
-    problems.extend(asked)
-    return in_each_direction(mapping, type_of, constant_of, [] if asked else problems)
+    refused = [words.arrival_to_pack(call.span) for call in _arrivals(mapping)]
+    problems.extend(refused)
+    return in_each_direction(mapping, type_of, constant_of, [] if refused else problems)
 
 
 def _arrivals(mapping: Mapping) -> Iterator[Call]:

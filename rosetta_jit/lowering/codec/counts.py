@@ -26,7 +26,7 @@ LIMITS = {"i8": 1 << 7, "u8": 1 << 8, "i16": 1 << 15, "u16": 1 << 16, "i32": 1 <
 def read_count(writer: Writer, fields: Fields, path: tuple[str, ...], count: Count, kind: str, *, least: int = 0) -> Expr:
     """A count that has come: not negative, and what the schema says it must be. ``least`` are counted, but are not of the value."""
     where, at = fields.shown(path), writer.position
-    found = _told(writer, fields, count, where) if count.scalar is None else _counted(writer, count, where, least)
+    found = _implied(writer, fields, count, where) if count.scalar is None else _counted(writer, count, where, least)
     if count.maximum is not None:
         writer.expect(Compare("le", found, index(count.maximum + least)), kind, where, f"at most {count.maximum}", at=at)
     if isinstance(count.value, int):
@@ -60,7 +60,7 @@ def _counted(writer: Writer, count: Count, where: Where, least: int) -> Expr:
     return writer.let("elements", add(Binary("div", units, index(count.unit)), least))
 
 
-def _told(writer: Writer, fields: Fields, count: Count, where: Where) -> Expr:
+def _implied(writer: Writer, fields: Fields, count: Count, where: Where) -> Expr:
     """A count that the type or another field tells."""
     assert count.value is not None
     return index(count.value) if isinstance(count.value, int) else writer.let("count", evaluate(count.value, fields.scope, writer, where))
@@ -71,7 +71,7 @@ def write_count(writer: Writer, fields: Fields, count: Count, value: Expr, where
     if count.maximum is not None:
         writer.expect(Compare("le", value, index(count.maximum)), kind, where, f"at most {count.maximum}")
     if count.value is not None and not isinstance(count.value, int):
-        agrees = Compare("eq", value, _told(writer, fields, count, where))
+        agrees = Compare("eq", value, _implied(writer, fields, count, where))
         writer.expect(agrees, kind, where, "must agree with the fields that determine it")
     value = add(value, extra)
     if isinstance(count.value, int):

@@ -127,7 +127,7 @@ def _extent(writer: Writer, order: Order, head: Expr, where: Where) -> tuple[Exp
     start, size = writer.var("start", writer.position), writer.var("size", index(8))
     for short in (0, 1, 2):
         writer.assign(size, Select(Compare("eq", code, index(short)), index(1 << short), size))
-    with writer.nested() as told:
+    with writer.nested() as own_length:
         word = writer.let("length", integer(writer.load("u32", where, order)))
         writer.assign(start, Select(Compare("eq", code, index(OWN_LENGTH)), writer.position, start))
         unit: Expr = index(1)
@@ -135,7 +135,7 @@ def _extent(writer: Writer, order: Order, head: Expr, where: Where) -> tuple[Exp
             unit = Select(Compare("eq", code, index(long)), index(factor), unit)
         total = Binary("mul", word, writer.let("unit", unit))
         writer.assign(size, Select(Compare("eq", code, index(OWN_LENGTH)), word, Binary("add", total, index(4))))
-    writer.emit(If(Compare("ge", code, index(OWN_LENGTH)), block(told)))
+    writer.emit(If(Compare("ge", code, index(OWN_LENGTH)), block(own_length)))
     inside = Binary("and", Compare("ge", start, BEGIN), Compare("le", start, add(writer.position, 4)))
     sane = Binary("and", Compare("ge", size, index(0)), Compare("le", size, index(1 << 40)))
     writer.expect(Binary("and", inside, sane), "length", where, "no such length")  # true anyway; said for the proof

@@ -27,9 +27,9 @@ def look_ahead(rules: tuple[typed.Rule, ...], values: Evaluation) -> None:
     look_ahead_of(tuple(expr for rule in every_rule(rules) for expr in expressions_of(rule)), values)
 
 
-def look_ahead_of(asked: tuple[typed.Expr, ...], values: Evaluation) -> None:
+def look_ahead_of(exprs: tuple[typed.Expr, ...], values: Evaluation) -> None:
     """Before a loop that computes some expressions."""
-    for each in (part for expr in asked for part in parts(expr)):
+    for each in (part for expr in exprs for part in parts(expr)):
         if not all(name in values.variables for name in _free_variables(each)):
             continue
         if isinstance(each, typed.Search) and _finds(each):

@@ -117,7 +117,7 @@ class Values:
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
             case typed.Has() | typed.Search() | typed.Reduce():
-                return self.asked(value)
+                return self.answer(value)
             case typed.StateVariable(_, number, _, type_):
                 return remembered(number, scalar_type(type_))
             case typed.Choice() | typed.Listed() | typed.Given():
@@ -125,7 +125,7 @@ class Values:
             case _:
                 assert_never(value)
 
-    def asked(self, value: typed.Has | typed.Search | typed.Reduce) -> ir.Expr:
+    def answer(self, value: typed.Has | typed.Search | typed.Reduce) -> ir.Expr:
         """What is asked of a place, or of the elements of arrays."""
         match value:
             case typed.Has(place):
@@ -208,9 +208,9 @@ class Values:
         good = ir.Const("bool", value=False) if when is None else ir.Unary("not", when)
         self.writer.expect(good, "rejected", self.where, reason, line=self.line)
 
-    def look_ahead(self, asked: tuple[typed.Expr, ...]) -> None:
+    def look_ahead(self, exprs: tuple[typed.Expr, ...]) -> None:
         """Before a loop that computes some expressions: what is the same in each round, and takes a loop of its own."""
-        look_ahead_of(asked, self)
+        look_ahead_of(exprs, self)
 
     def with_local(self, name: str, number: ir.Expr, *, afresh: bool = False) -> Values:
         """The same where a loop variable has a value; ``afresh`` where what was decided may be something else for it."""

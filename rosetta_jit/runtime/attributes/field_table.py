@@ -156,7 +156,7 @@ class FieldTable:
     def _fill(self, words: NDArray[np.int64], record: Record, entry: Entry) -> None:
         node = entry.node
         words[Place.ENTRY] = id(entry)
-        words[Place.MASK], words[Place.PRESENCE], words[Place.WANTED] = _asked(entry)
+        words[Place.MASK], words[Place.PRESENCE], words[Place.WANTED] = _presence_bits(entry)
         words[Place.KIND] = Shown.PYTHON
         match node:
             case Record():
@@ -221,7 +221,7 @@ def _lengths(node: Spanned) -> tuple[int, int]:
             return 0, 0
 
 
-def _asked(entry: Entry) -> tuple[int, int, int]:
+def _presence_bits(entry: Entry) -> tuple[int, int, int]:
     """Mask, offset and wanted bits of what tells whether a field is there, where what is absent is not read as zero."""
     match entry.presence:
         case Bit(cell, mask) if entry.default:

@@ -74,7 +74,7 @@ def prelinked(*images: bytes, gives: Container[str] | None = None) -> bytes | No
         return None
 
 
-def _laid_out(files: Sequence[ObjectFile], asked: Container[str] | None) -> Prelinked:
+def _laid_out(files: Sequence[ObjectFile], wanted: Container[str] | None) -> Prelinked:
     sections = _in_memory(files)
     code, data = bytearray(), bytearray()
     places = _append(code, 0, {key: each for key, each in sections.items() if not each.flags & WRITABLE})
@@ -92,7 +92,7 @@ def _laid_out(files: Sequence[ObjectFile], asked: Container[str] | None) -> Prel
         if place >= len(code):
             raise _UnknownError  # an address among the data: it depends on where they lie
         struct.pack_into("<i", code, place, _target(relocation.kind, number, symbol, places, tables) + relocation.addend - place)
-    gives = {name: _place(number, symbol, places) for name, (number, symbol) in given.items() if asked is None or name in asked}
+    gives = {name: _place(number, symbol, places) for name, (number, symbol) in given.items() if wanted is None or name in wanted}
     return Prelinked(bytes(code), bytes(data), tables.slots, tables.wants, gives)
 
 

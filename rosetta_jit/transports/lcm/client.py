@@ -32,8 +32,8 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
         if len(data) > most:
             source.lose_large(len(data), most)
             return
-        told = {"fingerprint": int.from_bytes(data[:8], "big")} if len(data) >= 8 else None
-        source.arrived(Message(data, channel, None, time_ns(), None, told))
+        attributes = {"fingerprint": int.from_bytes(data[:8], "big")} if len(data) >= 8 else None
+        source.arrived(Message(data, channel, None, time_ns(), None, attributes))
 
     def run(ends: Event) -> None:
         while not ends.is_set():

@@ -65,8 +65,8 @@ class Client:
         self.paho.disconnect()
         self.paho.loop_stop()
 
-    def _on_connect(self, *told: Any) -> None:
-        reason: Any = told[3]
+    def _on_connect(self, *arguments: Any) -> None:
+        reason: Any = arguments[3]
         if reason.is_failure:
             self._why = str(reason)
             return
@@ -155,9 +155,9 @@ class MqttSink(Sink):
                 self.lose("closed before it was sent", left)
             self._client.close()
 
-    def _sent(self, *told: Any) -> None:
+    def _sent(self, *arguments: Any) -> None:
         with self._changed:
-            self._waiting.discard(told[2])
+            self._waiting.discard(arguments[2])
             self._changed.notify_all()
 
 

@@ -112,7 +112,7 @@ class RosCaller(Caller):
             raise ProtocolError(f"the service refuses: {fields['error'][:300]}")
         if wrong := disagreement(self._wanted, fields):
             raise ProtocolError(wrong)
-        told = {"callerid": fields.get("callerid", ""), "md5": fields.get("md5sum", "")}
+        attributes = {"callerid": fields.get("callerid", ""), "md5": fields.get("md5sum", "")}
         self._greeted.set()
         while True:
             worked = bytes((yield Between(1))) == WORKED
@@ -124,7 +124,7 @@ class RosCaller(Caller):
             if pending is None:
                 raise ProtocolError("an answer to no question")
             if worked:
-                pending.answer(Message(data, self._service, fields.get("response_type"), time_ns(), None, told))
+                pending.answer(Message(data, self._service, fields.get("response_type"), time_ns(), None, attributes))
             else:
                 text = bytes(data).decode("utf-8", "replace")[:2000]
                 pending.fail(TransportError("refused", self.address, f"the service failed: {text}"))
@@ -168,7 +168,7 @@ class Service:
         host = f"[{node.host}]" if ":" in node.host else node.host
         self._uri = f"rosrpc://{host}:{node.port}"
         type_ = "" if self.type == "*" else self.type
-        self._told = {
+        self._own_header = {
             "callerid": node.name,
             "md5sum": options["md5"],
             "type": self.type,
@@ -189,14 +189,14 @@ class Service:
 
     def talk(self, stream: Stream, fields: Mapping[str, str]) -> Machine:
         """Answer a caller's header, and then its questions."""
-        if wrong := disagreement(self._told, fields):
+        if wrong := disagreement(self._own_header, fields):
             raise refuse(stream, wrong)
-        stream.send(header(self._told))
+        stream.send(header(self._own_header))
         if fields.get("probe") == "1":  # who looks whether the service is there
             return
         self._streams.add(stream)
         self._server.connections = len(self._streams)
-        stays, told = fields.get("persistent") == "1", {"callerid": fields.get("callerid", "")}
+        stays, attributes = fields.get("persistent") == "1", {"callerid": fields.get("callerid", "")}
 
         def reply(answer: bytes | None, error: str | None) -> None:
             data = error.encode() if error is not None else answer or b""
@@ -205,7 +205,7 @@ class Service:
                 stream.finish(1.0)
 
         def take(data: memoryview) -> None:
-            self._server.asked(Message(data, self.name, self._told["request_type"], time_ns(), None, told), reply)
+            self._server.asked(Message(data, self.name, self._own_header["request_type"], time_ns(), None, attributes), reply)
 
         yield from messages(take, self._most)
 

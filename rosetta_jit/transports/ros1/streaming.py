@@ -139,7 +139,7 @@ class Subscription:
         if wrong := disagreement(self._wanted, fields):
             raise refuse(stream, wrong)
         source = self._source
-        told = {
+        attributes = {
             "callerid": fields.get("callerid", ""),
             "md5": fields.get("md5sum", ""),
             "definition": fields.get("message_definition", ""),
@@ -150,7 +150,7 @@ class Subscription:
         if len(self._seen) < MAX_CONNECTIONS:
             self._seen.add(publisher)
         source.connections = len(self._streams)
-        yield from messages(source.taker(self.name, fields.get("type"), told), self._most)
+        yield from messages(source.taker(self.name, fields.get("type"), attributes), self._most)
 
     def _gone(self, uri: str, why: str) -> None:
         stream = self._streams.pop(uri, None)
@@ -183,7 +183,7 @@ class RosSink(Sink):
         self._streams: set[Stream] = set()
         self._closed = False
         self._node = nodes().enter(options)
-        self._told = {
+        self._own_header = {
             "callerid": self._node.name,
             "topic": self.name,
             "type": self.type,
@@ -210,9 +210,9 @@ class RosSink(Sink):
 
     def talk(self, stream: Stream, fields: Mapping[str, str]) -> Machine:
         """Answer a subscriber's header, and send from then on."""
-        if wrong := disagreement(self._told, fields):
+        if wrong := disagreement(self._own_header, fields):
             raise refuse(stream, wrong)
-        stream.send(header(self._told))
+        stream.send(header(self._own_header))
         if self._latched is not None:
             stream.send(LENGTH.pack(len(self._latched)), self._latched)
         self._streams.add(stream)

@@ -38,7 +38,7 @@ class RsbCaller(Caller):
         self._informer = Informer(scope, options["type"] or VOID)
         self._most: int = options["max_message"]
         self._timeout: float = options["timeout"]
-        self._asked: dict[EventId, Pending] = {}
+        self._pending: dict[EventId, Pending] = {}
         self._lock = threading.Lock()
         self._bus = buses().enter(options)
         self._participant = Participant(scope, self, self._take)
@@ -55,19 +55,19 @@ class RsbCaller(Caller):
         event = self._informer.event(data, None, {**(attributes or {}), "method": REQUEST}, self.address)
         pending = Pending()
         with self._lock:
-            self._asked[event.id] = pending
+            self._pending[event.id] = pending
         try:
             self._bus.send(event, self)
             self.passed(len(data))
             return pending.wait(until, self.address)
         finally:
             with self._lock:
-                self._asked.pop(event.id, None)
+                self._pending.pop(event.id, None)
 
     def close(self) -> None:
         if not self._closed:
             self._closed = True
-            for each in tuple(self._asked.values()):
+            for each in tuple(self._pending.values()):
                 each.fail(TransportError("closed", self.address, "this caller was closed"))
             self._bus.leave(self, self._participant)
             buses().leave(self._bus, 0.5)
@@ -75,7 +75,7 @@ class RsbCaller(Caller):
     def _take(self, event: Event) -> None:
         if event.method != REPLY or not event.causes:
             return
-        pending = self._asked.get(event.causes[0])  # other peers look at the first cause only, too
+        pending = self._pending.get(event.causes[0])  # other peers look at the first cause only, too
         if pending is None:
             return
         if ERROR in event.user_infos:
@@ -97,13 +97,13 @@ def serve(address: Address, server: Server, options: Mapping[str, Any]) -> None:
             server.asked(message_of(event), lambda answer, error: send(request, answer, error))
 
     def send(request: EventId, answer: bytes | None, error: str | None) -> None:
-        told: dict[str, Any] = {"method": REPLY, "causes": [request]}
+        attributes: dict[str, Any] = {"method": REPLY, "causes": [request]}
         if error is not None:
-            told |= {"user_infos": {ERROR: "1"}, "type": TEXT}
+            attributes |= {"user_infos": {ERROR: "1"}, "type": TEXT}
             answer = error.encode()
         elif answer is None:
-            told["type"] = VOID
-        bus.send(informer.event(answer or b"", None, told, server.address), server)
+            attributes["type"] = VOID
+        bus.send(informer.event(answer or b"", None, attributes, server.address), server)
 
     participant = Participant(scope, server, take)
     bus.join(server, participant)

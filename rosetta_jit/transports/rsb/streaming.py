@@ -42,7 +42,7 @@ def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> 
 def message_of(event: Event) -> Message:
     """An event as a message."""
     data = event.data if isinstance(event.data, bytes | memoryview) else memoryview(event.data)
-    told = {
+    attributes = {
         "id": event.id,
         "create_time": 1000 * event.create_time,
         "method": event.method,
@@ -50,7 +50,7 @@ def message_of(event: Event) -> Message:
         "user_infos": event.user_infos,
         "user_times": event.user_times,
     }
-    return Message(data, event.scope, event.schema or None, time_ns(), 1000 * event.send_time or None, told)
+    return Message(data, event.scope, event.schema or None, time_ns(), 1000 * event.send_time or None, attributes)
 
 
 class Informer:

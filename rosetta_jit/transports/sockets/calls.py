@@ -34,7 +34,7 @@ class TcpCaller(Caller):
         self._frame: str = options["frame"]
         self._most: int = options["max_message"]
         self._timeout: float = options["timeout"]
-        self._asked: deque[Pending] = deque()
+        self._pending: deque[Pending] = deque()
         self._order = threading.Lock()
         self._links = Links(address, self, self._machine, listen=options["listen"] == "yes", went=self._lost)
 
@@ -49,9 +49,9 @@ class TcpCaller(Caller):
             stream = next(iter(waited(self._links, until - monotonic())), None)
             if stream is None:
                 raise TransportError("unreachable", self.address, "nobody answers there")
-            self._asked.append(pending)
+            self._pending.append(pending)
             if not stream.send(*parts):
-                self._asked.remove(pending)
+                self._pending.remove(pending)
                 raise TransportError("closed", self.address, "the connection is gone, or too slow")
         self.passed(len(data))
         try:
@@ -67,16 +67,16 @@ class TcpCaller(Caller):
 
     def _machine(self, stream: Stream) -> Machine:
         def take(data: memoryview) -> None:
-            if self._asked:
-                self._asked.popleft().answer(Message(data, self._channel, None, time_ns()))
+            if self._pending:
+                self._pending.popleft().answer(Message(data, self._channel, None, time_ns()))
             else:
                 stream.finish(0)
 
         return messages(self._frame, take, self._most)
 
     def _lost(self) -> None:
-        while self._asked:
-            self._asked.popleft().fail(TransportError("closed", self.address, "the connection ended before the answer came"))
+        while self._pending:
+            self._pending.popleft().fail(TransportError("closed", self.address, "the connection ended before the answer came"))
 
 
 def serve(address: Address, server: Server, options: Mapping[str, Any]) -> None:

@@ -109,8 +109,8 @@ def messages(port: Owner, line: Line | None, sender: str, carrier: str) -> Machi
         frame = yield from frames(most)
         command = frame.command
         if command in ("D", "d"):
-            sent, told = attributes_of(frame.envelope, sender, carrier) if frame.envelope else (None, plain)
-            message = Message(frame.payload, channel, None, time_ns(), sent, told)
+            sent, attributes = attributes_of(frame.envelope, sender, carrier) if frame.envelope else (None, plain)
+            message = Message(frame.payload, channel, None, time_ns(), sent, attributes)
             if command == "d" and port.answers:
                 if line is None:
                     raise ProtocolError(f"a question by {carrier}, which has no way back for the answer")
@@ -177,8 +177,8 @@ def _data(port: Owner, line: Line, command: str, ack: bytes, sender: str, carrie
         if len(text) > min(port.most, MAX_LINE_BYTES):
             raise ProtocolError(f"a message above max_message={port.most}")
     data = from_text(text, port.dialect)
-    sent, told = attributes_of(command[2:] if command[1:2] == " " else "", sender, carrier)
-    message = Message(data, port.name, None, time_ns(), sent, told)
+    sent, attributes = attributes_of(command[2:] if command[1:2] == " " else "", sender, carrier)
+    message = Message(data, port.name, None, time_ns(), sent, attributes)
     if command[0] == "d" and command[:2] != "do" and ack and port.answers:
         port.asked(message, _text_reply(line, ack, port.dialect))
     else:

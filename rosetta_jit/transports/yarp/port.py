@@ -83,7 +83,7 @@ class Port:
         self.answers = asked is not None
         self.outputs: dict[str, Output | DatagramOutput] = {}
         self._names, self._host, self._carrier, self._counts = names, options["host"], options["carrier"], counts
-        self._take, self._asked = take, asked
+        self._take, self._answer = take, asked
         self._reads, self._writes = reads, writes
         self._inputs: dict[Stream | DatagramInput, tuple[str, str]] = {}
         self._groups: dict[str, Group] = {}
@@ -170,8 +170,8 @@ class Port:
 
     def asked(self, message: Message, reply: Reply) -> None:
         """A question came."""
-        if self._asked is not None:
-            self._asked(message, reply)
+        if self._answer is not None:
+            self._answer(message, reply)
 
     def administer(self, command: str, answer: Callable[[str], object]) -> None:
         """Obey a command of `yarp connect` and its like; connecting takes a while, and is done by the port's own thread."""
@@ -188,8 +188,8 @@ class Port:
                 answer(f"(from {quoted(other)}) (to {quoted(self.name)}) (carrier {found})" if found else "")
             case ["[list]", "[out]", other]:
                 output = self.outputs.get(other)
-                told = " (connectionless 1)" if isinstance(output, DatagramOutput) else ""
-                answer(f"(from {quoted(self.name)}) (to {quoted(other)}) (carrier {output.carrier}){told}" if output else "")
+                remark = " (connectionless 1)" if isinstance(output, DatagramOutput) else ""
+                answer(f"(from {quoted(self.name)}) (to {quoted(other)}) (carrier {output.carrier}){remark}" if output else "")
             case ["[add]", other, *carrier]:
                 if len(self._tasks) < MAX_CONNECTING:
                     self._soon(lambda: answer(self._add(other, *carrier[:1])))
@@ -278,7 +278,7 @@ class Port:
 
     def _add(self, other: str, carrier: str = "") -> str:
         way, _, name = other.rpartition(":/") if ":/" in other else (carrier or "tcp", "", other)
-        if self._take is not None or self._asked is not None:
+        if self._take is not None or self._answer is not None:
             return f"-1 {quoted('This port only receives')}"
         if way not in CARRIERS:
             return f"-1 {quoted(f'This port does not know the carrier {way[:20]}')}"

@@ -17,15 +17,15 @@ def stamp(sequence: int, time_ns: int) -> str:
 
 def attributes_of(envelope: str, sender: str, carrier: str) -> tuple[int | None, Mapping[str, Any]]:
     """When a message with such an envelope was sent, in nanoseconds, where it is a stamp; and its attributes."""
-    told: dict[str, Any] = {"sender": sender, "carrier": carrier}
+    attributes: dict[str, Any] = {"sender": sender, "carrier": carrier}
     if not envelope:
-        return None, told
-    told["envelope"] = envelope
+        return None, attributes
+    attributes["envelope"] = envelope
     sequence, _, seconds = envelope.partition(" ")
     if len(envelope) > MAX_STAMP_DIGITS + 12 or not sequence.isdecimal():
-        return None, told
+        return None, attributes
     whole, _, part = seconds.partition(".")
     if not (whole.isdecimal() and (part.isdecimal() or not part) and len(whole) < 12):
-        return None, told
-    told["sequence"] = int(sequence)
-    return int(whole) * 10**9 + int(part[:9].ljust(9, "0")), told
+        return None, attributes
+    attributes["sequence"] = int(sequence)
+    return int(whole) * 10**9 + int(part[:9].ljust(9, "0")), attributes

@@ -69,9 +69,9 @@ def serve(address: Address, server: Server, options: Mapping[str, Any]) -> None:
 
     def take(query: zenoh.Query) -> None:
         data = b"" if query.payload is None else query.payload.to_bytes()
-        told: dict[str, Any] = {"parameters": str(query.parameters)}
+        attributes: dict[str, Any] = {"parameters": str(query.parameters)}
         if query.attachment is not None:
-            told["attachment"] = query.attachment.to_bytes()
+            attributes["attachment"] = query.attachment.to_bytes()
 
         def reply(answer: bytes | None, error: str | None) -> None:
             if error is not None:
@@ -80,7 +80,7 @@ def serve(address: Address, server: Server, options: Mapping[str, Any]) -> None:
                 query.reply(query.key_expr if "*" not in str(query.key_expr) else key, answer or b"")  # pyright: ignore[reportUnknownMemberType]
             query.drop()  # pyright: ignore[reportUnknownMemberType]
 
-        server.asked(Message(data, str(query.key_expr), None, time_ns(), None, told), reply)
+        server.asked(Message(data, str(query.key_expr), None, time_ns(), None, attributes), reply)
 
     session = sessions().enter(options, address)
     queryable = session.declare_queryable(key, take)

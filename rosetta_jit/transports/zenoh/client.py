@@ -49,11 +49,11 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
 def message_of(sample: zenoh.Sample, data: bytes) -> Message:
     """A sample as a message; its type is the encoding that it says, its time of sending that of its timestamp."""
     encoding = str(sample.encoding)
-    told: dict[str, Any] = {"encoding": encoding}
+    attributes: dict[str, Any] = {"encoding": encoding}
     if sample.attachment is not None:
-        told["attachment"] = sample.attachment.to_bytes()
+        attributes["attachment"] = sample.attachment.to_bytes()
     sent = None if sample.timestamp is None else int(sample.timestamp.get_time().timestamp() * 1e9)
-    return Message(data, str(sample.key_expr), None if encoding == DEFAULT_ENCODING else encoding, time_ns(), sent, told)
+    return Message(data, str(sample.key_expr), None if encoding == DEFAULT_ENCODING else encoding, time_ns(), sent, attributes)
 
 
 def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
@@ -61,10 +61,10 @@ def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> 
     return ZenohSink(address, options, lost)
 
 
-def put(sink: Sink, publisher: Any, data: bytes | bytearray | memoryview, **told: Any) -> bool:
+def put(sink: Sink, publisher: Any, data: bytes | bytearray | memoryview, **options: Any) -> bool:
     """Hand a message over to zenoh; counts whether it was taken."""
     try:
-        publisher.put(bytes(data), **told)
+        publisher.put(bytes(data), **options)
     except zenoh.ZError as error:
         sink.lose(f"zenoh: {error}"[:200])
         return False
@@ -91,8 +91,8 @@ class ZenohSink(Sink):
         if self._closed:
             raise TransportError("closed", self.address, "this sink is closed")
         self.check_size(len(data), self._most)
-        told = attributes or {}
-        return put(self, self._publisher, data, encoding=told.get("encoding"), attachment=told.get("attachment"))
+        wanted = attributes or {}
+        return put(self, self._publisher, data, encoding=wanted.get("encoding"), attachment=wanted.get("attachment"))
 
     def close(self) -> None:
         if not self._closed:

@@ -91,9 +91,9 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
             source.lose_large(len(data), most)
             return
         found, hash_ = str(sample.key_expr).split("/")[-2:]
-        told = attachment_of(sample.attachment.to_bytes()) if sample.attachment is not None else {}
-        sent = told.pop("sent", None)
-        source.arrived(Message(data, topic, plain(found), time_ns(), sent, {**told, "hash": hash_}))
+        attributes = attachment_of(sample.attachment.to_bytes()) if sample.attachment is not None else {}
+        sent = attributes.pop("sent", None)
+        source.arrived(Message(data, topic, plain(found), time_ns(), sent, {**attributes, "hash": hash_}))
 
     session = sessions().enter(options, address)
     subscriber = session.declare_subscriber(_key(topic, type_, options), take)
@@ -140,8 +140,8 @@ class Ros2Sink(Sink):
         if self._closed:
             raise TransportError("closed", self.address, "this sink is closed")
         self.check_size(len(data), self._most)
-        told = _ATTACHMENT.pack(next(self._number), time_ns() if time is None else time, GID_BYTES, self._gid)
-        return put(self, self._publisher, data, attachment=told)
+        attachment = _ATTACHMENT.pack(next(self._number), time_ns() if time is None else time, GID_BYTES, self._gid)
+        return put(self, self._publisher, data, attachment=attachment)
 
     def close(self) -> None:
         if not self._closed:

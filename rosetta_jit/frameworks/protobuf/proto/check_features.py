@@ -48,8 +48,8 @@ def _option(option: Option, version: Version) -> Iterator[Diagnostic]:
         if option.parts[0] == "features":
             yield say_edition.features_before_editions(option.span)
         return
-    told = [choice.path for choice in choices((option,))]
-    if len(set(told)) < len(told):
+    paths = [choice.path for choice in choices((option,))]
+    if len(set(paths)) < len(paths):
         yield say.repeated_option(option.span, option.name)
 
 

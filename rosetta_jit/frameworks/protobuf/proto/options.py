@@ -138,7 +138,7 @@ def _check(holder: str, options: tuple[Option, ...], declared: Declarations) -> 
         type_ = type_at(holder, option.parts, declared)
         if option.parts in seen and type_ != "repeated":
             yield say.repeated_option(option.span, option.name)
-        seen.update(_told(option.parts, option.value))
+        seen.update(_set_paths(option.parts, option.value))
         # What is said of features is checked with them.
         if option.parts[0] == "features":
             continue
@@ -151,12 +151,12 @@ def _check(holder: str, options: tuple[Option, ...], declared: Declarations) -> 
             yield say.wrong_option(option.span, option.name, str(error.args[0]), spelled(option.value))
 
 
-def _told(parts: tuple[str, ...], value: Value) -> Iterator[tuple[str, ...]]:
+def _set_paths(parts: tuple[str, ...], value: Value) -> Iterator[tuple[str, ...]]:
     """What is set once an option is: it, what holds it, and what its value says."""
     yield from (parts[:count] for count in range(1, len(parts) + 1))
     if isinstance(value, Aggregate):
         for entry in value.entries:
-            yield from _told((*parts, entry.name), entry.value)
+            yield from _set_paths((*parts, entry.name), entry.value)
 
 
 def values(type_: str, value: Value, declared: Declarations) -> Iterator[Constant]:
