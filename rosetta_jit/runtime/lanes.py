@@ -183,6 +183,11 @@ class Lanes:
                     return value
         raise in_use()
 
+    def check_unchanged(self, epoch: int) -> None:
+        """Inside ``with lanes:``, refuse to go on from what was read at an epoch if the lanes have changed since then: InUse."""
+        if self.words[EPOCH] != ~epoch:
+            raise in_use()
+
     @classmethod
     def of(cls, layout: Layout, rows: int = 1) -> Lanes:
         """Lanes of a layout."""

@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.runtime.holder.dictionary import Dictionary
 from tests.api.sharing import CHOICES, KINDS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def share(kind, seconds):
@@ -73,13 +79,13 @@ def test_a_list_that_changes_while_it_is_sorted_loses_nothing():
 
 
 class Interrupting:
-    """A value that equals "b" and changes the list when it is first compared."""
+    """A value that equals "b", and changes the list when it is first compared with that."""
 
     def __init__(self, change):
         self.changes = [change]
 
     def __eq__(self, other):
-        while self.changes:
+        while other == "b" and self.changes:
             self.changes.pop()()
         return other == "b"
 
@@ -140,3 +146,63 @@ def test_a_key_is_taken_out_only_of_the_map_that_was_read():
     with pytest.raises(rj.InUse):
         holder.k.pop(LateKey(lambda: holder.k[1].s.append("late")))
     assert list(holder.k[1].s) == ["one", "late"]
+
+
+def _numbers(*elements):
+    schema = {"n.proto": 'syntax = "proto3"; package p; message N { repeated int32 v = 1; map<int32, string> k = 2; }'}
+    return rj.Decoder.of("p.N", schema=schema, imports=["n.proto"], encoding="protobuf").holder_type(v=elements)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda v, late: v.sort(key=lambda each: late() or each),
+        lambda v, late: v.remove(Late(late)),
+        lambda v, late: v.insert(LateIndex(late), 9),
+        lambda v, late: v.pop(LateIndex(late)),
+        lambda v, late: v.__delitem__(LateIndex(late)),
+    ],
+    ids=["sort", "remove", "insert", "pop", "del"],
+)
+def test_numbers_are_changed_only_where_their_list_is_as_it_was(change):
+    holder = _numbers(3, 1, 2)
+    with pytest.raises(rj.InUse):
+        change(holder.v, lambda: holder.v.append(7) if 7 not in holder.v.tolist() else None)
+    assert holder.v.tolist() == [3, 1, 2, 7]
+    change(holder.v, lambda: None)
+    assert holder.v.tolist() != [3, 1, 2, 7]
+
+
+@dataclass
+class LateIndex:
+    """An index, the first, at which something else happens before."""
+
+    happens: Callable[[], object]
+
+    def __index__(self):
+        self.happens()
+        return 0
+
+
+@dataclass(eq=False)
+class Late(LateIndex):
+    """A value that equals any, after something else has happened."""
+
+    def __eq__(self, _):
+        self.happens()
+        return True
+
+    __hash__ = None
+
+
+def test_a_default_is_put_into_a_map_only_where_no_other_thread_has_put_a_value(monkeypatch):
+    holder = _numbers()
+    add = Dictionary._add
+
+    def late(self, key, value):
+        self[key] = "theirs"
+        add(self, key, value)
+
+    monkeypatch.setattr(Dictionary, "_add", late)
+    assert (holder.k[1], holder.k.setdefault(2, "mine")) == ("theirs", "theirs")
+    assert holder.to_dict()["k"] == {1: "theirs", 2: "theirs"}

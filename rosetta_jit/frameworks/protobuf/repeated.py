@@ -8,10 +8,11 @@ numbers). An array shows the elements that were there when it was read from its 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 
+from rosetta_jit.kernel.state import EPOCH
 from rosetta_jit.runtime.holder import coerce, holder_class, values
 from rosetta_jit.runtime.holder.dictionary import Dictionary
 from rosetta_jit.runtime.holder.merge import append_numbers
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Entry
 
 
+_Result = TypeVar("_Result")
+
+
 class NumberArray(np.ndarray[Any, Any]):
     """A repeated field of numbers, or of enums: a view into its message's lane.
 
@@ -36,18 +40,27 @@ class NumberArray(np.ndarray[Any, Any]):
 
     __slots__ = ("owner_",)
 
+    def _is_field(self) -> bool:
+        """Whether these are the elements of a field, not of a slice or a copy."""
+        return getattr(self, "owner_", None) is not None
+
     def _field(self) -> tuple[Message, Numbers]:
         owner: tuple[Message, Entry] | None = getattr(self, "owner_", None)
         if owner is None:
             raise TypeError("a slice or copy of a repeated field cannot change its length; change the field itself")
         return owner[0], cast("Numbers", owner[1].node)
 
-    def _replace(self, elements: Iterable[Any]) -> None:
+    def _change(self, change: Callable[[list[Any]], _Result]) -> _Result:
+        """Change the field's elements as a list. InUse where they have become others meanwhile."""
         message, node = self._field()
+        epoch = message.lanes_.words[EPOCH]
+        elements = message.lanes_.consistent(_elements, (message, node)).tolist()
+        result = change(elements)
         prepared = values.prepare(node, elements)
-        with message.lanes_:
-            lanes, row = writable(message)
-            values.put(node, lanes, row, prepared)
+        with message.lanes_ as lanes:
+            lanes.check_unchanged(epoch)
+            values.put(node, *writable(message), prepared)
+        return result
 
     def append(self, value: Any) -> None:
         self.extend([value])
@@ -59,43 +72,42 @@ class NumberArray(np.ndarray[Any, Any]):
     MergeFrom = extend
 
     def insert(self, index: int, value: Any) -> None:
-        elements = self._current()
-        elements.insert(index, value)
-        self._replace(elements)
+        self._change(lambda elements: elements.insert(index, value))
 
     def pop(self, index: int = -1) -> Any:
-        elements = self._current()
-        value = elements.pop(index)
-        self._replace(elements)
-        return value
+        return self._change(lambda elements: elements.pop(index))
 
     def remove(self, value: Any) -> None:
-        elements = self._current()
-        elements.remove(value)
-        self._replace(elements)
+        self._change(lambda elements: elements.remove(value))
 
     def clear(self) -> None:
-        self._replace([])
+        self._change(list.clear)
 
     def reverse(self) -> None:
-        self._replace(self._current()[::-1])
+        self._change(list.reverse)
 
     def sort(self, *, key: Callable[[Any], Any] | None = None, reverse: bool = False) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Sort in place, as a list does."""
-        self[...] = sorted(self.tolist(), key=cast("Any", key), reverse=reverse)
-
-    def _current(self) -> list[Any]:
-        """The field's elements, which may be others than when this array was read."""
-        message, node = self._field()
-        return message.lanes_.consistent(_elements, (message, node)).tolist()
+        if self._is_field():
+            self._change(lambda elements: elements.sort(key=cast("Any", key), reverse=reverse))
+        else:
+            self[...] = sorted(self.tolist(), key=cast("Any", key), reverse=reverse)
 
     def __delitem__(self, index: Any) -> None:
-        elements = self._current()
-        del elements[index]
-        self._replace(elements)
+        self._change(lambda elements: elements.__delitem__(index))
 
     def __setitem__(self, index: Any, value: Any) -> None:
-        if isinstance(index, int) and getattr(self, "owner_", None) is not None:
+        """Set an element, or several as numpy does; a list in place of a slice may have another length, as in a list."""
+        is_field = getattr(self, "owner_", None) is not None
+        if (
+            is_field
+            and isinstance(index, slice)
+            and isinstance(value, list | tuple)
+            and len(value) != len(range(*index.indices(self.size)))
+        ):
+            self._change(lambda elements: elements.__setitem__(index, value))
+            return
+        if is_field and isinstance(index, int):
             value = coerce.scalar(self._field()[1].type, value)
         super().__setitem__(index, value)
 
@@ -190,7 +202,7 @@ class MapField(Dictionary):
 
     def __getitem__(self, key: Any) -> Any:
         if self.checked(key) not in self._known():
-            super().__setitem__(key, {} if self._holds_messages else self.node.value.default)
+            self._add(key, {} if self._holds_messages else self.node.value.default)
         return super().__getitem__(key)
 
     get_or_create = __getitem__
@@ -203,6 +215,13 @@ class MapField(Dictionary):
         if self._holds_messages:
             raise ValueError("May not set values directly, call my_map[key].foo = 5")
         super().__setitem__(key, value)
+
+    def setdefault(self, key: Any, default: Any = None) -> Any:
+        if self._holds_messages:
+            raise NotImplementedError("Set message map value directly is not supported, call my_map[key].foo = 5")
+        if default is None:
+            raise ValueError("The value for scalar map setdefault must be set.")
+        return super().setdefault(key, default)
 
     def get(self, key: Any, default: Any = None) -> Any:
         return self.found(key) if key in self else default

@@ -11,7 +11,6 @@ from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import View, element, place, writable
 from rosetta_jit.runtime.holder.record import Blob, Numbers, Scalar, Text
 from rosetta_jit.runtime.holder.sequence import detached, store_row
-from rosetta_jit.runtime.lanes import in_use
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Entry, Pairs
@@ -104,8 +103,7 @@ class Dictionary(MutableMapping[Any, Any]):
                 return default[0]
             raise
         with self.message.lanes_ as lanes:
-            if lanes.words[EPOCH] != ~epoch:
-                raise in_use()
+            lanes.check_unchanged(epoch)
             self._remove(key)
         return popped
 
@@ -119,6 +117,19 @@ class Dictionary(MutableMapping[Any, Any]):
         plain = raw(value)
         with self.message.lanes_:
             self._store(key, plain)
+
+    def setdefault(self, key: Any, default: Any = None) -> Any:
+        """The value of a key; where it is not there, it is put there with a value."""
+        if self.checked(key) not in self._known():
+            self._add(key, default)
+        return self.found(key)
+
+    def _add(self, key: Any, value: Any) -> None:
+        """Put a key there, unless another thread has done so meanwhile."""
+        plain = raw(value)
+        with self.message.lanes_:
+            if self.checked(key) not in self._keys():
+                self._store(key, plain)
 
     def _store(self, key: Any, plain: Any) -> None:
         node, index = self.node, self._keys().get(self.checked(key))

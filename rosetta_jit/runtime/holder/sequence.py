@@ -16,7 +16,6 @@ from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import Message, View, element, place, writable
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Record, Scalar, Text
-from rosetta_jit.runtime.lanes import in_use
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Entry, Node
@@ -153,8 +152,8 @@ class Sequence(MutableSequence[Any], Base):
         epoch = self._epoch()
         value = self[index]
         popped = detached(value)
-        with self.message.lanes_:
-            self._check_unchanged(epoch)
+        with self.message.lanes_ as lanes:
+            lanes.check_unchanged(epoch)
             self._remove(index)
         return popped
 
@@ -162,8 +161,8 @@ class Sequence(MutableSequence[Any], Base):
         """Remove the first element that equals a value; ValueError if there is none."""
         epoch = self._epoch()
         index = self.index(value)
-        with self.message.lanes_:
-            self._check_unchanged(epoch)
+        with self.message.lanes_ as lanes:
+            lanes.check_unchanged(epoch)
             self._remove(index)
 
     def clear(self) -> None:
@@ -176,8 +175,8 @@ class Sequence(MutableSequence[Any], Base):
         epoch = self._epoch()
         elements = list(self)
         order = sorted(range(len(elements)), key=lambda each: key(elements[each]) if key else elements[each], reverse=reverse)
-        with self.message.lanes_:
-            self._check_unchanged(epoch)
+        with self.message.lanes_ as lanes:
+            lanes.check_unchanged(epoch)
             self._order(order)
 
     def reverse(self) -> None:
@@ -186,11 +185,6 @@ class Sequence(MutableSequence[Any], Base):
 
     def _epoch(self) -> int:
         return self.message.lanes_.words[EPOCH]
-
-    def _check_unchanged(self, epoch: int) -> None:
-        """Inside ``with home_:``, refuse to go on from what was read at an epoch if the message has changed since then: InUse."""
-        if self._epoch() != ~epoch:
-            raise in_use()
 
     def _allow(self, count: int) -> None:
         """Refuse a number of elements that the type does not have: ValueError."""
@@ -220,8 +214,8 @@ class Sequence(MutableSequence[Any], Base):
         """Make these the elements, unless the message has changed since an epoch."""
         self._allow(len(elements))
         plain = [raw(each) for each in elements]
-        with self.message.lanes_:
-            self._check_unchanged(epoch)
+        with self.message.lanes_ as lanes:
+            lanes.check_unchanged(epoch)
             count = len(self)
             self._append(plain)
             self._order(list(range(count, count + len(plain))))

@@ -253,6 +253,21 @@ def test_maps(everything):
     assert "new" in message.counts
     with pytest.raises(KeyError):
         del message.counts["zz"]
+    assert (message.counts.setdefault("five", 5), message.counts.setdefault("five", 6)) == (5, 5)
+    with pytest.raises(ValueError, match="must be set"):
+        message.counts.setdefault("six")
+    with pytest.raises(NotImplementedError):
+        message.by_id.setdefault(7)
+
+
+def test_a_list_in_place_of_a_slice(everything):
+    message = everything(ints=[1, 2, 3])
+    message.ints[0:2] = [7]
+    assert list(message.ints) == [7, 3]
+    message.ints[1:] = (8, 9)
+    assert list(message.ints) == [7, 8, 9]
+    message.ints[:0] = [5, 6]
+    assert list(message.ints) == [5, 6, 7, 8, 9]
 
 
 def filled(everything):
