@@ -81,10 +81,10 @@ class NumberArray(np.ndarray[Any, Any]):
         self._change(lambda elements: elements.remove(value))
 
     def clear(self) -> None:
-        self._change(list.clear)
+        self._change(lambda elements: elements.clear())
 
     def reverse(self) -> None:
-        self._change(list.reverse)
+        self._change(lambda elements: elements.reverse())
 
     def sort(self, *, key: Callable[[Any], Any] | None = None, reverse: bool = False) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Sort in place, as a list does."""
@@ -98,18 +98,16 @@ class NumberArray(np.ndarray[Any, Any]):
 
     def __setitem__(self, index: Any, value: Any) -> None:
         """Set an element, or several as numpy does; a list in place of a slice may have another length, as in a list."""
-        is_field = getattr(self, "owner_", None) is not None
-        if (
-            is_field
-            and isinstance(index, slice)
-            and isinstance(value, list | tuple)
-            and len(value) != len(range(*index.indices(self.size)))
-        ):
-            self._change(lambda elements: elements.__setitem__(index, value))
-            return
-        if is_field and isinstance(index, int):
-            value = coerce.scalar(self._field()[1].type, value)
-        super().__setitem__(index, value)
+        if self._is_field():
+            if isinstance(index, slice) and isinstance(value, list | tuple):
+                part, elements = cast("slice[Any, Any, Any]", index), cast("list[Any]", value)
+                if len(elements) != len(range(self.size)[part]):
+                    self._change(lambda whole: whole.__setitem__(part, elements))
+                    return
+            elif isinstance(index, int):
+                super().__setitem__(index, coerce.scalar(self._field()[1].type, value))
+                return
+        super().__setitem__(cast("Any", index), cast("Any", value))
 
     def __iter__(self) -> Iterator[Any]:
         return iter(self.tolist())
