@@ -11,7 +11,7 @@ from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.passes.drop import drop, without
 from rosetta_jit.kernel.passes.simplify import simplify
 from rosetta_jit.kernel.proof.less import is_less
-from rosetta_jit.kernel.proof.verify import settled, verify
+from rosetta_jit.kernel.proof.verify import VerificationError, settled, verify
 from rosetta_jit.kernel.shape import is_large, statements
 from rosetta_jit.kernel.terms import BEGIN, ROW, add, index
 from tests.kernel import kernels
@@ -58,6 +58,25 @@ def test_nothing_else_may_be_gone_or_be_another(proven):
     assert not is_less(less, proven, frozenset())
     assert not is_less(replace(less, strides=(*less.strides, 8)), proven, known)
     assert not is_less(replace(less, bodies=less.bodies * 2), proven, known)
+
+
+def test_each_body_is_compared():
+    two = replace(TWICE, bodies=(TWICE.bodies[0], INSIDE.bodies[0]))
+    known = settled(two)
+    less = without(two, known)
+    first, second = less.bodies
+    assert is_less(less, two, known)
+    for bodies in ((first, second[1:]), (first[1:], second), (second, first), (first, first)):
+        assert not is_less(replace(less, bodies=bodies), two, known)
+
+
+def test_nothing_may_be_gone_behind_what_cannot_be_left_out():
+    """A comparison that ends there would find nothing left over."""
+    returns = of(need(BEGIN, 16), If(compare("ge", index(1), 0), (Return(add(BEGIN, 8)),)))
+    first, branch, *_ = returns.bodies[0]
+    assert not is_less(kernel((first,)), returns, frozenset({id(branch)}))
+    first, let, _ = of(need(BEGIN, 16)).bodies[0]
+    assert not is_less(kernel((first,)), kernel((first, let, Return(BEGIN))), frozenset({id(let)}))
 
 
 def test_loops_may_not_change_their_counts_or_lose_checks_inside():
@@ -153,3 +172,49 @@ def test_a_routine_that_changes_behind_the_proof_is_proven_again():
         return replace(made, routines=(replace(routine, body=(Let("x", Load("i64", add(BEGIN, 1 << 20))),)),))
 
     assert passes.run(calling, (drop, spoil)).routines == (routine,)
+
+
+def spoiled(made):
+    """A kernel whose first body reads what nothing has checked."""
+    first, *rest = made.bodies[0]
+    return replace(made, bodies=((Let("spoiled", Load("i64", add(BEGIN, 1 << 20))), first, *rest), *made.bodies[1:]))
+
+
+@pytest.mark.parametrize("order", [(drop, spoiled), (drop, drop, spoiled), (spoiled,), (spoiled, drop)])
+def test_a_body_that_is_spoiled_behind_the_proof_is_not_used(order):
+    assert passes.run(TWICE, order).bodies[0][0] is TWICE.bodies[0][0]
+
+
+def test_what_drop_makes_is_proven_where_it_is_not_less(monkeypatch):
+    """Were it to leave out what is needed, the comparison would notice, and then the proof."""
+    monkeypatch.setattr(passes, "without", lambda made, _: spoiled(made))
+    assert passes.run(TWICE, (drop,)).bodies[0][0] is TWICE.bodies[0][0]
+
+
+def test_a_pass_that_is_not_followed_is_left_out_alone():
+    """Passes before and behind it are used."""
+    made = passes.run(INSIDE, (drop, spoiled, drop, simplify))
+    assert body(made) == body(passes.run(INSIDE, (drop, simplify)))
+    assert made != INSIDE
+
+
+def test_without_drop_a_kernel_is_proven(monkeypatch):
+    _, proofs = counted(monkeypatch, TWICE)
+    assert proofs
+    with pytest.raises(VerificationError):
+        passes.run(spoiled(TWICE), (simplify,))
+    verify(passes.run(TWICE, (simplify,)))
+
+
+UNSOUND = {
+    "a name that is bound twice": kernel((Let("n", index(0)), Let("n", index(1)), Return(BEGIN))),
+    "a name that is not bound": kernel((Let("n", i64("m")), Return(BEGIN))),
+    "a site that does not exist": kernel((Require(BEGIN, index(8), replace(need(BEGIN, 8).failure, site=99)), Return(BEGIN))),
+}
+
+
+@pytest.mark.parametrize("order", [(), (drop,), passes.PASSES])
+@pytest.mark.parametrize("unsound", UNSOUND.values(), ids=UNSOUND)
+def test_a_kernel_whose_text_is_not_sound_is_refused(unsound, order):
+    with pytest.raises(VerificationError):
+        passes.run(unsound, order)

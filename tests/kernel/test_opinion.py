@@ -6,12 +6,15 @@ from contextlib import suppress
 
 import pytest
 
+from rosetta_jit.kernel.ir import Binary, Let, Load, Return
 from rosetta_jit.kernel.proof import claims, integers, paths, prove
 from rosetta_jit.kernel.proof.linear import minus, shifted
 from rosetta_jit.kernel.proof.opinion import opinions
 from rosetta_jit.kernel.proof.record import Record
 from rosetta_jit.kernel.proof.verify import VerificationError, verify
+from rosetta_jit.kernel.terms import BEGIN, add
 from tests.kernel import kernels
+from tests.kernel.kernels import compare, expect, i64, need
 from tests.kernel.unsafe import ACCEPTED, REFUSED
 
 
@@ -72,6 +75,14 @@ REFUTED = [
 @pytest.mark.parametrize("name", REFUTED)
 def test_unsafe_kernels(name):
     refuted(name)
+
+
+def test_bits_of_a_sum_whose_parts_may_be_anything():
+    """That the sum is a word was owed where it was made; of its parts alone it does not follow."""
+    first, second = Load("i64", BEGIN), Load("i64", add(BEGIN, 8))
+    small = [expect(compare(op, i64(each), limit)) for each in "ab" for op, limit in (("ge", 0), ("le", 9))]
+    body = (need(BEGIN, 16), Let("a", first), Let("b", second), *small)
+    agree(kernels.kernel((*body, Let("n", Binary("xor", Binary("sub", i64("a"), i64("b")), i64("a"))), Return(BEGIN))))
 
 
 def test_a_counterexample_shows_the_message():

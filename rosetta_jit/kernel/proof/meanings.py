@@ -122,9 +122,11 @@ class Terms:
                 return it == self.atom(a) * self.atom(b)
             case ("sum", Linear() as total):
                 return it == self.sum(total)
-            case ("and" | "or" | "xor" as op, Linear() as left, Linear() as right, _) if self._as_bits:
+            case ("and" | "or" | "xor" as op, Linear() as left, Linear() as right, (int(low), int(high))) if self._as_bits:
                 a, b = self.sum(left), self.sum(right)
-                return it == (a & b if op == "and" else a | b if op == "or" else a ^ b)
+                # That the operands are words of the operation's type was owed where they were made.
+                words = [z3.And(each >= self._number(low), each <= self._number(high)) for each in (a, b)]
+                return z3.And(*words, it == (a & b if op == "and" else a | b if op == "or" else a ^ b))
             case (str(op), Linear() as left, Linear() | int() as right, *ends) if not self._as_bits:
                 return self._operation(number, op, self.sum(left), right, cast("list[tuple[int, int]]", ends))
             case ("low bits", str(type_), Linear() as value) if not self._as_bits:
