@@ -87,6 +87,7 @@ class Expected:
             yield from probes.theorems()
             yield from probes.owed({**kernels.ALL, **{f"safe twin of {name}": kernel for name, kernel in ACCEPTED.items()}})
             yield from probes.less()
+            yield from probes.orders()
             yield from probes.texts()
             yield from probes.outcomes()
             yield from probes.corpus(self.corpus)

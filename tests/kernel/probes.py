@@ -17,7 +17,7 @@ import numpy as np
 
 from rosetta_jit.kernel.ir import If, Return
 from rosetta_jit.kernel.passes import order as passes
-from rosetta_jit.kernel.passes.drop import without
+from rosetta_jit.kernel.passes.drop import drop, without
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.formula import All, Any, negated
 from rosetta_jit.kernel.proof.less import is_less
@@ -191,6 +191,46 @@ def less() -> Iterator[Probe]:
         proven = cases.of(cases.need(BEGIN, 16), If(cases.compare("ge", index(1), 0), (way,)))
         known = frozenset({id(proven.bodies[0][1])})
         yield f"less: {type(way).__name__}", str([is_less(each, proven, known) for each in (without(proven, known), proven)])
+        first, branch, *_ = proven.bodies[0]
+        yield f"less: nothing behind {type(way).__name__}", str(is_less(kernels.kernel((first,)), proven, frozenset({id(branch)})))
+    yield "less: nothing behind a value", str(is_less(kernels.kernel((first,)), kernels.kernel((first, let, end)), frozenset({id(let)})))
+    two = replace(cases.TWICE, bodies=(cases.TWICE.bodies[0], cases.INSIDE.bodies[0]))
+    known = settled(two)
+    first, second = without(two, known).bodies
+    others = [(first, second), (first, second[1:]), (first[1:], second), (second, first)]
+    yield "less: two bodies", str([is_less(replace(two, bodies=each), two, known) for each in others])
+
+
+def orders() -> Iterator[Probe]:
+    """What is made by passes some of which spoil a kernel, and how often it is proven for that."""
+    from tests.kernel import test_less as cases
+
+    tried = {
+        "nothing": (cases.TWICE, ()),
+        "drop": (cases.TWICE, (drop,)),
+        "spoiled behind drop": (cases.TWICE, (drop, cases.spoiled)),
+        "spoiled before drop": (cases.TWICE, (cases.spoiled, drop)),
+        "drop that spoils": (cases.TWICE, (drop,)),
+        "not sound": (cases.UNSOUND["a name that is bound twice"], (drop,)),
+        "large": (cases.many(1500), passes.PASSES),
+    }
+    for name, (kernel, transforms) in tried.items():
+        changed = {"without": lambda made, _: cases.spoiled(made)} if name == "drop that spoils" else {}
+        yield f"order: {name}", digest(str(_proofs(kernel, transforms, changed)))
+
+
+def _proofs(kernel, transforms, changed) -> tuple[str, int]:
+    """What passes make, and how many proofs they take; with some of their functions ``changed``."""
+    kept, proofs = dict(vars(passes)), []
+    for name in ("settled", "verify"):
+        changed[name] = lambda made, function=kept[name]: (proofs.append(made), function(made))[1]
+    vars(passes).update(changed)
+    try:
+        return to_text(passes.run(kernel, transforms)), len(proofs)
+    except VerificationError:
+        return "refused", len(proofs)
+    finally:
+        vars(passes).update(kept)
 
 
 def outcomes() -> Iterator[Probe]:
