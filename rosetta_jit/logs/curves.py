@@ -12,6 +12,7 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.limits import MAX_LISTED_DEPTH
 from rosetta_jit.model.units import Context
+from rosetta_jit.runtime.batch import family_in
 from rosetta_jit.runtime.columns import Ragged
 from rosetta_jit.runtime.holder.record import Child, Items, Record
 from rosetta_jit.startup.dataclass import dataclass
@@ -80,7 +81,7 @@ def curve_of(log: Log, name: str, target: str | None, start: int | None = None, 
             values = _numbers(part.batch, steps)
         except (KeyError, TypeError):
             raise LogError((words.unknown_field(log.name, topic, name[len(topic) + 1 :], list(numbers_in(channel))),)) from None
-        curve.unit = unit_of(part.batch.family_.tree.root, steps)
+        curve.unit = unit_of(family_in(part.batch).tree.root, steps)
         curve.times_ns = np.concatenate([curve.times_ns, part.log_ns])
         curve.values = np.concatenate([curve.values, values])
         while len(curve.values) > POINTS:

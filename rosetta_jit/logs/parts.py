@@ -167,7 +167,7 @@ class Collector:
             with filling.batch.lanes:
                 batch = filling.end()
             log_ns, publish_ns = self._rows[2:, : filling.count]
-            if batch.kept_ is not None:
+            if len(batch) < filling.count:
                 log_ns, publish_ns = log_ns[batch.kept], publish_ns[batch.kept]
             part = Part(batch, log_ns, publish_ns, self._first, filling.count, self._refused)
             self._first += filling.count

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rosetta_jit.runtime.handed import Handed
+from rosetta_jit.runtime.batch import hand_over
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -27,7 +27,7 @@ def table_of(part: Part, columns: Sequence[str] | None, clocks: Iterable[str], f
     """
     from rosetta_jit.runtime.arrow.stamps import with_times
 
-    part.batch.handed_ = part.batch.handed_ or Handed()
+    hand_over(part.batch)
     return with_times(part.batch.to_arrow(columns, **form), {name: _clock(name, part) for name in clocks})
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from rosetta_jit.errors import InUse
 from rosetta_jit.kernel.state import EPOCH, VALID
 from rosetta_jit.runtime.columns import column, presence_mask
+from rosetta_jit.runtime.handed import Handed
 from rosetta_jit.runtime.holder.family import family_of
 from rosetta_jit.runtime.holder.paths import entries_to
 from rosetta_jit.runtime.lanes import Lanes, in_use
@@ -24,12 +25,11 @@ if TYPE_CHECKING:
     from rosetta_jit.errors import DecodeError
     from rosetta_jit.runtime.arrow.arrays import Form, Octets
     from rosetta_jit.runtime.arrow.times import Unit
-    from rosetta_jit.runtime.handed import Handed
     from rosetta_jit.runtime.holder import Holder, Manners
     from rosetta_jit.runtime.holder.classes import HolderFamily
 
 _INTERNAL = frozenset({"lanes", "room", "reset"})
-"""What batches have for other modules, besides names that end with an underscore."""
+"""What batches have for other modules."""
 
 
 class Batch:
@@ -50,14 +50,14 @@ class Batch:
         Which of the messages that were given each row is.
     """
 
-    __slots__ = ("errors", "family_", "handed_", "kept_", "lanes")
+    __slots__ = ("_family", "_handed", "_kept", "errors", "lanes")
 
     def __init__(self, family: HolderFamily, lanes: Lanes) -> None:
-        self.family_ = family
+        self._family = family
         self.lanes = lanes
         self.errors: dict[int, DecodeError] = {}
-        self.kept_: NDArray[np.int64] | None = None
-        self.handed_: Handed | None = None
+        self._kept: NDArray[np.int64] | None = None
+        self._handed: Handed | None = None
 
     @classmethod
     def new(cls, holder_class: type[Holder], count: int) -> Batch:
@@ -104,15 +104,13 @@ class Batch:
     def reset(self, count: int) -> None:
         """So many empty messages, in the memory that is there."""
         with self.lanes:
-            if self.handed_ is not None:
-                self.handed_.renew(self.lanes)
+            begin_anew(self)
             self.lanes.reset(count)
-            self.errors, self.kept_ = {}, None
 
     @property
     def kept(self) -> NDArray[np.int64]:
         """Which of the messages that were given each row is: ``timestamps[batch.kept]`` are those of the rows."""
-        return np.arange(len(self)) if self.kept_ is None else self.kept_
+        return np.arange(len(self)) if self._kept is None else self._kept
 
     def __len__(self) -> int:
         return self.lanes.rows
@@ -127,8 +125,8 @@ class Batch:
             case int() | np.integer():
                 return self._row(int(index))
             case _:
-                part = Batch(self.family_, joined([(self.lanes, index)]))
-                part.errors, part.kept_ = errors_of_part(self.errors, self.kept_, index, len(self))
+                part = Batch(self._family, joined([(self.lanes, index)]))
+                part.errors, part._kept = errors_of_part(self.errors, self._kept, index, len(self))
                 return part
 
     def _row(self, index: int) -> Any:
@@ -139,7 +137,7 @@ class Batch:
             if epoch < 0 or self.lanes.words[EPOCH] != epoch:
                 raise in_use() from None
             raise IndexError(f"message {index} of {len(self)}") from None
-        return self.family_.row(self.lanes, row)
+        return self._family.row(self.lanes, row)
 
     @classmethod
     def concatenate(cls, batches: Iterable[Batch]) -> Batch:
@@ -158,38 +156,38 @@ class Batch:
             raise TypeError(f"batches are needed, not {type(strange).__name__}")
         if not parts:
             raise ValueError("there is no batch, whose type would be that of the whole")
-        family = parts[0].family_
-        if any(each.family_ is not family for each in parts):
-            names = ", ".join(sorted({each.family_.struct.name for each in parts}))
+        family = family_in(parts[0])
+        if any(family_in(each) is not family for each in parts):
+            names = ", ".join(sorted({family_in(each).struct.name for each in parts}))
             raise TypeError(f"batches of one type are needed, not of {names}")
         whole = cls(family, joined([(each.lanes, slice(None)) for each in parts]))
-        whole.errors, whole.kept_ = errors_together((each.errors, each.kept_, len(each)) for each in parts)
+        whole.errors, whole._kept = errors_together((each.errors, each._kept, len(each)) for each in parts)  # noqa: SLF001
         return whole
 
     def __iter__(self) -> Iterator[Any]:
-        return (self.family_.row(self.lanes, row) for row in range(len(self)))
+        return (self._family.row(self.lanes, row) for row in range(len(self)))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """By lanes: their bytes, which protocol 5 of pickle hands on without a copy."""
-        return _revived, (self.family_.text, self.family_.manners, contents(self[:].lanes), self.errors, self.kept_)
+        return _revived, (self._family.text, self._family.manners, contents(self[:].lanes), self.errors, self._kept)
 
     def __getattr__(self, name: str) -> Any:
         if name in self.__slots__:
             raise AttributeError(f"this batch was never made: it has no {name!r}")
-        if name in self.family_.tree.root.entries:
+        if name in self._family.tree.root.entries:
             return self.column(name)
         raise AttributeError(f"{self!r} has no field {name!r}", name=name, obj=self)
 
     def __dir__(self) -> list[str]:
         """The fields, and what users call."""
-        own = [name for name in super().__dir__() if name not in _INTERNAL and (name.startswith("__") or not name.endswith("_"))]
-        return [*own, *self.family_.tree.root.entries]
+        own = [name for name in super().__dir__() if name not in _INTERNAL and (name.startswith("__") or not name.startswith("_"))]
+        return [*own, *self._family.tree.root.entries]
 
     def __repr__(self) -> str:
         if not self.lanes.words[VALID]:
             why = "in use" if isinstance(self.lanes.invalid(), InUse) else "the last decode failed"
-            return f"<Batch of {self.family_.struct.name}: {why}>"
-        return f"<Batch of {len(self)} {self.family_.struct.name}>"
+            return f"<Batch of {self._family.struct.name}: {why}>"
+        return f"<Batch of {len(self)} {self._family.struct.name}>"
 
     def _repr_html_(self) -> str:
         """What a notebook shows: the first messages."""
@@ -197,7 +195,8 @@ class Batch:
 
         if not self.lanes.words[VALID]:
             return failed_page(self)
-        return self.lanes.consistent(batch_page, self)
+        names = list(self._family.tree.root.entries)
+        return self.lanes.consistent(lambda batch: batch_page(batch, names), self)
 
     def column(self, name: str) -> Any:
         """A field of all messages.
@@ -229,8 +228,8 @@ class Batch:
 
     def _column(self, name: str) -> Any:
         self._check()
-        entries_to(self.family_.tree.root, name)
-        return column(self.family_.tree.root, self.lanes, len(self), name.split("."))
+        entries_to(self._family.tree.root, name)
+        return column(self._family.tree.root, self.lanes, len(self), name.split("."))
 
     def mask(self, name: str | None = None) -> NDArray[np.bool_]:
         """Which messages have a field, shape (n,): all, where it cannot be absent. A nested field needs those around it.
@@ -251,7 +250,7 @@ class Batch:
         if name is None:
             return ~np.isin(self.kept, list(self.errors))
         present = presence_mask(None, self.lanes, len(self))
-        for entry in entries_to(self.family_.tree.root, name, through_arrays=False):
+        for entry in entries_to(self._family.tree.root, name, through_arrays=False):
             present &= presence_mask(entry.presence, self.lanes, len(self))
         return present
 
@@ -302,7 +301,7 @@ class Batch:
         """
         from rosetta_jit.runtime.arrow import arrays, tables
 
-        table = tables.table(self._record_batch(columns, arrays.Form.of(octets, copy, times, self.handed_)))
+        table = tables.table(self._record_batch(columns, arrays.Form.of(octets, copy, times, self._handed)))
         table = tables.flat(table) if flatten else table
         return table if errors is None else tables.with_errors(table, errors, self.errors, self.kept.tolist())
 
@@ -322,14 +321,14 @@ class Batch:
     def _record_batch(self, columns: Sequence[str] | None, form: Form) -> pa.RecordBatch:
         if isinstance(columns, str):
             raise TypeError(f"columns is a list of names: columns=[{columns!r}]")
-        names = list(self.family_.tree.root.entries) if columns is None else list(columns)
+        names = list(self._family.tree.root.entries) if columns is None else list(columns)
         return self.lanes.consistent(lambda taken: self._taken(taken, form), names)
 
     def _taken(self, names: list[str], form: Form) -> pa.RecordBatch:
         from rosetta_jit.runtime.arrow.tables import record_batch
 
         self._check()
-        return record_batch(self.family_.tree.root, self.lanes, len(self), names, form)
+        return record_batch(self._family.tree.root, self.lanes, len(self), names, form)
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         """The table of `to_arrow` for whoever reads Arrow's stream interface: pyarrow, polars, DuckDB, pandas' `from_arrow`."""
@@ -350,11 +349,37 @@ class Batch:
             raise self.lanes.invalid()
 
 
+# What other modules have of batches: none of it is for users.
+# pyright: reportPrivateUsage=false
+
+
+def family_in(batch: Batch) -> HolderFamily:
+    """The family of a batch's messages."""
+    return batch._family  # noqa: SLF001
+
+
+def begin_anew(batch: Batch) -> None:
+    """Inside ``with batch.lanes:``, before other messages: forget errors, and take other memory where tables have taken it."""
+    batch.errors, batch._kept = {}, None  # noqa: SLF001
+    if batch._handed is not None:  # noqa: SLF001
+        batch._handed.renew(batch.lanes)  # noqa: SLF001
+
+
+def keep_only(batch: Batch, kept: NDArray[np.int64]) -> None:
+    """Note which of the messages that were given a batch has kept."""
+    batch._kept = kept  # noqa: SLF001
+
+
+def hand_over(batch: Batch) -> None:
+    """Let tables of a batch take its memory: only where nobody else changes the batch."""
+    batch._handed = batch._handed or Handed()  # noqa: SLF001
+
+
 def _revived(
     text: str, manners: Manners, found: list[NDArray[np.uint8]], errors: dict[int, DecodeError], kept: NDArray[np.int64] | None
 ) -> Batch:
     """Unpickle, or copy."""
     family = family_of(text, manners)
     batch = Batch(cast("HolderFamily", family), revived(family.layout, family.tree.initial, family.array_type, found))
-    batch.errors, batch.kept_ = errors, kept
+    batch.errors, batch._kept = errors, kept  # noqa: SLF001
     return batch

@@ -9,6 +9,7 @@ import numpy as np
 from rosetta_jit.errors import DecodeError
 from rosetta_jit.kernel.state import CAPACITY, CLEAN, LANE_WORDS, USED, VALID, lane_word
 from rosetta_jit.runtime import run
+from rosetta_jit.runtime.batch import begin_anew, keep_only
 from rosetta_jit.runtime.memory import pointer_to
 from rosetta_jit.runtime.program import one_by_one
 
@@ -50,9 +51,8 @@ class Filling:
     def begin(self) -> None:
         """Forget what the batch holds."""
         batch, lanes = self.batch, self.batch.lanes
-        batch.errors, batch.kept_, self.count = {}, None, 0
-        if batch.handed_ is not None:
-            batch.handed_.renew(lanes)
+        begin_anew(batch)
+        self.count = 0
         lanes.begin_filling()
         words = lanes.words
         for used in range(lane_word(0, USED), lane_word(len(lanes.plan.strides), USED), LANE_WORDS):
@@ -88,7 +88,7 @@ class Filling:
         """The batch, which can be read now."""
         batch, lanes = self.batch, self.batch.lanes
         if self._on_error == "skip" and batch.errors:
-            batch.kept_ = _leave_out(lanes, list(batch.errors))
+            keep_only(batch, _leave_out(lanes, list(batch.errors)))
         lanes.words[VALID] = CLEAN
         return batch
 

@@ -183,6 +183,10 @@ class Lanes:
                     return value
         raise in_use()
 
+    def epoch(self) -> int:
+        """What tells, by `check_unchanged`, whether the lanes are as they were; another one after each change."""
+        return self.words[EPOCH]
+
     def check_unchanged(self, epoch: int) -> None:
         """Inside ``with lanes:``, refuse to go on from what was read at an epoch if the lanes have changed since then: InUse."""
         if self.words[EPOCH] != ~epoch:

@@ -106,7 +106,7 @@ def chosen_rows(index: Index, count: int) -> Rows:
 
 
 def errors_of_part(errors: Errors, kept: NDArray[np.int64] | None, index: Index, count: int) -> tuple[Errors, NDArray[np.int64] | None]:
-    """What `Batch.errors` and `Batch.kept_` become of messages that are chosen out of so many."""
+    """What `Batch.errors` and `Batch.kept` become of messages that are chosen out of so many."""
     if kept is None and not errors:
         return {}, None
     rows = np.arange(count)[chosen_rows(index, count).at]

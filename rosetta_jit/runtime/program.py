@@ -304,7 +304,7 @@ class Program(ProgramBase):
         """The lanes of a batch of this program's holders."""
         expected = self._loaded.holder_type
         lanes: Lanes | None = getattr(batch, "lanes", None)
-        if lanes is None or batch.family_ is not expected.family_ or lanes.plan.layout is not expected.family_.layout:
+        if lanes is None or getattr(batch, "_family", None) is not expected.family_ or lanes.plan.layout is not expected.family_.layout:
             raise TypeError(f"a batch of {expected.__qualname__} is needed")
         return lanes
 

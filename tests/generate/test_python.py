@@ -7,6 +7,7 @@ import struct
 import subprocess
 import sys
 import types
+from itertools import permutations
 
 import numpy as np
 import pytest
@@ -212,6 +213,27 @@ def test_objects_that_cannot_be_written(module):
         unit.encode(unit.JointState(name=[1]))
     with pytest.raises(unit.EncodeError, match="range"):
         unit.encode(unit.JointState(header=unit.Header(seq=-1)))
+
+
+SCALARS = ("float", "double", "int32", "sint64", "uint32", "fixed64", "sfixed32", "bool")
+
+
+@pytest.mark.parametrize("wishes", [Wishes(), Wishes(numpy=True)], ids=["", "numpy"])
+def test_cases_of_one_union_that_are_numbers_of_several_types(wishes, module):
+    pairs = list(permutations(SCALARS, 2))
+    unions = " ".join(f"oneof u{i} {{ {a} a{i} = {2 * i + 1}; {b} b{i} = {2 * i + 2}; }}" for i, (a, b) in enumerate(pairs))
+    schema = {"u.proto": f'syntax = "proto3"; package p; message U {{ {unions} }}'}
+    options = {"schema": schema, "imports": ["u.proto"], "encoding": "protobuf"}
+    made, encode = module(type_request("encode", "p.U", options), ("decode", "encode"), wishes), rj.Encoder.of("p.U", **options)
+    for way in "ab":
+        values = {f"{way}{i}": _value_of(pair["ab".index(way)]) for i, pair in enumerate(pairs)}
+        message = bytes(encode(encode.holder_type(**values)))
+        own = made.U(**{f"u{i}": (name, value) for i, (name, value) in enumerate(values.items())})
+        assert (bytes(made.encode(own)), made.decode(message)) == (message, own)
+
+
+def _value_of(scalar):
+    return {"bool": True, "float": -1.5, "double": 2.25}.get(scalar, 7)
 
 
 @pytest.mark.parametrize("type_", ["rj.Scalars", "rj3.All"])

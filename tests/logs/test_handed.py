@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.runtime.handed import SPARE, Handed
+from rosetta_jit.runtime.batch import hand_over
+from rosetta_jit.runtime.handed import SPARE
 
 SCHEMA = b"string name\nuint8[] data\nfloat64[4] fixed\nuint16[] numbers"
 NUMBERS = {"data", "fixed", "numbers"}
@@ -48,7 +49,7 @@ def address(table, name: str) -> int:
 
 def lane_of(part, name: str):
     """The memory of a field's elements."""
-    return part.batch.lanes.buffers[part.batch.family_.tree.root.entries[name].node.lane]
+    return part.batch.lanes.buffers[part.batch._family.tree.root.entries[name].node.lane]
 
 
 @pytest.fixture
@@ -95,7 +96,7 @@ def test_a_table_outlives_the_next_filling():
     """Of a batch that hands its memory over, whichever way it is filled again."""
     decoder = rj.Decoder.of("t/msg/X", encoding="cdr", schema=SCHEMA.decode())
     batch, tables = decoder.many([message(0, 100)] * 2), []
-    batch.handed_ = Handed()
+    hand_over(batch)
     for number in range(1, 4):
         decoder.many([message(number, 100)] * 2, into=batch)
         tables.append(batch.to_arrow())
@@ -103,4 +104,4 @@ def test_a_table_outlives_the_next_filling():
     for each in batch:
         each.data = np.full(100, 9, np.uint8)
     assert [table["data"].to_pylist() for table in tables] == [[bytes([number]) * 100] * 2 for number in (1, 2, 3)]
-    assert batch.lanes.buffers[batch.family_.tree.root.entries["data"].node.lane].size <= 200 + 200 // SPARE + 8
+    assert batch.lanes.buffers[batch._family.tree.root.entries["data"].node.lane].size <= 200 + 200 // SPARE + 8

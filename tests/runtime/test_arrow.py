@@ -121,7 +121,7 @@ def expected(node, value):
 def filled(count, seed):
     """Messages that were written to again and again, so that little of them lies where it first did."""
     rng, batch = random.Random(seed), Batch.new(all_kinds(), count)
-    root = batch.family_.tree.root
+    root = batch._family.tree.root
     for _ in range(3):
         for message in rng.sample(list(batch), count):
             for name, value in written(root, rng).items():
@@ -132,7 +132,7 @@ def filled(count, seed):
 
 
 def as_lists(batch):
-    return [expected(batch.family_.tree.root, message.to_dict()) for message in batch]
+    return [expected(batch._family.tree.root, message.to_dict()) for message in batch]
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -232,7 +232,7 @@ def test_without_copies_arrays_show_the_lanes():
 def test_borrowed_bytes(copy, all_of_them):
     batch = Batch.new(all_kinds(), 3)
     for name in ("data", "octets"):
-        node = batch.family_.tree.root.entries[name].node
+        node = batch._family.tree.root.entries[name].node
         for row, message in enumerate(batch):
             setattr(message, name, b"own")
             words = batch.lanes.cells[node.span.key]
@@ -273,7 +273,7 @@ def test_of_equal_keys_the_last_counts():
     batch = Batch.new(all_kinds(), 2)
     for message in batch:
         message.counts = {1: 10, 2: 20, 3: 30}
-    node = batch.family_.tree.root.entries["counts"].node
+    node = batch._family.tree.root.entries["counts"].node
     keys = batch.lanes.cells[node.key.cell.key]
     for row in (0, 2):
         keys[row * node.key.cell.step + node.key.cell.index] = 2 + row // 2
@@ -299,7 +299,7 @@ def test_what_a_failed_decode_left_is_not_shown():
 def test_spans_that_leave_their_lane():
     batch = Batch.new(flat(), 2)
     batch[0].angles = [1, 2]
-    node = batch.family_.tree.root.entries["angles"].node
+    node = batch._family.tree.root.entries["angles"].node
     words = batch.lanes.cells[node.span.key]
     for start, count in ((1 << 40, 1), (-5, 2), (0, 3), (0, -2)):
         words[node.span.index], words[node.span.index + 1] = start, count
@@ -311,7 +311,7 @@ def test_what_many_fills_is_not_gathered():
     """Arrays that lie together are shown where they are: the speed of the whole hangs on it."""
     batch = Batch.new(flat(), 100)
     shown = batch.to_arrow(["fixed"], copy=False)["fixed"].chunk(0).values
-    assert shown.buffers()[1].address == batch.lanes.arrays[batch.family_.tree.root.entries["fixed"].node.lane].ctypes.data
+    assert shown.buffers()[1].address == batch.lanes.arrays[batch._family.tree.root.entries["fixed"].node.lane].ctypes.data
     assert np.array_equal(shown.to_numpy(), np.zeros(300))
 
 

@@ -51,7 +51,7 @@ def test_arrays_in_arrays_are_one_array():
     grids = batch.grid.to_numpy()
     assert grids.shape == (3, 3, 2)
     assert grids[1].tolist() == [[1, 2], [3, 4], [5, 6]]
-    assert np.shares_memory(grids, batch.lanes.buffers[batch.family_.tree.root.entries["grid"].node.element.lane])
+    assert np.shares_memory(grids, batch.lanes.buffers[batch._family.tree.root.entries["grid"].node.element.lane])
     batch[0].rows = [[1, 2], [3, 4]]
     with pytest.raises(ValueError, match="lengths"):
         batch.rows.to_numpy()
@@ -93,7 +93,7 @@ def test_what_a_batch_shows():
     batch = Batch.new(flat(), 6)
     batch[1].parts = [{"x": 5}]
     assert {"small", "parts", "column", "to_arrow", "concatenate"} <= set(dir(batch))
-    assert not {"lanes", "room", "family_", "kept_"} & set(dir(batch))
+    assert not {"lanes", "room", "_family", "_kept"} & set(dir(batch))
     with pytest.raises(AttributeError, match=r"<Batch of 6 .*> has no field 'smal'") as caught:
         _ = batch.smal
     assert (caught.value.name, caught.value.obj) == ("smal", batch)
@@ -102,11 +102,11 @@ def test_what_a_batch_shows():
 def test_a_batch_whose_decode_failed_says_so():
     batch = Batch.new(flat(), 6)
     batch.lanes.words[VALID] = 0
-    assert repr(batch) == f"<Batch of {batch.family_.struct.name}: the last decode failed>"
+    assert repr(batch) == f"<Batch of {batch._family.struct.name}: the last decode failed>"
     assert "the last decode failed" in batch._repr_html_()
     with batch.lanes:
         batch.lanes.begin_filling()
-        assert repr(batch) == f"<Batch of {batch.family_.struct.name}: in use>"
+        assert repr(batch) == f"<Batch of {batch._family.struct.name}: in use>"
 
 
 def test_rows_of_ragged_columns():

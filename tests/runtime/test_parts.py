@@ -178,7 +178,7 @@ def test_errors_go_with_their_messages():
     assert sorted(whole.errors) == [1, 3, 6, 8, 10, 12, 13]
     assert whole.mask().tolist() == [True, False, True, False, *[True] * 4, False, True, True]
     assert [message.data for message in whole] == ["a", "", "a", "", "a", "a", "a", "a", "", "a", "a"]
-    assert rj.Batch.concatenate([masked, part]).kept_ is None
+    assert rj.Batch.concatenate([masked, part])._kept is None
     with pytest.raises(TypeError, match="batches are needed, not int"):
         rj.Batch.concatenate([masked, 1])
     with pytest.raises(TypeError, match="a batch of String is needed"):

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 
-from rosetta_jit.kernel.state import EPOCH
 from rosetta_jit.runtime.holder import coerce, holder_class, values
 from rosetta_jit.runtime.holder.dictionary import Dictionary
 from rosetta_jit.runtime.holder.merge import append_numbers
@@ -53,7 +52,7 @@ class NumberArray(np.ndarray[Any, Any]):
     def _change(self, change: Callable[[list[Any]], _Result]) -> _Result:
         """Change the field's elements as a list. InUse where they have become others meanwhile."""
         message, node = self._field()
-        epoch = message.lanes_.words[EPOCH]
+        epoch = message.lanes_.epoch()
         elements = message.lanes_.consistent(_elements, (message, node)).tolist()
         result = change(elements)
         prepared = values.prepare(node, elements)

@@ -53,8 +53,9 @@ class ObjectScope(Scope):
 
     ``objects`` has the expressions of fields by lane, row and offset; ``starts`` and ``counts`` are the locals of a kernel that say where
     the rows of a sequence start and how many there are, with the lane of the sequence. ``numbers`` are the expressions whose values a
-    program has set, and that may be no numbers of their type; ``floats_of`` has the types of those that are floats. ``maybe`` has what is
-    there under a condition, by the field that says so and the bit or number of it.
+    program has set, and that may be no numbers of their type; ``float_fields`` has the types of the fields that are floats, by lane, row and
+    offset: the cases of a union share a local. ``maybe`` has what is there under a condition, by the field that says so and the bit or
+    number of it.
     """
 
     objects: dict[tuple[int, Expr], dict[int, str]] = field(default_factory=dict[tuple[int, "Expr"], dict[int, str]])
@@ -62,14 +63,14 @@ class ObjectScope(Scope):
     starts: dict[str, int] = field(default_factory=dict[str, int])
     counts: dict[str, int] = field(default_factory=dict[str, int])
     numbers: set[str] = field(default_factory=set[str])
-    floats_of: dict[str, str] = field(default_factory=dict[str, str])
+    float_fields: dict[tuple[int, Expr, int], str] = field(default_factory=dict[tuple[int, Expr, int], str])
     maybe: dict[tuple[Place, int], Maybe] = field(default_factory=dict[tuple[Place, int], Maybe])
 
     def place(self, place: Place, scalar: str) -> str:
         """A scalar of a row of an object."""
         known = self.objects.get((place.lane, place.row))
         if known is not None and place.offset in known:
-            if (float_ := self.floats_of.get(known[place.offset])) is not None and scalar not in FLOATS:
+            if (float_ := self.float_fields.get((place.lane, place.row, place.offset))) is not None and scalar not in FLOATS:
                 return f"_bits{8 * WIDTH[float_]}({known[place.offset]})"
             return _checked(known[place.offset], scalar) if known[place.offset] in self.numbers else known[place.offset]
         found = self.element_of(place, scalar)
@@ -167,7 +168,7 @@ class Binder:
             case _, Number(offset, scalar):
                 found[offset] = f"(1 if {at} else 0)" if scalar == "bool" else at
                 self.scope.numbers |= {at} if scalar != "bool" else set()
-                self.scope.floats_of |= {at: scalar} if scalar in FLOATS else {}
+                self.scope.float_fields |= {(lane, self.row, offset): scalar} if scalar in FLOATS else {}
             case Struct(), Row():
                 self._struct(lane, at, resolved, slot, found)
             case ((String() | Bytes() | Array()), Span()):

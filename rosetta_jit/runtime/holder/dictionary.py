@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import ItemsView, Iterator, Mapping, MutableMapping, ValuesView
 from typing import TYPE_CHECKING, Any, cast
 
-from rosetta_jit.kernel.state import EPOCH
 from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import View, element, place, writable
@@ -41,7 +40,7 @@ class Dictionary(MutableMapping[Any, Any]):
     def _keys(self) -> dict[Any, int]:
         """Which pair is the last of each key."""
         lanes, row = place(self.message)
-        epoch = self.message.lanes_.words[EPOCH]
+        epoch = self.message.lanes_.epoch()
         if self.seen != epoch or epoch < 0:
             start, count = arena.span_of(lanes, self.node.span, row)
             rows = range(start, start + count)
@@ -95,7 +94,7 @@ class Dictionary(MutableMapping[Any, Any]):
 
     def pop(self, key: Any, *default: Any) -> Any:
         """Remove a key and return its value, a message as one of its own; or what is to be returned where the key is not there."""
-        epoch = self.message.lanes_.words[EPOCH]
+        epoch = self.message.lanes_.epoch()
         try:
             popped = detached(self.found(key))
         except KeyError:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 
-from rosetta_jit.kernel.state import EPOCH
 from rosetta_jit.runtime.attributes.sequences import bind_place, compiled, extend_texts, iterator_class, sequence_base
 from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import raw
@@ -111,7 +110,7 @@ class Sequence(MutableSequence[Any], Base):
 
     def __setitem__(self, index: Any, value: Any) -> None:
         if isinstance(index, slice):
-            epoch = self._epoch()
+            epoch = self.message.lanes_.epoch()
             elements = list(self)
             elements[index] = value
             self._replace(elements, epoch)
@@ -149,7 +148,7 @@ class Sequence(MutableSequence[Any], Base):
 
     def pop(self, index: int = -1) -> Any:
         """Remove an element and return it; a message as one of its own."""
-        epoch = self._epoch()
+        epoch = self.message.lanes_.epoch()
         value = self[index]
         popped = detached(value)
         with self.message.lanes_ as lanes:
@@ -159,7 +158,7 @@ class Sequence(MutableSequence[Any], Base):
 
     def remove(self, value: Any) -> None:
         """Remove the first element that equals a value; ValueError if there is none."""
-        epoch = self._epoch()
+        epoch = self.message.lanes_.epoch()
         index = self.index(value)
         with self.message.lanes_ as lanes:
             lanes.check_unchanged(epoch)
@@ -172,7 +171,7 @@ class Sequence(MutableSequence[Any], Base):
 
     def sort(self, *, key: Callable[[Any], Any] | None = None, reverse: bool = False) -> None:
         """Sort the elements in place."""
-        epoch = self._epoch()
+        epoch = self.message.lanes_.epoch()
         elements = list(self)
         order = sorted(range(len(elements)), key=lambda each: key(elements[each]) if key else elements[each], reverse=reverse)
         with self.message.lanes_ as lanes:
@@ -182,9 +181,6 @@ class Sequence(MutableSequence[Any], Base):
     def reverse(self) -> None:
         with self.message.lanes_:
             self._order(list(range(len(self)))[::-1])
-
-    def _epoch(self) -> int:
-        return self.message.lanes_.words[EPOCH]
 
     def _allow(self, count: int) -> None:
         """Refuse a number of elements that the type does not have: ValueError."""

@@ -31,14 +31,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.holder.message import Family
-
 
 class Rows(Protocol):
     """Messages of one type: a batch."""
 
-    @property
-    def family_(self) -> Family: ...
     def __iter__(self) -> Iterator[Message]: ...
 
 
@@ -56,9 +52,9 @@ def page(holder: Message) -> str:
     return f"<div>{''.join(_Page().message(holder, 0))}</div>"
 
 
-def batch_page(batch: Rows) -> str:
-    """The first messages of a batch, a row each."""
-    names = list(batch.family_.tree.root.entries)[:MAX_PAGE_COLUMNS]
+def batch_page(batch: Rows, fields: Sequence[str]) -> str:
+    """The first messages of a batch, a row each, and their first fields."""
+    names = fields[:MAX_PAGE_COLUMNS]
     head = "".join(f'<th style="{NAME}">{escape(name)}</th>' for name in names)
     rows = [
         "".join(f'<td style="{STYLE};min-width:10em">{escape(brief(message.access_.getters[name](message)))}</td>' for name in names)
