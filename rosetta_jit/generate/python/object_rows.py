@@ -53,9 +53,9 @@ class ObjectScope(Scope):
 
     ``objects`` has the expressions of fields by lane, row and offset; ``starts`` and ``counts`` are the locals of a kernel that say where
     the rows of a sequence start and how many there are, with the lane of the sequence. ``numbers`` are the expressions whose values a
-    program has set, and that may be no numbers of their type; ``float_fields`` has the types of the fields that are floats, by lane, row and
-    offset: the cases of a union share a local. ``maybe`` has what is there under a condition, by the field that says so and the bit or
-    number of it.
+    program has set, and that may be no numbers of their type; ``float_fields`` has the types of the fields that are floats, by lane, row
+    and offset: the cases of a union share a local. ``maybe`` has what is there under a condition, by the field that says so and the bit
+    or number of it.
     """
 
     objects: dict[tuple[int, Expr], dict[int, str]] = field(default_factory=dict[tuple[int, "Expr"], dict[int, str]])
