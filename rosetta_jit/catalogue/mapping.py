@@ -164,6 +164,13 @@ def number(span: Span, target: str) -> Diagnostic:
     return error("number", f"the number does not fit {target}", span, "too large", help_="write a smaller one")
 
 
+def compared_index(span: Span | None) -> Diagnostic:
+    """A comparison where the number of an element stands: its writer looks for an element."""
+    written = "" if span is None else span.source.text[span.start : span.end].replace("==", "=", 1)
+    help_ = f"the element with that key is found by one `=`: `[{shorten(written)}]`"
+    return error("key-field", "a comparison is no number of an element", span, "true or false", help_=help_)
+
+
 def key_field(span: Span | None) -> Diagnostic:
     """A key that is no plain field of the elements."""
     return error(

@@ -94,16 +94,19 @@ def unknown_name(span: Span | None, name: str, known: Collection[str], members: 
         span,
         "not known here",
         notes=there_are("known", known),
-        help_=for_name(name, known) or did_you_mean(name, known) or _how_named(name, known),
+        help_=for_name(name, known) or _as_declared(name, known) or did_you_mean(name, known) or _how_named(name),
     )
 
 
-def _how_named(name: str, known: Collection[str]) -> str:
-    """How what may be meant is written."""
+def _as_declared(name: str, known: Collection[str]) -> str | None:
+    """How a constant of that name is written."""
     ends = tuple(f"{mark}{name}" for mark in (".", "::"))
     declared = next((each for each in sorted(known) if each.endswith(ends)), None)
-    if declared is not None:
-        return f"a constant is written with the type that declares it: `{declared}`"
+    return None if declared is None else f"a constant is written with the type that declares it: `{declared}`"
+
+
+def _how_named(name: str) -> str:
+    """How what may be meant is written."""
     if "/" in name:
         return "a constant is written as `package/msg/Type.NAME`; to divide, put blanks around `/`"
     return f"a field begins with a dot: `.{shorten(name)}`; a constant is written with the type that declares it: `Type.NAME`"

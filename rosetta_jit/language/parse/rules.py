@@ -280,6 +280,9 @@ def _step(step: Tree | Token, context: Context) -> expr.Step:
             return expr.Slice(start, stop, by or expr.Literal(1), span)
         case _, [expr.List(items)]:
             return expr.Pick(_numbers(items, context), span)
+        case _, [expr.Binary("==") as compared, *_]:
+            context.problems.append(words.compared_index(compared.span))
+            return expr.Index(compared, span)
         case _, [index, *_]:
             return expr.Index(index, span)
         case _:
