@@ -163,6 +163,13 @@ def needs_word(span: Span | None, source: str, target: str, how: str) -> Diagnos
     )
 
 
+def quotient(span: Span | None, source: str, target: str, how: str) -> Diagnostic:
+    """A quotient of integers where a float belongs: that its remainder is gone may not be known."""
+    kept = "`/` of integers drops the remainder, which stays with a float: `.a / 127.0`"
+    help_ = f"{kept}; else say how: {how.replace('...', written_at(span))}"
+    return error("lossy-conversion", f"{source} does not always fit {target}", span, "a quotient of integers", help_=help_)
+
+
 def many_defaults(span: Span | None, most: int) -> Diagnostic:
     """A message of messages within each other whose required fields are too many."""
     message = f"this has more than {most:,} fields that must be set, those of the messages within it included"

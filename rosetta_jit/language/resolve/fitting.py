@@ -12,7 +12,7 @@ from rosetta_jit.language.function import functions
 from rosetta_jit.language.functions.texts import is_bytes, is_textual
 from rosetta_jit.language.limits import MAX_TEXT_CASES
 from rosetta_jit.language.resolve.list_items import adapted
-from rosetta_jit.language.typed import Access, Call, Choice, Const, Convert, Listed
+from rosetta_jit.language.typed import Access, Binary, Call, Choice, Const, Convert, Listed
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union
 
 if TYPE_CHECKING:
@@ -127,6 +127,8 @@ def _mismatch(value: Expr, target: Type) -> Diagnostic:
             return words.constant_range(value.span, repr(number), aim)
         case Const(value=str(text), type=String()), Enum(name=name, values=known) if text in dict(known):
             return words.type_clash(value.span, source, aim, f"`{name}.{text}` is the constant of this name")
+        case Binary("/", type=Int()), Float() if how := word_for(value.type, target):
+            return words.quotient(value.span, source, aim, how)
         case _ if isinstance(value.type, Bool | Enum) and isinstance(target, Int):
             return words.no_number(value.span, source, aim, word_for(value.type, target))
         case _:
