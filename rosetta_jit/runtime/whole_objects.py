@@ -39,8 +39,9 @@ def encoding(encode: Callable[..., Any], new: Callable[[], Any], whole: Whole, *
 
     if library() is None:
         return call
+    check = None if is_plain and whole.is_exact else whole.programs.decode
     last = None if is_plain else encode
-    return handing("hand_in", decode=whole.programs.decode, encode=last, new=new, over=whole.bytes_of, slow=call)
+    return handing("hand_in", decode=check, encode=last, new=new, over=whole.bytes_of, slow=call)
 
 
 def encoding_by_steps(
@@ -97,5 +98,6 @@ def decoding_whole(decode: Callable[..., Any], new: Callable[[], Any], whole: Wh
     slow = decoding(decode, new, whole.make)
     if library() is None:
         return slow
+    check = None if is_plain and whole.is_exact else decode
     last = None if is_plain else whole.programs.encode
-    return handing("hand_out", decode=decode, encode=last, new=new, over=whole.of_bytes, slow=slow)
+    return handing("hand_out", decode=check, encode=last, new=new, over=whole.of_bytes, slow=slow)

@@ -42,13 +42,49 @@ def whole(family: Family, object_type: Any) -> Whole | None:
     def make(holder: Any) -> Any:
         return parse(programs.encode(holder))
 
-    writes = PARTIAL if _has_required(family.schema) else READS
-    return Whole(take, fill, make, programs=programs, bytes_of=write, of_bytes=parse, reads=READS, writes=writes)
+    has_required = _has_required(family.schema)
+    writes = PARTIAL if has_required else READS
+    is_exact = not has_required and _Alike().message(object_type.DESCRIPTOR)
+    return Whole(take, fill, make, programs=programs, bytes_of=write, of_bytes=parse, reads=READS, writes=writes, is_exact=is_exact)
 
 
 def _has_required(schema: Schema) -> bool:
     """Whether there is a field without which a message cannot be written."""
     return any(field.required for struct in schema.types.values() if isinstance(struct, Struct) for field in struct.fields)
+
+
+class _Alike:
+    """Whether protobuf's package refuses whatever our programs do, given descriptors of messages.
+
+    Of texts that is sure in files of proto3, where they must be UTF-8; of messages within themselves it is not, as the depths differ.
+    """
+
+    def __init__(self) -> None:
+        self._messages: dict[str, bool] = {}
+        self._files: dict[str, bool] = {}
+
+    def message(self, message: Any) -> bool:
+        """Of a message and all within it."""
+        if message.full_name not in self._messages:
+            self._messages[message.full_name] = False  # until all of it is known, so also of one that is within itself
+            self._messages[message.full_name] = all(map(self._field, message.fields))
+        return self._messages[message.full_name]
+
+    def _field(self, field: Any) -> bool:
+        match field.type:
+            case field.TYPE_STRING:
+                return self._has_checked_texts(field.file)
+            case field.TYPE_MESSAGE:
+                return self.message(field.message_type)
+            case type_:
+                return type_ != field.TYPE_GROUP
+
+    def _has_checked_texts(self, file: Any) -> bool:
+        from google.protobuf.descriptor_pb2 import FileDescriptorProto
+
+        if file.name not in self._files:
+            self._files[file.name] = FileDescriptorProto.FromString(file.serialized_pb).syntax == "proto3"
+        return self._files[file.name]
 
 
 def _is_protobuf(object_type: Any) -> bool:

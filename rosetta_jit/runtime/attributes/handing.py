@@ -39,7 +39,7 @@ def _handing_class() -> type:
 def handing(
     kind: Kind,
     *,
-    decode: Callable[..., Any],
+    decode: Callable[..., Any] | None,
     encode: Callable[..., Any] | None,
     new: Callable[[], Any],
     over: Callable[[Any], Any],
@@ -52,7 +52,8 @@ def handing(
     kind
         ``"hand_in"`` makes bytes of an object, ``"hand_out"`` an object of bytes.
     decode, new
-        What fills a holder from bytes, and what makes one.
+        What fills a holder from bytes, and what makes one. Without a decoder nothing looks at the bytes but ``over``, and ``slow`` has
+        the word where that fails.
     encode
         What makes bytes of that holder. Without it bytes go on as they are once they have been decoded, which finds what is wrong.
     over
@@ -64,7 +65,9 @@ def handing(
     assert code is not None, "there is code that hands over"
     handing_class: Any = _handing_class()
     made = handing_class.__new__(handing_class)
-    made.decode, made.new, made.over, made.slow = decode, new, over, slow
+    made.new, made.over, made.slow = new, over, slow
+    if decode is not None:
+        made.decode = decode
     if encode is not None:
         made.encode = encode
     specs.write_word(id(made) + ENTRY, code[kind])

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import random
+
 import pytest
 
 import rosetta_jit as rj
+from tests.random_mappings.hostile import altered
 
 
 @pytest.fixture(scope="module")
@@ -220,3 +223,75 @@ def test_threads_hand_over_at_the_same_time(handed):
 
     with ThreadPoolExecutor(4) as pool:
         assert all(pool.map(run, range(8)))
+
+
+KINDS = {
+    "numbers": """double a = 1; repeated sint64 b = 2; repeated fixed32 c = 3 [packed = false]; optional bool d = 4;
+        oneof o { float e = 5; uint64 f = 6; }""",
+    "texts": "string a = 1; repeated string b = 2; map<string, bytes> c = 3;",
+    "messages": """message I { uint32 x = 1; repeated string y = 2; } I a = 1; repeated I b = 2; map<int32, I> c = 3; E d = 4;
+        enum E { P = 0; Q = 1; }""",
+}
+FIELDS = (
+    *("0a00", "0a026161", "12020101", "1a04aabbccdd", "2001", "2d0000803f", "3005", "0900000000000000f03f", "1206080112026162", "20ff01"),
+    *("1a060a01611201ff", "1a080801120408051a00", "4801", "1202c3a9", "0a02c328", "100f", "1d01000000", "f8ff7f05", "0b0c", "1a020803"),
+)
+"""Bytes of fields of some of these messages: the same number is a text in one and a number in the other."""
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_their_own_functions_accept_is_what_decodes(kind, tmp_path):
+    """Of such types these decide alone: they refuse whatever our programs refuse, and nothing else."""
+    theirs = compiled(f'syntax = "proto3"; package h; message M {{ {KINDS[kind]} }}', tmp_path)
+    encode, decode = rj.Encoder.of(theirs, encoding="protobuf"), rj.Decoder.of(theirs, encoding="protobuf")
+    assert decode.holder_type.family_.wholes[theirs].is_exact
+    rng, accepted = random.Random(1), 0
+    for _ in range(4000):
+        data = b"".join(bytes.fromhex(each) for each in rng.choices(FIELDS, k=rng.randint(1, 6)))
+        data = altered(rng, data) if rng.random() < 0.5 else data
+        wanted = failure(decode, data)
+        assert failure(decode.to, data, theirs) == wanted, data.hex()
+        if wanted is not None:
+            continue
+        found = decode.to(data, theirs)
+        assert encode(found) == found.SerializeToString()
+        assert decode(encode(found)).to_dict() == decode(data).to_dict(), data.hex()
+        accepted += 1
+    assert 400 < accepted < 3600
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'syntax = "proto2"; package h; message M { optional string a = 1; }',
+        'syntax = "proto2"; package h; message M { required int32 a = 1; }',
+        'syntax = "proto3"; package h; message M { M a = 1; }',
+        'syntax = "proto3"; package h; message M { message I { repeated M c = 1; } map<int32, I> b = 1; }',
+        'edition = "2023"; package h; message M { string a = 1; }',
+    ],
+)
+def test_other_messages_are_checked(text, tmp_path):
+    theirs = compiled(text, tmp_path)
+    assert not rj.Decoder.of(theirs, encoding="protobuf").holder_type.family_.wholes[theirs].is_exact
+
+
+def failure(decode, *arguments):
+    """What is wrong with a message, and where; None if nothing is."""
+    try:
+        decode(*arguments)
+    except rj.DecodeError as error:
+        return error.kind, error.path, error.offset
+    return None
+
+
+def compiled(text, folder):
+    """The class of the message `h.M` of a file, in a pool of its own."""
+    from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+    from grpc_tools import protoc
+
+    (folder / "h.proto").write_text(text)
+    assert protoc.main(["protoc", f"-I{folder}", f"--descriptor_set_out={folder / 'set'}", "h.proto"]) == 0
+    pool = descriptor_pool.DescriptorPool()
+    for file in descriptor_pb2.FileDescriptorSet.FromString((folder / "set").read_bytes()).file:
+        pool.AddSerializedFile(file.SerializeToString())
+    return message_factory.GetMessageClass(pool.FindMessageTypeByName("h.M"))

@@ -1,4 +1,5 @@
-; Objects of other classes that are handed over as bytes (`attributes.handing`). In what does it lie: 16 a decoder, 24 an encoder, null where the bytes
+; Objects of other classes that are handed over as bytes (`attributes.handing`). In what does it lie: 16 a decoder, null where
+; nothing is to be checked, 24 an encoder, null where the bytes
 ; are already what is wanted; 32 what makes a holder, 40 a function of the objects' own, 48 the Python function for all that is not the common case,
 ; 56 a holder that nobody uses just now, or null.
 
@@ -63,6 +64,13 @@ define internal i1 @is_single(i64 %nargsf, ptr %names) alwaysinline {
   ret i1 %single
 }
 
+; Whether the objects' own function decides alone.
+define internal i1 @decides_alone(ptr %handing) alwaysinline {
+  %decoder = call ptr @pointer(ptr %handing, i64 16)
+  %alone = icmp eq ptr %decoder, null
+  ret i1 %alone
+}
+
 ; hand_in(object) -> bytes. Where nothing is to be encoded they are the object's own, if they can be decoded.
 define ptr @hand_in(ptr %handing, ptr %arguments, i64 %nargsf, ptr %names) {
   %single = call i1 @is_single(i64 %nargsf, ptr %names)
@@ -71,6 +79,16 @@ write:
   %writer = call ptr @pointer(ptr %handing, i64 40)
   %bytes = call ptr @PyObject_Vectorcall(ptr %writer, ptr %arguments, i64 1, ptr null)
   %written = icmp ne ptr %bytes, null
+  %alone = call i1 @decides_alone(ptr %handing)
+  br i1 %alone, label %alone.bytes, label %check
+alone.bytes:
+  br i1 %written, label %done, label %refused, !prof !0
+done:
+  ret ptr %bytes
+refused:
+  call void @PyErr_Clear()
+  br label %python
+check:
   br i1 %written, label %fill, label %failed, !prof !0
 fill:
   %holder = call ptr @filled(ptr %handing, ptr %bytes)
@@ -105,7 +123,20 @@ define ptr @hand_out(ptr %handing, ptr %arguments, i64 %nargsf, ptr %names) {
 look:
   %message = load ptr, ptr %arguments
   %is.bytes = call i1 @is_exactly(ptr %message, ptr @PyBytes_Type)
-  br i1 %is.bytes, label %fill, label %python, !prof !0
+  br i1 %is.bytes, label %whose, label %python, !prof !0
+whose:
+  %alone = call i1 @decides_alone(ptr %handing)
+  br i1 %alone, label %alone.object, label %fill
+alone.object:
+  %own.reader = call ptr @pointer(ptr %handing, i64 40)
+  %object = call ptr @called(ptr %own.reader, ptr %message)
+  %accepted = icmp ne ptr %object, null
+  br i1 %accepted, label %done, label %refused, !prof !0
+done:
+  ret ptr %object
+refused:
+  call void @PyErr_Clear()
+  br label %python
 fill:
   %holder = call ptr @filled(ptr %handing, ptr %message)
   %good = icmp ne ptr %holder, null

@@ -35,6 +35,8 @@ class Whole:
     reads, writes : frozenset of str
         Encodings, or None for the framework's usual one: messages of the former are bytes of which objects can be made, those of the latter
         are the bytes of an object.
+    is_exact : bool
+        Whether the class's own functions refuse whatever the programs would, so that those need not look at what passes.
     """
 
     take: Callable[[Any, Any], None]
@@ -45,6 +47,7 @@ class Whole:
     of_bytes: Callable[[bytes], Any]
     reads: frozenset[str | None]
     writes: frozenset[str | None]
+    is_exact: bool = False
 
 
 def same_name(record: Record, field: str) -> tuple[str, ...]:  # noqa: ARG001  whatever the record
