@@ -20,6 +20,7 @@ from tests.golden import check_golden
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 PAGE = (DOCS / "language.md").read_text("utf-8")
+INVERSIONS = (DOCS / "inversions.md").read_text("utf-8")
 HEAD = 'import "w.bottle-schema"\nimport "h.proto"\ndata-holder: lab.H\nwire-schema: w\nrules:\n'
 WIRE = {
     "n": ":int64",
@@ -52,7 +53,7 @@ COLORS = "enum Color { GRAY = 0; RGB = 1; BGR = 2; }"
 
 def rows() -> list[tuple[list[str], list[str], str, str]]:
     """The relations of each row, what they pack as, and both laws."""
-    table = PAGE[PAGE.index("| relation | packs as |") :].partition("\n\n")[0].splitlines()[2:]
+    table = INVERSIONS[INVERSIONS.index("| relation | packs as |") :].partition("\n\n")[0].splitlines()[2:]
     cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in table]
     return [(_codes(relation), _codes(packs), messages, holders) for relation, packs, _, messages, holders in cells]
 
@@ -116,7 +117,7 @@ def test_what_is_not_turned_round(value):
     with pytest.raises(rj.MappingError) as error:
         rj.Encoder("m.mapping", schema=files, encoding="yarp4", backend="interpreter")
     assert [each.code for each in error.value.diagnostics] == ["no-inverse"]
-    told = PAGE[PAGE.index("Several values give the same") :].partition("\n\n")[0]
+    told = INVERSIONS[INVERSIONS.index("Several values give the same") :].partition("\n\n")[0]
     assert re.search(rf"`{re.escape(re.sub(r'[.(].*', '', value) or value.split()[1])}`", told)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from rosetta_jit.language.parse.templates import GRAMMAR
 from tests.language.ebnf import ebnf
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "language.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "grammar.md"
 BLOCK = re.compile(r"(?<=```ebnf\n).*?(?=```)", re.DOTALL)
 
 
