@@ -90,7 +90,7 @@ def _of_sign(place: _Place) -> str:
         return "a place is set once for a message; what earlier messages left is `state`"
     if found in OPERATORS and expected & {"EQUAL", "RELATES"}:
         return f"left of `{'<->' if 'RELATES' in expected else '='}` stands a place alone: compute on the right"
-    if found == "," and "FOR" in expected and re.search(r"(<->|(?<![=<>!])=(?!=))[^=]*$", place.before):
+    if found == "," and "FOR" in expected and not ahead[1:2].isdigit() and re.search(r"(<->|(?<![=<>!])=(?!=))[^=]*$", place.before):
         return "several values stand in a list, `.x, .y = [1.0, 2.0]`; a field is related to a field by a rule of its own"
     if found in COMPARISONS and "FOR" in expected:
         return "comparisons do not chain: `a < x and x < b`"

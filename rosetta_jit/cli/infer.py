@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding
-from rosetta_jit.cli.inputs import add_topic, messages_of
+from rosetta_jit.cli.arguments import Commands, add_command
+from rosetta_jit.cli.inputs import add_topic, encoded_messages_of
 
 if TYPE_CHECKING:
     import argparse
@@ -17,13 +17,15 @@ def add(commands: Commands) -> None:
     command.add_argument("files", metavar="FILE", nargs="+", help="one message, a recording (.rec, .rec.xz) or a log; - is standard input")
     add_topic(command)
     command.add_argument("--name", default="captured", help="name of the type (default: captured)")
-    add_encoding(command, default="yarp")
+    command.add_argument("--encoding", help="one of those that `rosetta-jit frameworks` lists (default: the log's, else yarp)")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the schema."""
     import rosetta_jit
 
-    messages = [message.data for file in cast("list[str]", arguments.files) for message in messages_of(file, arguments.topic)]
-    print(rosetta_jit.infer(messages, name=arguments.name, encoding=arguments.encoding), end="")
+    found = [encoded_messages_of(file, arguments.topic) for file in cast("list[str]", arguments.files)]
+    encoding = arguments.encoding or next((each for _, each in found if each is not None), "yarp")
+    messages = [message.data for some, _ in found for message in some]
+    print(rosetta_jit.infer(messages, name=arguments.name, encoding=encoding), end="")
     return 0

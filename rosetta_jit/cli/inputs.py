@@ -24,16 +24,18 @@ def add_topic(command: argparse.ArgumentParser) -> None:
 
 def messages_of(file: str, topic: str | None) -> Iterator[Message]:
     """The messages of a log (of one topic), of a recording, or the one message that any other file is; `-` is standard input."""
-    if _is_recorded(file):
-        yield from read_messages(Path(file))
-        return
-    match _opened(file):
+    return encoded_messages_of(file, topic)[0]
+
+
+def encoded_messages_of(file: str, topic: str | None) -> tuple[Iterator[Message], str | None]:
+    """The same, and their encoding where a log tells it."""
+    match None if _is_recorded(file) else _opened(file):
         case None:
-            yield from read_messages(Path(file))
+            return read_messages(Path(file)), None
         case Message() as message:
-            yield message
+            return iter([message]), None
         case log:
-            yield from _of_topic(log, topic)
+            return _of_topic(log, topic), log[_one_topic(log, topic)].encoding
 
 
 def _is_recorded(file: str) -> bool:

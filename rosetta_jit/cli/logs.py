@@ -90,7 +90,8 @@ def _moment(text: str) -> int:
     try:
         return moment_of(text)
     except ValueError as error:
-        raise ArgumentTypeError(f"{text!r} is neither seconds since 1970 nor ISO 8601") from error
+        said = str(error) if text.replace(".", "", 1).isdigit() else f"{text!r} is neither seconds since 1970 nor ISO 8601"
+        raise ArgumentTypeError(said) from error
 
 
 def log_of(arguments: Namespace, on_problem: Callable[[Diagnostic], object] | None = None) -> Log:

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 else:
     Moment = object
 
+MOST_DIGITS = 11
+"""Digits of seconds since 1970 at most. Milliseconds and nanoseconds of today have more, and would be taken for a time that never comes."""
+
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
@@ -51,11 +54,13 @@ def shown(time_ns: int) -> str:
 
 
 def moment_of(text: str) -> int:
-    """A moment as a person writes it: seconds since 1970, or ISO 8601; ValueError if it is neither.
+    """A moment as a person writes it: seconds since 1970, or ISO 8601; ValueError if it is neither, or too far to be meant.
 
     Seconds are read as digits, not as a float, which has no room for nanoseconds.
     """
     seconds, _, fraction = text.partition(".")
+    if seconds.isdigit() and len(seconds) > MOST_DIGITS:
+        raise ValueError(f"{text} s is beyond the year 5138: seconds since 1970 are meant, not a part of them")
     if seconds.isdigit() and (fraction.isdigit() or not fraction):
         return int(seconds) * 10**9 + int(fraction[:9].ljust(9, "0"))
     return nanoseconds(datetime.fromisoformat(text)) or 0

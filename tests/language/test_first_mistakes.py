@@ -152,7 +152,7 @@ MISTAKES = [
     Mistake("  .label = .frame[0 to 3]\n", "not-indexable", "`slice(.frame, 0, 3)`"),
     Mistake("  .position[] = .position\n", "no-count", "`.position[] = .position[]`"),
     Mistake('  .total = .position["elbow"]\n', "integer-needed", '`.a[.keys[] = "elbow"]`'),
-    Mistake('  .total = .joints[.name == "elbow"].position\n', "not-comparable", '`[.name = "elbow"]`'),
+    Mistake('  .total = .joints[.name == "elbow"].position\n', "key-field", '`[.name = "elbow"]`'),
     Mistake("  .position = .position where .name\n", "condition", '`.name[] == "..."`'),
     Mistake('  .frame = .frame\n  .seq = int32(.seq)\n  .mode = "BUSY"\n', "type-clash", "`lab.Robot.Mode.BUSY`", HEAD + "unpack-rules:\n"),
     Mistake("  len(.position) = 2\n  .position[0] = .angle\n  .position[0] = .angle\n", "set-twice", "remove one of the rules"),

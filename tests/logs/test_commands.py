@@ -169,6 +169,28 @@ def test_decode_takes_logs_types_and_standard_input(command, folder, monkeypatch
     assert "no log that is known" in command("dump", "t/Point", __file__, code=1).err
 
 
+def test_infer_of_a_log_takes_its_encoding(command, monkeypatch):
+    assert "no schema can be drafted of messages in `cdr`" in command("infer", "a.mcap", "--topic", "/a", code=1).err
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(Path("a.bag").read_bytes())))
+    assert "in `ros1`" in command("infer", "-", "--topic", "/b", code=1).err
+
+
+def test_a_moment_in_nanoseconds_is_refused(command, capsys):
+    """Taken as seconds it would be a time that never comes, and all messages would be read."""
+    with pytest.raises(SystemExit):
+        command("cat", "a.bag", "--end", "1700000000000000000")
+    assert "seconds since 1970 are meant" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        command("cat", "a.bag", "--end", "soon")
+    assert "'soon' is neither seconds since 1970 nor ISO 8601" in capsys.readouterr().err
+
+
+def test_doctor_of_a_log_cut_within_a_chunk(command, folder):
+    (folder / "cut.mcap").write_bytes((folder / "a.mcap").read_bytes()[:200])
+    found = json.loads(command("doctor", "cut.mcap", "--json", code=1).out)
+    assert [each["code"] for each in found["problems"]] == ["log-unfinished", "log-cut", "log-chunk"]
+
+
 def test_a_name_that_does_not_say_what_to_write(folder, tmp_path, capsys):
     for name in ("out", "out.parket"):
         assert main(["convert", str(folder / "a.mcap"), "--on-error", "skip", "-o", str(tmp_path / name)]) == 1
