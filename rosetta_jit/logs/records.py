@@ -156,8 +156,7 @@ class Records:
             size = head.size
         record = self._storage.read_into(segment.at, scratch.record(size))
         head = self._grammar.head(bytes(record[:PEEK])) if len(record) > 9 else Head("damaged")
-        is_cut = segment.at + segment.size >= self._storage.size
-        is_true = head.kind == "chunk" and (head.size <= segment.size or is_cut)
+        is_true = head.kind == "chunk" and head.size <= segment.size
         return Found(number, head.size, is_true, self._sealed(record, segment.at) if is_true else nothing())
 
     def _segment(

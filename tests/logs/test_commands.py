@@ -185,12 +185,6 @@ def test_a_moment_in_nanoseconds_is_refused(command, capsys):
     assert "'soon' is neither seconds since 1970 nor ISO 8601" in capsys.readouterr().err
 
 
-def test_doctor_of_a_log_cut_within_a_chunk(command, folder):
-    (folder / "cut.mcap").write_bytes((folder / "a.mcap").read_bytes()[:200])
-    found = json.loads(command("doctor", "cut.mcap", "--json", code=1).out)
-    assert [each["code"] for each in found["problems"]] == ["log-unfinished", "log-cut", "log-chunk"]
-
-
 def test_a_name_that_does_not_say_what_to_write(folder, tmp_path, capsys):
     for name in ("out", "out.parket"):
         assert main(["convert", str(folder / "a.mcap"), "--on-error", "skip", "-o", str(tmp_path / name)]) == 1
