@@ -173,6 +173,16 @@ def test_numbers_are_changed_only_where_their_list_is_as_it_was(change):
     assert holder.v.tolist() != [3, 1, 2, 7]
 
 
+def test_numbers_are_cleared_whatever_was_there(monkeypatch):
+    """To clear them nothing is read, so that no change of another thread stands in the way."""
+    holder = _numbers(3, 1, 2)
+    numbers = holder.v
+    monkeypatch.setattr(type(holder.lanes_), "consistent", lambda *_: pytest.fail("the elements were read"))
+    numbers.clear()
+    monkeypatch.undo()
+    assert holder.v.tolist() == []
+
+
 @dataclass
 class LateIndex:
     """An index, the first, at which something else happens before."""

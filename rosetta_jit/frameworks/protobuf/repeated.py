@@ -80,7 +80,10 @@ class NumberArray(np.ndarray[Any, Any]):
         self._change(lambda elements: elements.remove(value))
 
     def clear(self) -> None:
-        self._change(lambda elements: elements.clear())
+        """Remove all elements, whichever there are."""
+        message, node = self._field()
+        with message.lanes_:
+            values.put(node, *writable(message), values.prepare(node, []))
 
     def reverse(self) -> None:
         self._change(lambda elements: elements.reverse())
