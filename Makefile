@@ -18,7 +18,10 @@ ifneq ($(wildcard $(YARP)/cmake/.built),)
 export YARP_DIR ?= $(abspath $(YARP))/cmake
 endif
 
-.PHONY: help demo usecase test check campaign conformance bench bench-check bench-planted bench-compare native peers yarp clean
+# Versions of Python besides the one of $(VENV): names or paths.
+PYTHONS ?= python3.12 python3.13 python3.14
+
+.PHONY: help demo usecase test check pythons campaign conformance bench bench-check bench-planted bench-compare native peers yarp clean
 
 help: ## show this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -36,6 +39,14 @@ check: $(VENV)/.test ## lint and check types alone
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/basedpyright --pythonpath $(BIN)/python
+
+# Compiled code reads CPython's objects where they lie, which differs between versions.
+pythons: ## run the tests of what runs (holders, programs, numba) with other versions of Python: PYTHONS="python3.12 ..."
+	@for python in $(PYTHONS); do \
+		version=$$($$python -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2> /dev/null) || { echo "$$python is not installed: left out"; continue; }; \
+		$(MAKE) VENV=build/python$$version PYTHON=$$python build/python$$version/.test || exit 1; \
+		build/python$$version/bin/python -m pytest -m "not campaign" -n auto --dist loadfile tests/runtime tests/api tests/in_numba $(ARGS) || exit 1; \
+	done
 
 campaign: $(VENV)/.test ## the long runs of the test programme, and the others with new random examples (hours)
 	$(BIN)/python -m pytest --hypothesis-profile=default $(ARGS)

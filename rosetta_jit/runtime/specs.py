@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -106,6 +106,23 @@ def _described(create: Any, owner: type, definition: ctypes.Structure) -> Any:
 def slot_offset(descriptor: Any) -> int:
     """Where a slot of a class lies in its objects: PyMemberDescrObject of Include/descrobject.h."""
     return read_word(read_word(id(descriptor) + 40) + 16)
+
+
+class _WeaklySeen:
+    __slots__ = ("__weakref__",)
+
+
+def weak_list_offset(slots_end: int) -> int:
+    """Where objects of a class that declares ``__weakref__`` keep the list of weak references to them: where its other slots end, or, from
+    CPython 3.12 on, before the object.
+    """
+    here: int = cast("Any", _WeaklySeen).__weakrefoffset__
+    return here if here < 0 else slots_end
+
+
+def size_with_weak_list(slots_end: int) -> int:
+    """The size of such objects."""
+    return max(slots_end, weak_list_offset(slots_end) + 8)
 
 
 def function_of(name: str, address: int) -> Callable[..., Any]:

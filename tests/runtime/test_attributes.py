@@ -15,7 +15,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.errors import InUse, InvalidHolder
 from rosetta_jit.kernel.state import EPOCH, UNSETTLED, VALID, WASTED
-from rosetta_jit.runtime.attributes.code import SYMBOLS, library, text
+from rosetta_jit.runtime.attributes.code import OFFSETS, SYMBOLS, library, text
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.holder.access import raw
@@ -190,7 +190,7 @@ def test_objects_lie_in_memory_as_the_code_expects():
         return tuple(slot_offset(vars(made)[name]) for name in names)
 
     assert offsets(Message, "access_", "entry_", "lanes_", "parent_") == (72, 80, 88, 96)
-    assert Message.__weakrefoffset__ == 104
+    assert (Message.__weakrefoffset__, Message.__basicsize__) == (OFFSETS["MESSAGE_WEAK_LIST"], OFFSETS["MESSAGE_END"])
     assert offsets(Sequence, "entry", "message", "node", "spare_one", "spare_two") == (24, 32, 40, 48, 56)
     assert offsets(Lanes, "arrays") == (40,)
     assert (8 * WASTED, 8 * EPOCH, VALID, UNSETTLED) == (120, 8, 0, 2)

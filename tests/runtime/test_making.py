@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.runtime.attributes.code import OFFSETS as IN_CODE
 from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_ENDED
@@ -59,7 +60,7 @@ def filled(made):
 def test_slots_lie_where_compiled_code_seeks_them():
     expected = OFFSETS | {"spares": 128, "state": 136, "words": 144}
     assert {name: slot_offset(vars(Lanes)[name]) for name in expected} == expected
-    assert Lanes.__weakrefoffset__ == 152
+    assert Lanes.__weakrefoffset__ == IN_CODE["LANES_WEAK_LIST"]
 
 
 def test_a_class_makes_what_its_constructor_makes(quaternion):

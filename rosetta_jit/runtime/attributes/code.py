@@ -16,7 +16,7 @@ from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.allowed import ForeignCodeError
 from rosetta_jit.runtime.code.lazy import Stubs, is_supported, stubs_text
-from rosetta_jit.runtime.specs import function_of
+from rosetta_jit.runtime.specs import function_of, size_with_weak_list, weak_list_offset
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -44,6 +44,18 @@ ALL = "all accessors"
 
 HEAP_TYPE_BYTES: int = cast("Any", type).__basicsize__
 """The size of a class that a class statement makes, in bytes. Behind it lies what a class of its own class has besides."""
+
+MESSAGE_SLOTS_END, LANES_SLOTS_END = 104, 152
+"""Where in a message (`holder.message.Message`) and in lanes (`runtime.lanes.Lanes`) the slots end that all of them have."""
+
+OFFSETS = {
+    "HEAP_TYPE_BYTES": HEAP_TYPE_BYTES,
+    "NAMES_AT": HEAP_TYPE_BYTES + 8,
+    "MESSAGE_END": size_with_weak_list(MESSAGE_SLOTS_END),
+    "MESSAGE_WEAK_LIST": weak_list_offset(MESSAGE_SLOTS_END),
+    "LANES_WEAK_LIST": weak_list_offset(LANES_SLOTS_END),
+}
+"""Offsets that differ between versions of CPython, by the names that the text has for them."""
 
 CELLS = {"bool": "i8", "f32": "float", "f64": "double"}
 """LLVM's type of a scalar in memory, where it is not an integer of that size."""
@@ -146,8 +158,8 @@ def text() -> str:
     """The module."""
     from string import Template  # slow to import
 
-    calling = Template(_read("holders/calling.ll")).substitute(HEAP_TYPE_BYTES=HEAP_TYPE_BYTES, NAMES_AT=HEAP_TYPE_BYTES + 8)
-    return "\n".join([*(_read(file) for file in FILES), _read(_integers()), calling, *_scalars()])
+    shared = "\n".join(_read(file) for file in (*FILES, _integers(), "holders/calling.ll"))
+    return "\n".join([Template(shared).substitute(OFFSETS), *_scalars()])
 
 
 def _integers() -> str:

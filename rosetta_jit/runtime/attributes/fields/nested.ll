@@ -157,7 +157,7 @@ define internal i1 @is_spare(ptr %object) alwaysinline {
 
 define internal i1 @is_spare_view(ptr %view) alwaysinline {
   %one = call i1 @is_spare(ptr %view)
-  %weak = call ptr @pointer(ptr %view, i64 104)
+  %weak = call ptr @pointer(ptr %view, i64 $MESSAGE_WEAK_LIST)
   %unseen = icmp eq ptr %weak, null
   %spare = and i1 %one, %unseen
   ret i1 %spare

@@ -3,7 +3,7 @@
 ; must be empty here.
 ;
 ; Of lanes (`runtime.lanes`): 24 arena, 40 to 64 and 80, 88, 104, 120, 136, 144 what is made when it is first asked for, 128 the list of those
-; that are kept (not set in one that is kept), 152 list of weak references. Of a bytearray: 48 how often its buffer is exported. Of a list: 16 size,
+; that are kept (not set in one that is kept), $LANES_WEAK_LIST list of weak references. Of a bytearray: 48 how often its buffer is exported. Of a list: 16 size,
 ; 24 items. Of a class (PyTypeObject): 32 size of objects, 48 dealloc, 256 base, 320 free, 392 finalize.
 
 declare void @PyObject_GC_UnTrack(ptr)
@@ -26,7 +26,7 @@ lives:
   ret void
 begin:
   call void @PyObject_GC_UnTrack(ptr %self)
-  %weak = call ptr @pointer(ptr %self, i64 104)
+  %weak = call ptr @pointer(ptr %self, i64 $MESSAGE_WEAK_LIST)
   %is.seen = icmp ne ptr %weak, null
   br i1 %is.seen, label %unsee, label %search
 unsee:
@@ -44,7 +44,7 @@ found:
   %size = call i64 @word(ptr %class, i64 32)
   br label %head
 head:
-  %slot = phi i64 [ 112, %found ], [ %next, %each ]
+  %slot = phi i64 [ $MESSAGE_END, %found ], [ %next, %each ]
   %more = icmp slt i64 %slot, %size
   br i1 %more, label %each, label %own
 each:
@@ -91,7 +91,7 @@ look:
   %source = call i64 @word(ptr %lanes, i64 120)
   %state = call i64 @word(ptr %lanes, i64 136)
   %words = call i64 @word(ptr %lanes, i64 144)
-  %weak = call i64 @word(ptr %lanes, i64 152)
+  %weak = call i64 @word(ptr %lanes, i64 $LANES_WEAK_LIST)
   %any.1 = or i64 %arrays, %buffers
   %any.2 = or i64 %cells, %hidden
   %any.3 = or i64 %lock, %memory

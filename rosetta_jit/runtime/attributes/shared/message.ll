@@ -2,7 +2,7 @@
 ;
 ; Offsets into a message (`runtime.callable`): 16 state, 24 row, 32 epoch at which the row was found, 40 its lane's words in the state,
 ; 48 places of its record, 56 index, 64 its span in the parent's row; and objects (`holder.message`): 72 access, 80 entry, 88 lanes, 96 parent,
-; 104 list of weak references. Offsets into a place are those of `attributes.places.Place`.
+; $MESSAGE_WEAK_LIST list of weak references, $MESSAGE_END the first slot of its own class. Offsets into a place are those of `attributes.places.Place`.
 ; Of the state (`kernel.state`): 0 valid, 8 epoch; of a lane's words: 0 address, 8 capacity, 16 used rows, 24 bytes of a row.
 ;
 ; An accessor does the common case and asks a Python function for every other: the place has one that reads and one that writes. It has the
