@@ -99,7 +99,7 @@ def _until_it_answers(port: int) -> None:
 
 @contextmanager
 def _program(command: list[str], **how: Any) -> Generator[None]:
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=HERE.parent, **how) as program:
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=HERE.parents[1], **how) as program:
         try:
             yield
         finally:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import sqlite3
 import struct
 from typing import TYPE_CHECKING
+from weakref import finalize
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
@@ -39,6 +40,7 @@ class SqliteReader:
         self.facts, self.pieces = {"storage": "sqlite3"}, (Piece(storage.size),)
         try:
             self._database = sqlite3.connect(f"{storage.path.resolve().as_uri()}?mode=ro", uri=True, check_same_thread=False)
+            finalize(self, self._database.close)
             self._database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_RECORD_BYTES)
             self._check_tables()
             self.connections = self._defined()
