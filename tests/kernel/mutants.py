@@ -252,5 +252,5 @@ class _Edit(ast.NodeTransformer):
 def _head(stmt: ast.AST) -> str:
     """A statement's first line; of a match all that its cases ask."""
     if isinstance(stmt, ast.Match):
-        return f"{ast.unparse(stmt).splitlines()[0]} {crc32(ast.dump(stmt).encode()):08x}"
+        return f"{ast.unparse(stmt).splitlines()[0]} {crc32(ast.unparse(stmt).encode()):08x}"
     return ast.unparse(stmt).splitlines()[0]
