@@ -91,8 +91,9 @@ class BridgeBase(ProgramBase):
         self._loaded, self._asks, self._registers = loaded, loaded.asks_host, loaded.state.registers()
         self._lanes = Lanes.of(loaded.layout)
         self._spares: list[Lanes] = []
+        kept: list[object] = [loaded, self._registers]
         address = address_of(self._registers)
-        context = Context(self._lanes.state, self._lanes, self._call_slowly, self._lanes.source, Lanes, address)
+        context = Context(self._lanes.state, self._lanes, self._call_slowly, self._lanes.source, Lanes, address, kept)
         bind_call(self, entry_of(loaded.library, loaded.state), context)
 
     @property

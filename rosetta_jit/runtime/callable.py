@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import ctypes
 import sys
+from dataclasses import field
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -54,6 +55,8 @@ class Context:
         The exact type of holders that the entry takes.
     registers
         Their address, 0 where there are none.
+    kept
+        What else compiled code has addresses of: the code itself, and what the program adds later.
     """
 
     state: Words
@@ -62,6 +65,7 @@ class Context:
     cell: list[object]
     holder_type: type
     registers: int = 0
+    kept: list[object] = field(default_factory=list[object])
 
     def words(self) -> Words:
         """The array that the entry reads, and where it counts. It borrows every reference: `self` must live as long."""
@@ -117,7 +121,8 @@ def message_base(*, native: bool | None = None) -> type:
 def bind_call(target: Any, entry: int | None, context: Context) -> None:
     """Let calls of ``target``, an instance of a `callable_class`, go to the entry at an address; without one, to the slow path.
 
-    The code there must live as long as the object. The context is kept by the object.
+    The code there must live as long as the object. The object keeps the context in ``_context``, which should be a slot: what stands in its
+    ``__dict__`` ends where somebody clears that.
     """
     words = context.words()
     target._context = (context, words)  # noqa: SLF001 - the class is ours
@@ -138,11 +143,23 @@ def builtin_of(target: Any, name: str, doc: str) -> Callable[..., Any]:
     entry = specs.read_word(id(target) + VECTORCALL) if target._is_native else 0  # noqa: SLF001 - the class is ours
     if not entry:
         return target._context[0].slow  # noqa: SLF001 - as above
-    if "_method" not in vars(target):
-        target._method = specs.Method(name.encode(), entry, specs.FASTCALL | specs.KEYWORDS, doc.encode())  # noqa: SLF001 - as above
+    method = specs.Method(name.encode(), entry, specs.FASTCALL | specs.KEYWORDS, doc.encode())
     create = ctypes.pythonapi.PyCFunction_NewEx
-    create.restype, create.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p]
-    return create(ctypes.addressof(target._method), target, None)  # noqa: SLF001 - as above
+    create.restype, create.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.py_object, ctypes.py_object]
+    return create(ctypes.addressof(method), target, _Module.of(method))
+
+
+class _Module(str):
+    """The name of the module of a built-in function. CPython lets it live as long as the function, and so the function's definition."""
+
+    __slots__ = ("method",)
+    method: specs.Method
+
+    @classmethod
+    def of(cls, method: specs.Method) -> _Module:
+        module = cls(__name__)
+        module.method = method
+        return module
 
 
 def bind_state(holder: Any, address: int) -> None:

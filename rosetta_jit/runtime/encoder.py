@@ -259,7 +259,9 @@ class EncoderBase(Program):
 
     @cached_property
     def _handed(self) -> list[tuple[object, ...]]:
-        return []
+        handed = list[tuple[object, ...]]()
+        self._context[0].kept.append(handed)
+        return handed
 
     def _of_unusual(self, value: object, *more: object) -> Any:
         """Encode an object that is not as the others of its class. Where the class has changed, the next one is looked at anew."""

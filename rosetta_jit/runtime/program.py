@@ -127,8 +127,11 @@ class CallSignature:
 class ProgramBase:
     """What decoders, encoders and bridges share: their kernels may ask for the time, or the number of a message, and keep state.
 
-    ``_arguments`` are what a call takes: one argument, and others with their defaults.
+    ``_arguments`` are what a call takes: one argument, and others with their defaults. What compiled code has addresses of is in a slot:
+    it lives as long as the program, whoever changes its ``__dict__``.
     """
+
+    __slots__ = ("__dict__", "__weakref__", "_context")
 
     _arguments: ClassVar[tuple[str, dict[str, object]]]
 
@@ -220,7 +223,8 @@ class Program(ProgramBase):
         if library() is not None:
             vars(self)["new"] = maker(loaded.holder_type, self._plan)
         lanes = self._holder.lanes_
-        context = Context(lanes.state, self._holder, slow, lanes.source, loaded.holder_type, address_of(self._registers))
+        kept: list[object] = [loaded, self._registers]
+        context = Context(lanes.state, self._holder, slow, lanes.source, loaded.holder_type, address_of(self._registers), kept)
         bind_call(self, entry_of(loaded.library, loaded.state), context)
 
     @property

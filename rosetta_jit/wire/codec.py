@@ -288,7 +288,7 @@ class Tagged:
     """A message of tagged fields in any order (protobuf), unknown ones skipped; ``required`` ones must come.
 
     Delimited by a length before it (``delimited``), by the end tag of its group (``group`` is the field number), or by the end of
-    the bytes.
+    the bytes. One that is ``whole`` or not at all, an entry of a map, counts as an unknown field itself if a value of it is not allowed.
     """
 
     path: Path
@@ -296,6 +296,7 @@ class Tagged:
     required: tuple[str, ...] = ()
     delimited: bool = False
     group: int | None = None
+    whole: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -80,6 +80,49 @@ def test_the_class_of_a_program_stays():
         of(rj.Decoder).__class__ = rj.Encoder
 
 
+CLEARED = """
+import faulthandler, gc, sys
+faulthandler.enable()
+import rosetta_jit as rj
+from tests.api.test_lifetimes import message, of
+
+class Values:
+    def __init__(self):
+        self.d, self.s = [1.0], "text"
+
+decode, encode = of(rj.Decoder), of(rj.Encoder)
+encode(Values())
+encode(Values())
+programs, calls = [decode, encode], [decode.builtin, encode.builtin, decode.into]
+for program in programs:
+    if sys.argv[1] == "replaced":
+        program.__dict__ = {}
+    else:
+        vars(program).clear()
+gc.collect()
+others = [bytearray(1 << 12) for _ in range(1000)]
+for _ in range(3):
+    for call, given in zip([*programs, *calls], [message(1 << 10, b"text"), Values(), message(3), Values(), message(3)]):
+        try:
+            call(given)
+        except (AttributeError, TypeError, ValueError):
+            pass
+holder = of(rj.Decoder).new()
+assert decode(message(3, b"text"), holder) is holder
+assert encode(holder) == message(3, b"text")
+assert all(not any(each) for each in others)
+del decode, encode, programs, program, calls, call
+gc.collect()
+print("whole")
+"""
+
+
+@pytest.mark.parametrize("how", ["cleared", "replaced"])
+def test_compiled_code_lives_without_the_attributes_of_its_program(how):
+    ran = subprocess.run([sys.executable, "-c", CLEARED, how], capture_output=True, text=True, check=False)
+    assert (ran.returncode, ran.stdout) == (0, "whole\n"), ran.stderr
+
+
 def test_a_holder_that_was_never_made_says_so(decode, encode):
     unmade = decode.holder_type.__new__(decode.holder_type)
     for use in (lambda: decode(message(1), unmade), lambda: encode(unmade)):

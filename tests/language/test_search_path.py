@@ -111,6 +111,16 @@ def test_mapping_may_lie_anywhere(tmp_path: Path) -> None:
         SearchPath((tmp_path,)).open("none.mapping")
 
 
+@pytest.mark.parametrize("name", ["x" * 300 + "/A.msg", "a/" * 3000 + "A.msg", "x" * 5000, "p/" + "é" * 200 + ".mapping"])
+def test_names_that_no_file_can_have_are_not_found(name: str) -> None:
+    """Neither is a folder of such a name searched for files that are called alike."""
+    mapping = f'import "{name}"\ndata-holder: A\nwire-schema: B\nrules:\n  .a <-> .b\n'
+    for make in (lambda: rj.Decoder(name), lambda: rj.Decoder("m.mapping", schema={"m.mapping": mapping})):
+        with pytest.raises(MappingError) as caught:
+            make()
+        assert {each.code for each in caught.value.diagnostics} <= {"mapping-not-found", "import-not-found", "no-such-mapping"}
+
+
 def test_reading_records_what_was_found(tmp_path: Path) -> None:
     path = put(tmp_path, "x.proto", "abc")
     reading = Reading()

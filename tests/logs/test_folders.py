@@ -70,6 +70,31 @@ def test_split_files_and_damaged_metadata(tmp_path):
     assert [each.code for each in found] == ["log-index", "log-unreadable"]
 
 
+@pytest.mark.parametrize("listed", ["7", "true", "1.5", "{a: 1}", "[7]", "[[a.db3]]", "[.nan]", "a.db3", "&a [*a]"])
+def test_metadata_that_lists_no_names_is_not_used(tmp_path, listed):
+    folder, found = write_rosbag2(tmp_path / "a"), []
+    (folder / "metadata.yaml").write_text(f"rosbag2_bagfile_information: {{relative_file_paths: {listed}, compression_mode: {listed}}}")
+    assert values(rj.open(folder, on_problem=found.append).messages()) == list(expected(COUNT))
+    assert [each.code for each in found] == ["log-index"]
+
+
+def test_lists_within_each_other_in_metadata_are_not_written_out(tmp_path):
+    folder = write_rosbag2(tmp_path / "a")
+    doubled = "".join(f"a{number}: &a{number} [*a{number - 1}, *a{number - 1}]\n" for number in range(1, 40))
+    (folder / "metadata.yaml").write_text(
+        f"a0: &a0 [x, x]\n{doubled}rosbag2_bagfile_information: {{relative_file_paths: *a39, compression_mode: *a39}}"
+    )
+    assert values(rj.open(folder, on_problem=[].append).messages()) == list(expected(COUNT))
+
+
+@pytest.mark.parametrize("name", ["x" * 300 + ".db3", "a\0.db3", "a/" * 3000, "../a.db3", "/dev/zero", "."])
+def test_metadata_that_names_what_is_no_file_of_the_folder(tmp_path, name):
+    folder, found = write_rosbag2(tmp_path / "a"), []
+    (folder / "metadata.yaml").write_text(json.dumps({"rosbag2_bagfile_information": {"relative_file_paths": [name]}}))
+    assert values(rj.open(folder, on_problem=found.append).messages()) == list(expected(COUNT))
+    assert [each.code for each in found] == ["log-file", "log-file"]
+
+
 def test_old_files_have_no_definitions(tmp_path):
     log = rj.open(write_rosbag2(tmp_path / "a", version=8))
     (file,) = (tmp_path / "a").glob("*.db3")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import time
 from itertools import pairwise
@@ -227,6 +228,77 @@ def test_what_does_not_compile(function, why, backend):
     (found,) = failed(backend=backend, f=function)
     assert (found.code, found.span.source.line_column(found.span.start)[0]) == ("function-type", 3)
     assert why in found.notes[0]
+
+
+def many_arguments(x, i):
+    both = {"x": x, "i": i}
+    return max(**both)
+
+
+def class_in_it(x, i):
+    class A:
+        pass
+
+    return x * i
+
+
+def import_in_it(x, i):
+    import math
+
+    return math.sin(x) * i
+
+
+def star_in_it(x, i):
+    first, *_ = x, i, i
+    return first
+
+
+def text_in_it(x, i):
+    return float(f"{x}") * i
+
+
+def varied_in_it(x, i):
+    first = lambda *given, **_: given[0]  # noqa: E731 - numba takes it to pieces where it is called
+    return first(x) * i
+
+
+@pytest.mark.parametrize("function", [many_arguments, class_in_it, import_in_it, star_in_it, text_in_it, varied_in_it])
+def test_whatever_numba_raises_is_a_report(function):
+    """Of bytecode that it does not know it raises what is no error of numba's, and some of its code fails on the way."""
+    (found,) = failed(backend="llvm", f=function)
+    assert (found.code, found.notes[0].startswith("numba: ")) == ("function-type", True)
+
+
+def test_attributes_of_a_function_do_not_replace_it():
+    """`functools.wraps` gives a function the `py_func` and the options of the one of numba's that it is put around."""
+    inner = numba.njit(fastmath=True)(lambda x, i: x + i)
+
+    def marked(x, i):
+        return x * i
+
+    marked.py_func, marked.targetoptions, marked.locals = inner.py_func, {"fastmath": True}, {}
+    assert (
+        decoder(UNPACK, "llvm", f=marked)(write(x=3.0, i=4)).to_dict()
+        == decoder(UNPACK, "llvm", f=lambda x, i: x * i)(write(x=3.0, i=4)).to_dict()
+    )
+
+    @functools.wraps(inner)
+    def around(x, i):
+        return inner(x, i) * 2.0
+
+    (found,) = failed(backend="llvm", f=around)
+    assert (found.code, "unsupported recursion" in found.notes[0]) == ("function-type", True), "nor does numba's own njit take it"
+
+
+class Compiled:
+    py_func = staticmethod(lambda x, i: x * i)
+    targetoptions = locals = 5
+
+
+@pytest.mark.parametrize("given", [Compiled(), Compiled, functools.partial(max, 1.0), functools.cache(lambda x, i: x * i)])
+def test_what_is_no_function_of_python_or_numba_is_refused(given):
+    with pytest.raises(TypeError, match="neither"):
+        decoder(UNPACK, "llvm", f=given)
 
 
 @pytest.mark.parametrize("backend", ["numba", "llvm"])

@@ -164,6 +164,61 @@ KINDS = {
         "import functools\ndef g(x): return x\ndef wrap(inner):\n  @functools.wraps(inner)\n  def f(x): return x * $.0\n"
         "  return f\nf = wrap(g)\n"
     ),
+    "a function with attributes of one of numba's": kept(
+        "import numba\n@numba.njit\ndef g(x): return x * 9.0\ndef f(x): return x * $.0\nf.py_func, f.targetoptions = g.py_func, {}\n"
+    ),
+    "closures in closures": kept(
+        "import numba\ndef make(k):\n  def outer(m):\n    return numba.njit(lambda x: x * k * m)\n  return outer\n"
+        "def around(g):\n  def f(x): return g(x)\n  return f\nf = around(make($.0)(1.0))\n"
+    ),
+    "a function that a text was made into": kept("exec(compile('def f(x): return x * %s' % $.0, 'same.py', 'exec'))\n"),
+    "names of all names of a module": kept(
+        "from names import *\ndef f(x): return g(x)\n",
+        names="from others import *\n",
+        others="K = $.0\n" + NJIT.format("g(x): return x * K"),
+    ),
+    "a constant that another module has put there": kept(
+        "import consts\nimport patch\n" + F.format("consts.K"), consts="K = 9.0\n", patch="import consts\nconsts.K = $.0\n"
+    ),
+    "a decorator of another module": kept(
+        "import deco\n@deco.times\ndef f(x): return x\n",
+        deco="import numba\ndef times(g):\n  g = numba.njit(g)\n  def f(x): return g(x) * $.0\n  return f\n",
+    ),
+    "another function's code": kept("def f(x): return x * 9.0\ndef h(x): return x * $.0\nf.__code__ = h.__code__\n"),
+    "a variable of a closure, changed": kept(
+        "def make():\n  k = 9.0\n  def f(x): return x * k\n  def change(v):\n    nonlocal k\n    k = v\n  return f, change\n"
+        "f, change = make()\nchange($.0)\n"
+    ),
+    "a table changed in place": kept(TABLE.format("np.array([9.0])", "[0]") + "T[0] = $.0\n"),
+    "where the fields of a record lie": kept(
+        TABLE.format(
+            "np.frombuffer(np.array([2.0, 3.0]), {'names': 'ab', 'formats': ['f8'] * 2, 'offsets': [0, 8] if $ == 2 else [8, 0]})", "[0].a"
+        )
+    ),
+    "a field of a record by its name": kept(
+        TABLE.format("np.array([(2.0, 3.0)], [('a', 'f8'), ('b', 'f8')])", "[0]").replace("x * T[0]", "x * getattr(T[0], N)")
+        + "N = 'ab'[$ - 2]\n"
+    ),
+    "a function of numba's as a default": kept(
+        NJIT.format("h(x): return x * $.0") + "@numba.njit\ndef g(x, k=h): return k(x)\ndef f(x): return g(x)\n"
+    ),
+    "a generator": kept(
+        "K = $.0\n" + NJIT.format("each(x):\n  yield x * K") + "def f(x):\n  for y in each(x):\n    return y\n  return 0.0\n"
+    ),
+    "what a compiler shows and what it compiles": anew(
+        NJIT.format("g(x): return x * $.0") + "def h(x): return x * 9.0\ng.py_func = h\ndef f(x): return g(x)\n"
+    ),
+    "an attribute that a module makes": anew(
+        "import consts\n" + F.format("consts.K"),
+        consts="def __getattr__(name):\n  if name != 'K':\n    raise AttributeError(name)\n  return $.0\n",
+    ),
+    "a module that is executed when it is used": anew(
+        "import importlib.util\nspec = importlib.util.find_spec('consts')\nspec.loader = importlib.util.LazyLoader(spec.loader)\n"
+        "consts = importlib.util.module_from_spec(spec)\nspec.loader.exec_module(consts)\n" + F.format("consts.K"),
+        consts="K = $.0\n",
+    ),
+    "an attribute by its name": anew("import consts\ndef f(x): return x * getattr(consts, 'K')\n", consts="K = $.0\n"),
+    "a number of a class of the user's": anew("class Number(float): pass\nK = Number($)\n" + F.format("K")),
 }
 
 SHORT = ("function of a module in a package", "IntEnum member's value", "overload")

@@ -256,3 +256,58 @@ def test_options_that_are_none():
     ):
         with pytest.raises(error, match=words.replace("?", r"\?")):
             batch.to_arrow(**options)
+
+
+OFFSETS = {
+    "beyond the values": [0, 2, 1 << 40],
+    "falling": [0, 3, 2],
+    "falling within": [0, 1 << 20, 3],
+    "negative": [-8, 0, 3],
+    "negative at the end": [0, 2, -(1 << 62)],
+}
+
+
+def array_of(type_, ends, *children):
+    """An array with these offsets, to be changed when Arrow has looked at the first and the last of them."""
+    buffers = [None, pa.py_buffer(ends), *([] if children else [pa.py_buffer(b"abc")])]
+    return pa.Array.from_buffers(type_, len(ends) - 1, buffers, children=list(children) or None)
+
+
+def of_kind(kind, ends):
+    """A source in which these are the offsets of a column, and its name."""
+    numbers, points = pa.array([1.0, 2.0, 3.0]), pa.large_list(pa.struct({"x": pa.float64()}))
+    texts = array_of(pa.large_string(), ends)
+    match kind:
+        case "text":
+            return {"text": texts}
+        case "words":
+            return {"words": array_of(pa.large_list(pa.large_string()), np.array([0, 1, 2]), texts)}
+        case "reals":
+            return {"reals": array_of(pa.large_list(pa.float64()), ends, numbers)}
+        case "points":
+            return {"points": array_of(points, ends, pa.StructArray.from_arrays([numbers], ["x"]))}
+        case "place":
+            return {"place": pa.StructArray.from_arrays([texts], ["label"])}
+        case _:
+            return {"text": pa.chunked_array([array_of(pa.large_string(), np.array([0, 1, 3])), texts])}
+
+
+@pytest.mark.parametrize("wrong", OFFSETS)
+@pytest.mark.parametrize("kind", ["text", "words", "reals", "points", "place", "chunks", "pandas"])
+def test_columns_whose_offsets_leave_their_values(kind, wrong):
+    ends = np.array([0, 1, 3])
+    if kind == "pandas":
+        pandas = pytest.importorskip("pandas")
+        name, source = "text", pandas.DataFrame({"text": pandas.arrays.ArrowExtensionArray(of_kind("text", ends)["text"])})
+    else:
+        columns = of_kind(kind, ends)
+        (name,), source = columns, pa.table(columns)
+    ends[:] = OFFSETS[wrong]
+    with pytest.raises(ValuesError, match="the column is damaged") as caught:
+        Batch.from_arrow(many(), source)
+    assert caught.value.path == f".{name}"
+
+
+def test_texts_that_are_none_are_no_column():
+    with pytest.raises(ValuesError, match=r"(?i)utf-?8"):
+        Batch.from_arrow(many(), pa.table({"text": pa.Array.from_buffers(pa.string(), 1, pa.array([b"\xff"]).buffers())}))

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from llvmlite import binding
 from numba import njit, types
-from numba.core.errors import NumbaError
+from numba.core.errors import NumbaError, UnsupportedBytecodeError
+from numba.core.registry import CPUDispatcher
 
 from rosetta_jit.backends.llvm.host import symbol
 from rosetta_jit.backends.numba.function import library
@@ -26,6 +27,12 @@ NUMBA_TYPES: dict[str, Any] = {
 KEPT = ("error_model", "fastmath", "boundscheck")
 """Of the options that `njit` was given, those that change what a function computes."""
 
+RAISED = (
+    *(NumbaError, UnsupportedBytecodeError),
+    *(ArithmeticError, AssertionError, AttributeError, ImportError, LookupError, RuntimeError, TypeError, ValueError),
+)
+"""What numba raises on functions that it cannot compile: errors of its own, and whatever its code runs into on the way."""
+
 ADDRESSES = "numba.dynamic.globals."
 """How the names of global variables begin in which numba keeps addresses of the process (`add_dynamic_addr` of numba/core/base.py)."""
 
@@ -38,15 +45,12 @@ class FunctionTypeError(ValueError):
 
 def compile_function(declared: UserFunction) -> binding.ModuleRef:
     """A module that defines the function under its name as one of the host; raises FunctionTypeError."""
-    given: Any = declared.function
-    options = {key: value for key, value in getattr(given, "targetoptions", {}).items() if key in KEPT}
-    types_of_locals: Any = getattr(given, "locals", {})
+    function, options = _taken_apart(declared.function)
     decorate: Any = njit
     arguments = tuple(NUMBA_TYPES[each] for each in declared.parameters)
-    function = getattr(given, "py_func", given)
 
     def compiled(signature: object) -> Dispatcher:
-        return decorate(signature, locals=types_of_locals, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)(function)
+        return decorate(signature, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)(function)
 
     try:
         dispatcher = compiled(arguments)
@@ -55,9 +59,17 @@ def compile_function(declared: UserFunction) -> binding.ModuleRef:
             if not _widens(found, declared.result):
                 raise FunctionTypeError(f"it gives {_shown(dispatcher)}, not {NUMBA_TYPES[declared.result]}")
             dispatcher = compiled(NUMBA_TYPES[declared.result](*arguments))
-    except (NumbaError, TypeError, NotImplementedError) as error:  # the others are what numba raises on arguments, and on bytecode
+    except RAISED as error:
         raise FunctionTypeError(_reason(error)) from error
     return _module(declared.name, dispatcher)
+
+
+def _taken_apart(given: Any) -> tuple[Any, dict[str, Any]]:
+    """The Python function, and what `njit` was told of it: options that change what it computes, and types of locals."""
+    if type(given) is not CPUDispatcher:
+        return given, {}
+    options = {key: value for key, value in given.targetoptions.items() if key in KEPT}
+    return given.py_func, {**options, "locals": given.locals}
 
 
 def has_addresses(module: binding.ModuleRef) -> bool:

@@ -68,7 +68,7 @@ class _Messages:
         """An entry of a map is a message of two fields, which are always written; one that does not come is zero."""
         fields = [Field(each.name, each.type, number) for number, each in enumerate(map_entry(key, value).fields, 1)]
         entries = tuple(self.entry(each, each.type, (each.name,), "single") for each in fields)
-        return Tagged((), entries, delimited=True)
+        return Tagged((), entries, delimited=True, whole=any(each.allowed for each in entries))
 
     def cases(self, union: str, case: Field) -> list[Entry]:
         return [self.entry(case, case.type, (union, case.name), "single")]

@@ -9,6 +9,7 @@ or by an absolute path.
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from dataclasses import field, replace
 from itertools import islice
 from pathlib import Path, PurePosixPath
@@ -118,7 +119,7 @@ class SearchPath:
         found, shipped = [each for each, _ in self.files], shipped_folders()
         for folder in self.folders:
             paths = folder.rglob("*.*") if folder in shipped else (folder / around).glob("*.*")
-            found += [path.relative_to(folder).as_posix() for path in islice(paths, MAX_LISTED_FILES)]
+            found += [path.relative_to(folder).as_posix() for path in _first(paths)]
         same = [each for each in found if PurePosixPath(each).name.casefold() == called]
         return same or [each for each in found if PurePosixPath(each).parent == around]
 
@@ -206,6 +207,14 @@ def _is_file(path: Path) -> bool:
         return path.is_file()
     except (OSError, ValueError):  # a name that the file system cannot have
         return False
+
+
+def _first(paths: Iterable[Path]) -> list[Path]:
+    """The first of some files: none of a folder whose name the file system cannot have."""
+    found = list[Path]()
+    with suppress(OSError, ValueError):
+        found.extend(islice(paths, MAX_LISTED_FILES))
+    return found
 
 
 def _read(path: Path) -> Source:

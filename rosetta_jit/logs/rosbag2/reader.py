@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import shutil
 import tempfile
+from contextlib import suppress
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 from weakref import finalize
 
 from rosetta_jit.catalogue import logs as words
@@ -38,7 +39,8 @@ class Rosbag2Reader:
     def __init__(self, storage: Storage, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
         self._folder, self._tell, self._check = storage.path, tell, check
         information = self._metadata()
-        self._compressed = str(information.get("compression_mode", "")).upper() == "MESSAGE"
+        mode = information.get("compression_mode")
+        self._compressed = isinstance(mode, str) and mode.upper() == "MESSAGE"
         self._parts: list[Reader] = []
         for name in self._files(information):
             try:
@@ -126,16 +128,25 @@ class Rosbag2Reader:
 
     def _files(self, information: dict[str, Any]) -> list[str]:
         """The names of the files: those of the metadata, and those that it does not mention."""
-        named = [str(each) for each in information.get("relative_file_paths") or ()]
+        listed: object = information.get("relative_file_paths") or []
+        named = [each for each in cast("list[object]", listed) if isinstance(each, str)] if isinstance(listed, list) else []
+        if named != listed:
+            self._tell(words.bad_index(str(self._folder / "metadata.yaml"), "`relative_file_paths` is no list of names"))
         for each in named:
-            if not (self._folder / each).is_file() or Path(each).is_absolute() or ".." in Path(each).parts:
+            if not self._has(each):
                 self._tell(words.missing_file(str(self._folder), each))
         there = sorted(path.name for path in self._folder.iterdir() if path.name.endswith(SUFFIXES))
         unnamed = [each for each in there if each not in {Path(one).name for one in named}]
         for each in unnamed if named else ():
             self._tell(words.unnamed_file(str(self._folder), each))
-        own = [each for each in named if (self._folder / each).is_file() and ".." not in Path(each).parts and not Path(each).is_absolute()]
-        return own + unnamed
+        return [each for each in named if self._has(each)] + unnamed
+
+    def _has(self, name: str) -> bool:
+        """Whether a name that the metadata gives is that of a file in the folder; the file system may not even have such names."""
+        path = Path(name)
+        with suppress(OSError, ValueError):
+            return not path.is_absolute() and ".." not in path.parts and (self._folder / path).is_file()
+        return False
 
     def _opened(self, path: Path) -> Reader:
         if path.suffix == ".zstd":

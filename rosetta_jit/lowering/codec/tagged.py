@@ -40,13 +40,22 @@ if TYPE_CHECKING:
 BYTES, GROUP, END_GROUP = 2, 3, 4
 
 
-def read_message(writer: Writer, fields: HolderFields, tagged: Tagged, stop: ir.Expr, *, fresh: bool, depth: ir.Expr) -> None:
+def read_message(
+    writer: Writer,
+    fields: HolderFields,
+    tagged: Tagged,
+    stop: ir.Expr,
+    *,
+    fresh: bool,
+    depth: ir.Expr,
+    strange: ir.Local | None = None,
+) -> None:
     """Read fields up to ``stop`` (or the end of the group) into a row; a ``fresh`` row holds nothing yet, another is merged into.
 
-    ``depth`` is how many messages of recursive structs there are around it.
+    ``depth`` is how many messages of recursive structs there are around it; ``strange`` as of `Message`.
     """
     presence = presence_words(writer, fields, fresh=fresh)
-    message = Message(writer, fields, tagged, stop, presence, array_starts(writer, fields, tagged, fresh=fresh), depth)
+    message = Message(writer, fields, tagged, stop, presence, array_starts(writer, fields, tagged, fresh=fresh), depth, strange)
     at = writer.var("at", writer.position)
     ended = writer.var("ended", ir.Const("bool", value=False)) if tagged.group is not None else None
     with writer.nested() as body:
@@ -205,7 +214,10 @@ def _if_allowed(message: Message, entry: Entry, value: ir.Local, known: list[ir.
         for each in entry.allowed[1:]:
             allowed = ir.Binary("or", allowed, ir.Compare("eq", number, index(each)))
     with writer.nested() as unknown:
-        _keep(message, begin, varint_bytes(entry.number << 3))
+        if message.strange is None:
+            _keep(message, begin, varint_bytes(entry.number << 3))
+        else:
+            writer.assign(message.strange, ir.Const("bool", value=True))
     writer.emit(ir.If(allowed, block(known), block(unknown)))
 
 
@@ -259,6 +271,8 @@ def _read_element(message: Message, entry: Entry) -> None:
             start, size = _read_bytes(message, fields, span, where, text=text)
             row = fields.reserve(lane, index(1))
             fields.set_span(Cell(lane, row, span), start, size)
+        case Tagged(whole=True) as tagged:
+            _read_whole(message, entry, tagged, where)
         case Tagged() as tagged:
             stop = _stop(message, tagged, where)
             row = fields.reserve(lane, index(1))
@@ -273,6 +287,23 @@ def _read_element(message: Message, entry: Entry) -> None:
             read_recursive(message, entry, recursion, where)
         case _:
             raise AssertionError(entry)
+
+
+def _read_whole(message: Message, entry: Entry, tagged: Tagged, where: Where) -> None:
+    """An entry of a map, whose row is in use when it was read: one with a value that is not allowed counts as an unknown field."""
+    writer, fields, begin = message.writer, message.fields, message.writer.position
+    lane = lane_of(fields, entry.path)
+    element = fields.layout.lanes[lane]
+    stop = _stop(message, tagged, where)
+    writer.emit(ir.Reserve(lane, index(1)))
+    row = writer.let("row", ir.Used(lane))
+    writer.emit(ir.Fill(ir.Place(lane, row), index(element.stride)))
+    strange = writer.var("strange", ir.Const("bool", value=False))
+    inner = HolderFields(writer, fields.layout, Cell(lane, row, element.element), where, fields.borrow)
+    read_message(writer, inner, tagged, stop, fresh=True, depth=message.depth, strange=strange)
+    with writer.nested() as unknown:
+        _keep(message, begin, varint_bytes(entry.number << 3 | BYTES))
+    writer.emit(ir.If(strange, block(unknown), (ir.Advance(lane, index(1)),)))
 
 
 def _append(message: Message, lane: int, value: ir.Local) -> None:

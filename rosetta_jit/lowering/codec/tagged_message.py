@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """A message that is being read: its fields, where it stops, its presence words, and where its arrays start."""
+    """A message that is being read: its fields, where it stops, its presence words, and where its arrays start.
+
+    Of one that is whole or not at all, ``strange`` becomes true where it has a value that is not allowed.
+    """
 
     writer: Writer
     fields: HolderFields
@@ -27,6 +30,7 @@ class Message:
     presence: tuple[Local, ...]
     starts: dict[Path, Local]
     depth: Expr
+    strange: Local | None = None
 
 
 def presence_words(writer: Writer, fields: HolderFields, *, fresh: bool) -> tuple[Local, ...]:

@@ -54,14 +54,14 @@ def columns_of(source: Any, root: Record, empty: Lanes) -> Columns:
     TypeError
         If the source has no interface of Arrow's.
     ValuesError
-        If two columns have one name, or one has values of several types, or a type that pyarrow does not know.
+        If two columns have one name, or one has values of several types, or a type that pyarrow does not know, or is damaged.
     """
     pandas = sys.modules.get("pandas")
     if pandas is not None and isinstance(source, pandas.DataFrame):
         found = [(str(name), _of_pandas(str(name), series, root, empty)) for name, series in _series(source)]
         return Columns(_nested(root, _by_name(found), ""), len(source), has_gaps=True)
     table = _table_of(source)
-    found = [(name, table.column(name).combine_chunks()) for name in _distinct(table.schema.names)]
+    found = [(name, _sound(name, table.column(name)).combine_chunks()) for name in _distinct(table.schema.names)]
     return Columns(_nested(root, _by_name(found), ""), table.num_rows)
 
 
@@ -74,6 +74,15 @@ def _table_of(source: Any) -> pa.Table:
     except (pa.ArrowInvalid, pa.ArrowNotImplementedError) as error:
         raise ValuesError("", f"a column has a type that pyarrow does not know: {error}") from None
     raise TypeError(f"a batch, or a table or frame with Arrow's interface is needed, not {type(source).__name__}")
+
+
+def _sound(name: str, column: Any) -> Any:
+    """A column whose offsets stay in its buffers, and whose texts are texts: Arrow looks at neither, nor when it reads a file."""
+    try:
+        column.validate(full=True)
+    except pa.ArrowInvalid as error:
+        raise ValuesError(f".{name}", f"the column is damaged: {error}") from None
+    return column
 
 
 def _distinct(names: Sequence[str]) -> Sequence[str]:
@@ -106,14 +115,14 @@ def _of_pandas(name: str, series: Any, root: Record, empty: Lanes) -> pa.Array:
     why = ""
     for type_ in tried:
         try:
-            return _converted(series, type_)
+            return _converted(name, series, type_)
         except (pa.ArrowInvalid, pa.ArrowTypeError, pa.ArrowNotImplementedError) as error:
             why = error.args[0]
     raise ValuesError(f".{name}", f"the column has values of several types, or of another one: {why}")
 
 
-def _converted(series: Any, type_: pa.DataType | None) -> pa.Array:
-    found = pa.Array.from_pandas(series, type=type_)
+def _converted(name: str, series: Any, type_: pa.DataType | None) -> pa.Array:
+    found = _sound(name, pa.Array.from_pandas(series, type=type_))
     return found.combine_chunks() if isinstance(found, pa.ChunkedArray) else found
 
 

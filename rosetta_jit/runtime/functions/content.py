@@ -65,8 +65,11 @@ def content_of(given: object, name: str) -> Content:
 
 
 def python_function(given: object) -> FunctionType:
-    """The function that Python runs: itself, or what numba's `njit` was put on; raises TypeError where it is neither."""
-    found = getattr(given, "py_func", given)
+    """The function that Python runs: itself, or what numba's `njit` was put on; raises TypeError where it is neither.
+
+    Another object that has a `py_func` is no such function: `functools.wraps` gives one to what it makes around a function of numba's.
+    """
+    found = cast("Any", given).py_func if kinds.is_dispatcher(given) else given
     if not isinstance(found, FunctionType):
         raise TypeError(f"a mapping calls Python functions, and those of numba's njit; {type(given).__name__} is neither")
     return found

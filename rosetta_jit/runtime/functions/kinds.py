@@ -133,9 +133,11 @@ def is_ordinary(dispatcher: Any) -> bool:
 
 
 def options(given: Any) -> tuple[object, ...]:
-    """What `njit` was given beside the function: options, and types of locals."""
-    chosen: dict[str, Any] = getattr(given, "targetoptions", {})
-    types: dict[str, Any] = getattr(given, "locals", {})
+    """What `njit` was given beside the function: options, and types of locals. Functions that it was not put on have none."""
+    if not is_dispatcher(given):
+        return (), ()
+    chosen: dict[str, Any] = given.targetoptions
+    types: dict[str, Any] = given.locals
     return tuple((name, _ordered(value)) for name, value in sorted(chosen.items())), tuple(sorted(types.items()))
 
 

@@ -15,7 +15,9 @@ TEXT = """syntax = "proto2"; package wire;
 message A {
   optional int32 v = 1; map<int32, int32> m = 2; optional bytes s = 3; repeated uint64 p = 4 [packed = true]; optional A a = 5;
   optional fixed32 f = 16; repeated string t = 2047; optional group G = 17 { optional int32 v = 1; } extensions 5000 to 6000;
-}"""
+  map<int32, E> e = 6; map<string, E> k = 7; map<int32, A> r = 8;
+}
+enum E { X = 0; Y = 1; Z = -5; W = 300; }"""
 ROUNDS = 3_000
 
 
@@ -108,6 +110,36 @@ def test_kinds(programs):
         with pytest.raises(rj.DecodeError) as error:
             decode(bytes.fromhex(message))
         assert error.value.kind == kind
+
+
+ENTRIES = {
+    "a value that is none": "3204" + "0807" + "1009",
+    "one that is negative": "320d" + "0807" + "10ffffffffffffffffff01",
+    "a known one behind it": "3206" + "0807" + "1009" + "1001",
+    "a known one before it": "3206" + "0807" + "1001" + "1009",
+    "no key": "3202" + "1009",
+    "the key behind it": "3204" + "1009" + "0807",
+    "a key that was there": "3204" + "0807" + "1001" + "3204" + "0807" + "1009",
+    "between others": "3204" + "0801" + "1001" + "3204" + "0802" + "1002" + "3205" + "0803" + "10ac02",
+    "a text for a key": "3a05" + "0a0161" + "1009" + "3a05" + "0a0162" + "1001",
+    "a length of 5 bytes": "32" + "8480808000" + "0807" + "1009",
+    "within a message of a map": "420a" + "0801" + "1206" + "3204" + "0807" + "1009",
+    "within a message": "2a06" + "3204" + "0807" + "1009",
+    "all are known": "3204" + "0807" + "1001" + "3a06" + "0a0161" + "10ac02",
+}
+"""Entries of maps to a closed enum; ``e`` is field 6, ``k`` 7."""
+
+
+@pytest.mark.parametrize("name", ENTRIES)
+def test_an_entry_whose_value_a_closed_enum_lacks_is_an_unknown_field(name, programs, upb):
+    message, (decode, encode) = bytes.fromhex(ENTRIES[name]), programs
+    peers, holder = upb.FromString(message), decode(message)
+    assert (dict(holder.e), dict(holder.k)) == (dict(peers.e), dict(peers.k))
+    again = upb.FromString(encode(holder))
+    assert again == peers
+    for each in (again, peers):
+        each.DiscardUnknownFields()
+    assert again == peers
 
 
 def field(random_: random.Random, depth: int = 0) -> bytes:
