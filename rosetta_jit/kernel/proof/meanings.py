@@ -124,8 +124,8 @@ class Terms:
                 return it == self.sum(total)
             case ("host", str()) | ("register", int()):
                 return self.range(number)
-            case other if self._as_bits:
-                return self._of_bits(it, other)
+            case _ if self._as_bits:
+                return self._of_bits(it, self._facts.meanings.get(number, ()))
             case (str(op), Linear() as left, Linear() | int() as right, *ends):
                 return self._operation(number, op, self.sum(left), right, cast("list[tuple[int, int]]", ends))
             case ("low bits", str(type_), Linear() as value):
@@ -133,7 +133,7 @@ class Terms:
             case _:
                 return z3.BoolVal(val=True)
 
-    def _of_bits(self, it: z3.ExprRef, meaning: object) -> z3.BoolRef:
+    def _of_bits(self, it: z3.ExprRef, meaning: tuple[object, ...]) -> z3.BoolRef:
         """Operations on bits, and shifts by so many, which stand among them."""
         match meaning:
             case ("and" | "or" | "xor" as op, Linear() as left, Linear() as right, (int(low), int(high))):
