@@ -162,6 +162,31 @@ class _Module(str):
         return module
 
 
+def sealed(owner: Any) -> dict[str, Callable[[Any, Any], None]]:
+    """Let Python read the slots of a class and change none of them, as compiled code takes what stands there for what it was.
+
+    The answer has what sets each of them, by name and in their order.
+    """
+    slots: dict[str, Any] = {name: vars(owner)[name] for name in owner.__slots__}
+    setters = {name: each.__set__ for name, each in slots.items()}
+    if is_native():
+        members = [specs.Member(name.encode(), specs.OBJECT, specs.slot_offset(each), specs.READONLY) for name, each in slots.items()]
+        readable = {name: specs.member_of(owner, member) for name, member in zip(slots, members, strict=True)}
+        specs.with_attributes(owner, {**readable, "_readable": members})
+    return setters
+
+
+def putting(owner: Any) -> Callable[..., None]:
+    """The same as one function, ``put(instance, name=value)``."""
+    setters = sealed(owner)
+
+    def put(instance: object, /, **values: object) -> None:
+        for name, value in values.items():
+            setters[name](instance, value)
+
+    return put
+
+
 def bind_state(holder: Any, address: int) -> None:
     """Tell the entries where the state of a holder, an instance of a subclass of a `message_base`, lies. The holder must keep it alive."""
     if holder._is_native:  # noqa: SLF001 - the class is ours

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rosetta_jit.kernel.state import NOW, NUMBER
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.attributes.code import library
-from rosetta_jit.runtime.attributes.makers import maker
+from rosetta_jit.runtime.attributes.makers import give_room, maker
 from rosetta_jit.runtime.callable import MADE, Context, bind_call, builtin_of
 from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.holder.objects.shapes import is_message_like
@@ -264,7 +264,7 @@ class Program(ProgramBase):
         if plan is not self._plan:
             self._plan = plan
             if library() is not None:
-                vars(self)["new"].room(plan)
+                give_room(vars(self)["new"], plan)
 
     def _borrow(self) -> Any:
         """An empty holder that nobody else has, until it comes back by `_give_back`."""

@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.runtime.callable import is_native
 from tests.api.exporters import exporter
 
 SCHEMA = {
@@ -121,6 +122,25 @@ print("whole")
 def test_compiled_code_lives_without_the_attributes_of_its_program(how):
     ran = subprocess.run([sys.executable, "-c", CLEARED, how], capture_output=True, text=True, check=False)
     assert (ran.returncode, ran.stdout) == (0, "whole\n"), ran.stderr
+
+
+NAMES = {"n.proto": 'syntax = "proto3"; package p; message N { repeated string names = 1; repeated N parts = 2; map<string, N> m = 3; }'}
+
+
+@pytest.mark.skipif(not is_native(), reason="no compiled code reads them")
+def test_what_compiled_code_reads_cannot_be_changed():
+    """It takes what stands there for what it put there."""
+    decode = rj.Decoder.of("p.N", schema=NAMES, encoding="protobuf")
+    holder = decode(bytes.fromhex("0a0161" + "1203" + "0a0162"), decode.new())
+    methods = [vars(type(holder)).get(name) for name in ("SerializeToString", "ParseFromString", "from_dict")]
+    for each in (decode.new, decode.to, decode.builtin, type(holder).FromString, *filter(None, methods), holder.names, holder.parts):
+        for name in (name for name in dir(each) if "_" not in (name[0], name[-1])):
+            for change in (setattr, object.__setattr__):
+                with pytest.raises((AttributeError, TypeError)):
+                    change(each, name, decode)
+            with pytest.raises((AttributeError, TypeError)):
+                delattr(each, name)
+    assert not hasattr(decode.new, "room"), "which would take the room of another layout"
 
 
 def test_a_holder_that_was_never_made_says_so(decode, encode):

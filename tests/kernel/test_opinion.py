@@ -5,9 +5,10 @@ from __future__ import annotations
 from contextlib import suppress
 
 import pytest
+import z3
 
-from rosetta_jit.kernel.ir import Binary, Let, Load, Return
-from rosetta_jit.kernel.proof import claims, integers, paths, prove
+from rosetta_jit.kernel.ir import Binary, Const, Convert, Let, Load, Local, Return
+from rosetta_jit.kernel.proof import claims, integers, meanings, paths, prove
 from rosetta_jit.kernel.proof.linear import minus, shifted
 from rosetta_jit.kernel.proof.opinion import opinions
 from rosetta_jit.kernel.proof.record import Record
@@ -83,6 +84,36 @@ def test_bits_of_a_sum_whose_parts_may_be_anything():
     small = [expect(compare(op, i64(each), limit)) for each in "ab" for op, limit in (("ge", 0), ("le", 9))]
     body = (need(BEGIN, 16), Let("a", first), Let("b", second), *small)
     agree(kernels.kernel((*body, Let("n", Binary("xor", Binary("sub", i64("a"), i64("b")), i64("a"))), Return(BEGIN))))
+
+
+def word(operation, left, right, type_="u64"):
+    return Binary(operation, left, right if isinstance(right, Load | Local | Binary | Convert) else Const(type_, right))
+
+
+BITS = {
+    "shr": lambda x: word("and", word("shr", x, 7), 0x00FF00FF),
+    "shr of and": lambda x: word("or", word("and", x, 0x7F), word("and", word("shr", x, 1), 0x3F80)),
+    "sum of shr": lambda x: word("add", word("and", x, 0xFF), word("shr", word("and", x, 0xFF), 4)),
+    "shl": lambda x: word("or", word("shl", x, 9), word("shr", x, 55)),
+    "low bits": lambda x: word("xor", Convert("u32", x), 0x5555, "u32"),
+    "low bits with a sign": lambda x: word("xor", Convert("i32", x), 0x5555, "i32"),
+    "zigzag": lambda x: Convert("i32", word("xor", word("shr", word("and", x, 0xFFFFFFFF), 1), word("and", x, 1))),
+}
+"""What varints are put together by: shifts among operations on bits."""
+
+
+@pytest.mark.parametrize("name", BITS)
+def test_shifts_among_bits(name):
+    made = BITS[name](Local("u64", "x"))
+    agree(kernels.kernel((need(BEGIN, 8), Let("x", Load("u64", BEGIN)), Let("n", made), Return(BEGIN))))
+
+
+@pytest.mark.parametrize(("type_", "ends"), [("u8", (0, 255)), ("i16", (-(1 << 15), (1 << 15) - 1)), ("i64", (-(1 << 63), (1 << 63) - 1))])
+def test_a_word_is_the_low_bits(type_, ends):
+    low, high = ends
+    for value in (0, 1, -1, low, high, high + 1, low - 1, 12345678901234567890, -(1 << 70) + 77):
+        wanted = (value - low) % (high - low + 1) + low
+        assert z3.simplify(meanings._as_word(z3.BitVecVal(value, meanings.BITS), ends)).as_signed_long() == wanted, type_
 
 
 def test_a_counterexample_shows_the_message():

@@ -165,13 +165,13 @@ KINDS = {
         "  return f\nf = wrap(g)\n"
     ),
     "a function with attributes of one of numba's": kept(
-        "import numba\n@numba.njit\ndef g(x): return x * 9.0\ndef f(x): return x * $.0\nf.py_func, f.targetoptions = g.py_func, {}\n"
+        "import numba\n@numba.njit\ndef g(x): return x * 9.0\ndef f(x): return x * $.0 * 1.0\nf.py_func, f.targetoptions = g.py_func, {}\n"
     ),
     "closures in closures": kept(
         "import numba\ndef make(k):\n  def outer(m):\n    return numba.njit(lambda x: x * k * m)\n  return outer\n"
         "def around(g):\n  def f(x): return g(x)\n  return f\nf = around(make($.0)(1.0))\n"
     ),
-    "a function that a text was made into": kept("exec(compile('def f(x): return x * %s' % $.0, 'same.py', 'exec'))\n"),
+    "a function that a text was made into": kept("exec(compile('def f(x): return x * %s + 0.0' % $.0, 'same.py', 'exec'))\n"),
     "names of all names of a module": kept(
         "from names import *\ndef f(x): return g(x)\n",
         names="from others import *\n",
@@ -184,16 +184,15 @@ KINDS = {
         "import deco\n@deco.times\ndef f(x): return x\n",
         deco="import numba\ndef times(g):\n  g = numba.njit(g)\n  def f(x): return g(x) * $.0\n  return f\n",
     ),
-    "another function's code": kept("def f(x): return x * 9.0\ndef h(x): return x * $.0\nf.__code__ = h.__code__\n"),
+    "another function's code": kept("def f(x): return x * 9.0\ndef h(x): return $.0 * x\nf.__code__ = h.__code__\n"),
     "a variable of a closure, changed": kept(
         "def make():\n  k = 9.0\n  def f(x): return x * k\n  def change(v):\n    nonlocal k\n    k = v\n  return f, change\n"
         "f, change = make()\nchange($.0)\n"
     ),
     "a table changed in place": kept(TABLE.format("np.array([9.0])", "[0]") + "T[0] = $.0\n"),
     "where the fields of a record lie": kept(
-        TABLE.format(
-            "np.frombuffer(np.array([2.0, 3.0]), {'names': 'ab', 'formats': ['f8'] * 2, 'offsets': [0, 8] if $ == 2 else [8, 0]})", "[0].a"
-        )
+        "import numpy as np\nD = {'names': 'ab', 'formats': ['f8'] * 2, 'offsets': [0, 8] if $ == 2 else [8, 16], 'itemsize': 24}\n"
+        "T = np.frombuffer(np.array([2.0, 3.0, 4.0]), D)\ndef f(x): return x * T[0].a\n"
     ),
     "a field of a record by its name": kept(
         TABLE.format("np.array([(2.0, 3.0)], [('a', 'f8'), ('b', 'f8')])", "[0]").replace("x * T[0]", "x * getattr(T[0], N)")

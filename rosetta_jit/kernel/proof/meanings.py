@@ -122,17 +122,31 @@ class Terms:
                 return it == self.atom(a) * self.atom(b)
             case ("sum", Linear() as total):
                 return it == self.sum(total)
-            case ("and" | "or" | "xor" as op, Linear() as left, Linear() as right, (int(low), int(high))) if self._as_bits:
+            case ("host", str()) | ("register", int()):
+                return self.range(number)
+            case _ if self._as_bits:
+                return self._of_bits(it, self._facts.meanings.get(number, ()))
+            case (str(op), Linear() as left, Linear() | int() as right, *ends):
+                return self._operation(number, op, self.sum(left), right, cast("list[tuple[int, int]]", ends))
+            case ("low bits", str(type_), Linear() as value):
+                return _low_bits(self.sum(value), it, limits(cast("Scalar", type_)), z3.Int(f"turns{number}"))
+            case _:
+                return z3.BoolVal(val=True)
+
+    def _of_bits(self, it: z3.ExprRef, meaning: tuple[object, ...]) -> z3.BoolRef:
+        """Operations on bits, and shifts by so many, which stand among them."""
+        match meaning:
+            case ("and" | "or" | "xor" as op, Linear() as left, Linear() as right, (int(low), int(high))):
                 a, b = self.sum(left), self.sum(right)
                 # That the operands are words of the operation's type was owed where they were made.
                 words = [z3.And(each >= self._number(low), each <= self._number(high)) for each in (a, b)]
                 return z3.And(*words, it == (a & b if op == "and" else a | b if op == "or" else a ^ b))
-            case (str(op), Linear() as left, Linear() | int() as right, *ends) if not self._as_bits:
-                return self._operation(number, op, self.sum(left), right, cast("list[tuple[int, int]]", ends))
-            case ("low bits", str(type_), Linear() as value) if not self._as_bits:
-                return _low_bits(self.sum(value), it, limits(cast("Scalar", type_)), z3.Int(f"turns{number}"))
-            case ("host", str()) | ("register", int()):
-                return self.range(number)
+            case ("shr", Linear() as left, Linear(by, ()), *_):
+                return it == self.sum(left) >> by
+            case ("shl", Linear() as left, Linear(by, ()), (int(low), int(high))):
+                return it == _as_word(self.sum(left) << by, (low, high))
+            case ("low bits", str(type_), Linear() as value):
+                return it == _as_word(self.sum(value), limits(cast("Scalar", type_)))
             case _:
                 return z3.BoolVal(val=True)
 
@@ -169,6 +183,14 @@ def _divided(number: z3.ExprRef, divisor: z3.ExprRef, quotient: z3.ExprRef, rest
 def _low_bits(value: z3.ExprRef, it: z3.ExprRef, ends: tuple[int, int], turns: z3.ExprRef) -> z3.BoolRef:
     low, high = ends
     return z3.And(it == value + turns * (high - low + 1), it >= low, it <= high)
+
+
+def _as_word(value: z3.ExprRef, ends: tuple[int, int]) -> z3.ExprRef:
+    """The low bits of bits, as a number of a type."""
+    low, high = ends
+    size = (high - low).bit_length()
+    word, more = z3.Extract(size - 1, 0, value), BITS - size
+    return z3.SignExt(more, word) if low < 0 else z3.ZeroExt(more, word)
 
 
 def _rounded_down(number: z3.ExprRef, divisor: z3.ExprRef, it: z3.ExprRef, rest: z3.ExprRef) -> z3.BoolRef:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.callable import putting
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,6 +27,9 @@ class _Handing:
     over: Callable[[Any], Any]
     slow: Callable[..., Any]
     spare: Any
+
+
+_put = putting(_Handing)
 
 
 @cache
@@ -65,10 +69,10 @@ def handing(
     assert code is not None, "there is code that hands over"
     handing_class: Any = _handing_class()
     made = handing_class.__new__(handing_class)
-    made.new, made.over, made.slow = new, over, slow
+    _put(made, new=new, over=over, slow=slow)
     if decode is not None:
-        made.decode = decode
+        _put(made, decode=decode)
     if encode is not None:
-        made.encode = encode
+        _put(made, encode=encode)
     specs.write_word(id(made) + ENTRY, code[kind])
     return made

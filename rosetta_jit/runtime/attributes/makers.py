@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.attributes.code import HEAP_TYPE_BYTES, functions, library
-from rosetta_jit.runtime.callable import is_native
+from rosetta_jit.runtime.callable import is_native, putting
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.plan import Plan
@@ -32,9 +32,8 @@ class _Maker:
     def __repr__(self) -> str:
         return f"<makes {self.holder_type.__qualname__!r} objects>"
 
-    def room(self, plan: Plan) -> None:
-        """From now on make holders with the room of a plan, or of their family's if that is more."""
-        self.plan, self.recipe = plan, None
+
+_put = putting(_Maker)
 
 
 @cache
@@ -51,10 +50,14 @@ def maker(holder_type: Any, plan: Plan) -> Any:
     assert code is not None, "there are makers"
     maker_class: Any = _maker_class()
     made = maker_class.__new__(maker_class)
-    made.holder_type, made.cell, made.plan, made.slow = holder_type, holder_type.family_.cell, plan, _made
-    made.recipe = made.seen = None
+    _put(made, holder_type=holder_type, cell=holder_type.family_.cell, plan=plan, slow=_made, recipe=None, seen=None)
     specs.write_word(id(made) + ENTRY, code["call_maker"])
     return made
+
+
+def give_room(maker: Any, plan: Plan) -> None:
+    """From now on make holders with the room of a plan of the same layout, or of their family's if that is more."""
+    _put(maker, plan=plan, recipe=None)
 
 
 def _made(maker: _Maker) -> Any:
@@ -62,7 +65,7 @@ def _made(maker: _Maker) -> Any:
     family: Any = cast("Any", maker.holder_type).family_
     own, roomy = maker.plan, maker.cell[0]
     recipe: Any = family.recipe(own if own.size_bytes > roomy.size_bytes else roomy)
-    maker.recipe, maker.seen = recipe, roomy
+    _put(maker, recipe=recipe, seen=roomy)
     return functions()["spawn"](maker.holder_type, recipe)
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.callable import putting
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,6 +47,9 @@ class _Method:
     def __wrapped__(self) -> Any:
         """What says which arguments there are."""
         return MethodType(self.function, self.holder_type)
+
+
+put = putting(_Method)
 
 
 class _BoundMethod(_Method):  # one that is called on an object
@@ -87,7 +91,7 @@ def method(kind: Kind, function: Any, bind: Callable[[Any], None]) -> Any:
     method_class: Any = _class_of(kind)
     made = method_class.__new__(method_class)
     specs.write_word(id(made) + ENTRY, code[f"method_{kind}"])
-    made.function = function
+    put(made, function=function)
 
     def slow(*arguments: Any, **named: Any) -> Any:
         given = (made.holder_type, *arguments) if kind in OF_CLASSES else arguments
@@ -95,7 +99,7 @@ def method(kind: Kind, function: Any, bind: Callable[[Any], None]) -> Any:
         bind(made)
         return answer
 
-    made.slow = slow
+    put(made, slow=slow)
     return made
 
 
@@ -108,8 +112,8 @@ def turning(function: Any, program_type: type, turned: Callable[[], tuple[type, 
     def bind(made: Any) -> None:
         found = turned()
         if found is not None:
-            made.program = found
+            put(made, program=found)
 
     made = method("turn", function, bind)
-    made.holder_type = program_type
+    put(made, holder_type=program_type)
     return made

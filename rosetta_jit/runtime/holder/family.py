@@ -17,6 +17,7 @@ from rosetta_jit.model.types import Ref, Struct
 from rosetta_jit.runtime.attributes import descriptors
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.makers import make_quickly, set_recipe
+from rosetta_jit.runtime.attributes.methods import put
 from rosetta_jit.runtime.holder.access import getter, setter
 from rosetta_jit.runtime.holder.classes import Holder, HolderClass
 from rosetta_jit.runtime.holder.manners import PLAIN, Manners, manners_at
@@ -98,7 +99,7 @@ class Family:
             methods["from_dict"] = building_method(self.manners.base, self)
         made = _class(self.struct.name, (base,), {**methods, **self.manners.members(self), **properties, **members})
         for each in methods.values():
-            each.holder_type = made
+            put(each, holder_type=made)
         if code is not None:
             self._kept = descriptors.take_slots(made, list(entries.values()))
             descriptors.describe(made, entries, shown, self._kept, plain_arrays=self.array_type is np.ndarray, has_methods=len(methods) > 1)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 import numpy as np
 
 from rosetta_jit.runtime.attributes.sequences import bind_place, compiled, extend_texts, iterator_class, sequence_base
+from rosetta_jit.runtime.callable import sealed
 from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import Message, View, element, place, writable
@@ -60,15 +61,18 @@ class Sequence(MutableSequence[Any], Base):
     """
 
     __slots__ = ("entry", "message", "node", "spare_one", "spare_two")  # in this order in memory
+    entry: Entry
+    message: View
+    node: Items
 
     def __new__(cls, message: View, entry: Entry) -> Self:  # noqa: ARG004  which is for __init__
         return super().__new__(cast("type[Self]", compiled(cls)) if message.access_.table else cls)
 
     def __init__(self, message: View, entry: Entry) -> None:
         place(message)
-        self.message = message
-        self.entry = entry
-        self.node = cast("Items", entry.node)
+        _set_message(self, message)
+        _set_entry(self, entry)
+        _set_node(self, entry.node)
         bind_place(self, message.access_.place_of(entry.name))
 
     def _span(self) -> tuple[Lanes, int, int]:
@@ -229,6 +233,9 @@ class Sequence(MutableSequence[Any], Base):
 
     def __repr__(self) -> str:
         return repr(list(self))
+
+
+_set_entry, _set_message, _set_node, *_ = sealed(Sequence).values()
 
 
 def _checked(index: int, count: int) -> int:

@@ -7,7 +7,7 @@ from inspect import getattr_static
 from typing import TYPE_CHECKING, Any, Protocol
 
 from rosetta_jit.errors import RosettaError
-from rosetta_jit.runtime.attributes.methods import Kind, method
+from rosetta_jit.runtime.attributes.methods import Kind, method, put
 from rosetta_jit.runtime.holder.message import View
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def building_method(base: type, family: Serialised) -> Any:
     def bind(made: Any) -> None:
         steps = family.takers.steps_of(dict)
         if steps is not None and steps.covers:
-            made.needed, made.program = steps, steps.table
+            put(made, needed=steps, program=steps.table)
 
     return method("build", found.__func__, bind)
 
@@ -92,7 +92,6 @@ def _method(base: type, family: Serialised, name: str, kind: Kind) -> Any:
     def bind(made: Any) -> None:
         program: Any = getattr(family.programs, "__dict__", {}).get(direction)
         if program is not None:
-            made.needed = "write" if kind == "write" else getattr(program, "new", None)
-            made.program = program
+            put(made, needed="write" if kind == "write" else getattr(program, "new", None), program=program)
 
     return method(kind, getattr(found, "__func__", found), bind)
