@@ -256,7 +256,18 @@ def _support(name: str) -> bytes:
 def _emitted(kernel: Kernel, name: str, *, whole: bool) -> str:
     module = ir.Module(name)
     llvm.emit(module, kernel, name, whole=whole)
-    return str(module)
+    text = str(module)
+    _empty(module)
+    return text
+
+
+def _empty(module: ir.Module) -> None:
+    """Let go of a module's instructions, which refer to one another: LLVM needs the memory before the next search for garbage."""
+    for function in module.functions:
+        for block in function.blocks:
+            block.instructions.clear()
+            block.terminator = None
+        function.blocks.clear()
 
 
 def _going_on(kernel: Kernel, opening: bytes) -> str:

@@ -35,6 +35,9 @@ LONGEST = 64
 WORTH = (Copy, Fill, Reserve, Call, For, While)
 """Statements of which a stretch has one: a round of fields that are only compared and set would cost more than they do."""
 
+MAY_BE_WORTH = (*WORTH, If, Switch)
+"""The same, and the statements that may have one inside."""
+
 SKIPPED = 3
 """Stretches among which the first one of a series is looked for: the first ones may be told more than those behind them."""
 
@@ -99,8 +102,8 @@ def found(kernel: Kernel, body: Block) -> Found:
 
 
 def _may_repeat(block: Block) -> bool:
-    """Whether a block has many statements of one kind; a look at all inside of every block would cost more with each level."""
-    return len(block) >= ROUNDS and max(Counter(map(type, block)).values()) >= ROUNDS
+    """Whether a block has many statements that are worth a loop or may hold such; a look at all inside would cost more with each level."""
+    return sum(isinstance(each, MAY_BE_WORTH) for each in block) >= ROUNDS
 
 
 def _blocks(stmt: Stmt) -> tuple[Block, ...]:
@@ -150,7 +153,11 @@ class _Look:
         if len(switch.cases) < ROUNDS:
             return ()
         alike = dict["Hashable", list[tuple[int, "Block", list[Slot]]]]()
-        for number, body in switch.cases:
+        kinds = [tuple(map(type, body)) for _, body in switch.cases]
+        often = {kind for kind, times in Counter(kinds).items() if times >= ROUNDS}
+        for (number, body), kind in zip(switch.cases, kinds, strict=True):
+            if kind not in often:
+                continue
             outlines = list(map(self.outline, body))
             alike.setdefault(tuple([each.shape for each in outlines]), []).append((number, body, _joined(each.slots for each in outlines)))
         made = [_case(group) for group in alike.values() if len(group) >= ROUNDS and len(group[0][1]) > 1]

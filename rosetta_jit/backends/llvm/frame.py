@@ -105,14 +105,34 @@ class Exit:
     phis: tuple[ir.PhiInstr, ...]
 
     def enter(self, builder: ir.IRBuilder, values: Sequence[ir.Value]) -> None:
-        """End the builder's block with a jump here."""
-        for phi, value in zip(self.phis, values, strict=True):
+        """End the builder's block with a jump here; values that are not given are 0."""
+        for phi, value in zip(self.phis, (*values, *[constant(0)] * (len(self.phis) - len(values))), strict=True):
             phi.add_incoming(value, builder.block)
         builder.branch(self.block)
 
     @property
     def is_reached(self) -> bool:
         return bool(self.phis[0].incomings)
+
+
+@dataclass(slots=True)
+class StoredExit:
+    """A block that very many edges lead to: each stores its values in words of the state.
+
+    LLVM looks through all edges of a phi for each edge that it moves, which takes quadratic time.
+    """
+
+    block: ir.Block
+    state: ir.Value
+    words: tuple[int, ...]
+    is_reached: bool = False
+
+    def enter(self, builder: ir.IRBuilder, values: Sequence[ir.Value]) -> None:
+        """End the builder's block with a jump here; words whose values are not given stay as they are."""
+        for word, value in zip(self.words, values, strict=False):
+            builder.store(value, state_word(builder, self.state, word), align=8)
+        builder.branch(self.block)
+        self.is_reached = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +162,7 @@ class Frame:
     own_lanes: int
     loaded: dict[tuple[int, int], ir.Value]
     done: Exit
-    failed: Exit
+    failed: Exit | StoredExit
     emptied: frozenset[int]
     routines: Mapping[str, ir.Function | Routine]
     caller: tuple[Frame, Call] | None = None

@@ -19,7 +19,7 @@ from rosetta_jit.backends.llvm import definitions
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
 from rosetta_jit.backends.llvm.alike import found
 from rosetta_jit.backends.llvm.expr import expression
-from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, constant, state_word
+from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, StoredExit, constant, state_word
 from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.series import begin_rows, end_rows
 from rosetta_jit.kernel.ir import Block, Call, Expect, For, HostCall, Kernel, Require, While
@@ -49,6 +49,9 @@ MANY = 64
 
 SEVERAL = 4
 """The same for a routine that loops whatever it is given: the rounds cost more than the call, and LLVM makes vectors of each loop."""
+
+MANY_STATEMENTS = 512
+"""Statements of a body from which on its failures are so many that each stores what it reports."""
 
 TINY, SHORT = 8, 24
 """Statements up to which a routine is part of its callers: if it does not loop, and if its callers are not many."""
@@ -151,10 +154,10 @@ def _routine(module: ir.Module, kernel: Kernel, routine: Routine, name: str, rou
     frame.done.enter(frame.builder, [expression(frame, each) for each in routine.results])
     entry.branch(first)
     _give(frame.done, outcome, (constant(0), *frame.done.phis))
-    if frame.failed.is_reached:
-        _give(frame.failed, outcome, frame.failed.phis)
+    if failed.is_reached:
+        _give(failed, outcome, failed.phis)
     else:
-        _drop(frame.failed)
+        _drop(failed)
     return function
 
 
@@ -177,7 +180,8 @@ def _attempt(
     Each body has a function of its own, so that those behind the first take no part in what it keeps in registers.
     """
     entry, first = Lines(function.append_basic_block("entry")), function.append_basic_block("body")
-    done, failed = _exit(entry, "done", 1), _exit(entry, "failed", 2 + _width(kernel))
+    is_first = len(bodies) == len(kernel.bodies)
+    done, failed = _exit(entry, "done", 1), _failed(entry, kernel, function.args[3], is_first=is_first)
     parameters, lanes, emptied = Parameters(*function.args), (kernel.strides, kernel.lanes), emptied_lanes(kernel)
     frame = Frame(function.module, entry, entry.beside(first), parameters, *lanes, {}, done, failed, emptied, routines)
     frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
@@ -193,7 +197,7 @@ def _attempt(
         _drop(failed)
         return
     builder = ir.IRBuilder(failed.block)
-    site = _record(builder, parameters.state, failed.phis, is_first=len(bodies) == len(kernel.bodies))
+    site = _record(builder, parameters.state, failed, is_first=is_first)
     if len(bodies) == 1 and not kernel.goes_on:
         builder.ret(builder.sub(constant(-1), site))
         return
@@ -223,9 +227,21 @@ def _exit(entry: ir.IRBuilder, name: str, values: int) -> Exit:
     return Exit(block, tuple(builder.phi(I64) for _ in range(values)))
 
 
-def _drop(target: Exit) -> None:
+def _failed(entry: ir.IRBuilder, kernel: Kernel, state: ir.Value, *, is_first: bool) -> Exit | StoredExit:
+    """Where the failures of a body lead to."""
+    if is_first and sum(1 for _ in statements(kernel.bodies[0])) >= MANY_STATEMENTS:
+        return StoredExit(entry.function.append_basic_block("failed"), state, _words(2 + _width(kernel)))
+    return _exit(entry, "failed", 2 + _width(kernel))
+
+
+def _words(count: int) -> tuple[int, ...]:
+    """Where the state has the site, the offset and the indices of a failure."""
+    return ERROR_SITE, ERROR_OFFSET, *range(ERROR_INDICES, ERROR_INDICES + count - 2)
+
+
+def _drop(target: Exit | StoredExit) -> None:
     """A block that no edge leads to cannot have phis."""
-    for phi in target.phis:
+    for phi in target.phis if isinstance(target, Exit) else ():
         target.block.instructions.remove(phi)
     ir.IRBuilder(target.block).unreachable()
 
@@ -245,11 +261,12 @@ def _finish(frame: Frame, lanes: Sequence[int]) -> None:
     builder.ret(frame.done.phis[0])
 
 
-def _record(builder: ir.IRBuilder, state: ir.Value, failure: Sequence[ir.Value], *, is_first: bool) -> ir.Value:
+def _record(builder: ir.IRBuilder, state: ir.Value, failed: Exit | StoredExit, *, is_first: bool) -> ir.Value:
     """The failure of the attempt that got farther, in the state: site, offset, indices; the earlier one of equals. Gives its site."""
-    words = [
-        state_word(builder, state, each) for each in (ERROR_SITE, ERROR_OFFSET, *range(ERROR_INDICES, ERROR_INDICES + len(failure) - 2))
-    ]
+    if isinstance(failed, StoredExit):
+        return builder.load(state_word(builder, state, ERROR_SITE), typ=I64, align=8)
+    failure: Sequence[ir.Value] = failed.phis
+    words = [state_word(builder, state, each) for each in _words(len(failure))]
     if not is_first:
         earlier = [builder.load(word, typ=I64, align=8) for word in words]
         farther = builder.icmp_signed(">", failure[1], earlier[1])

@@ -190,8 +190,7 @@ def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Val
     while frame.caller is not None:
         frame, call = frame.caller
         sites, indices = tuple(call.sites[each - 1] for each in sites), call.indices
-    values = [_site(frame, number, sites), offset, *(expression(frame, each) for each in indices)]
-    frame.failed.enter(frame.builder, [*values, *[constant(0)] * (len(frame.failed.phis) - len(values))])
+    frame.failed.enter(frame.builder, [_site(frame, number, sites), offset, *(expression(frame, each) for each in indices)])
 
 
 def _call(frame: Frame, call: kernel.Call) -> None:

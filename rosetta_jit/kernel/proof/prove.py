@@ -272,8 +272,10 @@ class Facts:
             case All(parts):
                 return all(self._proves(part, depth, effort) for part in parts)
             case Any(parts):
+                # An alternative that a look shows comes before elimination on another one.
                 return (
                     formula in self._either
+                    or (effort.facts > 0 and any(self._proves(part, 0, SUMS) for part in parts))
                     or any(self._proves(part, depth, effort) for part in parts)
                     or self._proves_one(parts, depth, effort)
                 )
