@@ -8,24 +8,54 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 Kind = Literal["hand_in", "hand_out"]
-ENTRY, HANDING_BYTES = 64, 72
+NO_ARGUMENTS = ()
+ENTRY, IN_C, HANDING_BYTES = 72, 80, 104
+"""Where the address of the code lies, and those of the functions in C behind ``over``."""
 
 
 class _Handing:
     """Hands over objects of one class. Compiled code reads all of it, in this order in memory (`programs/handing.ll`)."""
 
-    __slots__ = ("decode", "encode", "new", "over", "slow", "spare")
+    __slots__ = ("decode", "encode", "new", "over", "slow", "spare", "whose")
     decode: Callable[..., Any]
     encode: Callable[..., Any]
     new: Callable[[], Any]
     over: Callable[[Any], Any]
     slow: Callable[..., Any]
     spare: Any
+    whose: type
+
+
+@dataclass(frozen=True, slots=True)
+class InC:
+    """The functions in C that a class has: what calls them passes over the interpreter's way to them.
+
+    Attributes
+    ----------
+    object_type
+        The class, which has no other functions for its objects.
+    write
+        The address of a method that makes bytes of an object, and takes a tuple and a dict of arguments (``METH_VARARGS | METH_KEYWORDS``).
+    allocate
+        The address of what makes an empty object (``tp_new``), which nothing has to initialise.
+    merge
+        The address of a method that reads bytes into an object, its one argument (``METH_O``).
+    """
+
+    object_type: type
+    write: int
+    allocate: int
+    merge: int
+
+    def words(self, kind: Kind) -> tuple[int, ...]:
+        """What compiled code reads, in this order."""
+        return (self.write, 0, id(NO_ARGUMENTS)) if kind == "hand_in" else (self.allocate, self.merge, id(NO_ARGUMENTS))
 
 
 @cache
@@ -44,6 +74,7 @@ def handing(
     new: Callable[[], Any],
     over: Callable[[Any], Any],
     slow: Callable[..., Any],
+    in_c: InC | None = None,
 ) -> Callable[..., Any]:
     """What hands over the objects of a class.
 
@@ -60,6 +91,8 @@ def handing(
         The class's own function: to hand in, from an object to its bytes; to hand out, from bytes to an object.
     slow
         Does the same for other arguments.
+    in_c
+        The functions in C that do what ``over`` does.
     """
     code = library()
     assert code is not None, "there is code that hands over"
@@ -71,4 +104,14 @@ def handing(
     if encode is not None:
         made.encode = encode
     specs.write_word(id(made) + ENTRY, code[kind])
+    if in_c is not None:
+        made.whose = in_c.object_type
+        for index, word in enumerate(in_c.words(kind)):
+            specs.write_word(id(made) + IN_C + 8 * index, word)
     return made
+
+
+def caller_of(function: Callable[..., Any]) -> int:
+    """The address of the function in C that calls a callable, as `PyObject_Vectorcall` does, which it is for all but those made here."""
+    is_ours = library() is not None and isinstance(function, _handing_class())
+    return specs.read_word(id(function) + ENTRY) if is_ours else specs.address_of("PyObject_Vectorcall")
