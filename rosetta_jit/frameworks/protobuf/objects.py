@@ -6,20 +6,19 @@ same fields with the same numbers, which is asked once a class, of its descripto
 
 from __future__ import annotations
 
-from types import MethodDescriptorType, WrapperDescriptorType
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import RosettaError
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
-from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.holder.objects.foreign import Foreign, Whole
+from rosetta_jit.runtime.holder.objects.in_c import functions_in_c
 from rosetta_jit.runtime.holder.serialising import programs_of
 
 if TYPE_CHECKING:
     from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.runtime.attributes.handing import InC
     from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.objects.in_c import InC
 
 
 READS: frozenset[str | None] = frozenset({None, "protobuf", "protobuf-partial"})
@@ -51,31 +50,19 @@ def whole(family: Family, object_type: Any) -> Whole | None:
     has_required = _has_required(family.schema)
     writes = PARTIAL if has_required else READS
     is_exact = not has_required and _Alike().message(object_type.DESCRIPTOR)
-    in_c = functions_in_c(object_type)
+    direct = in_c(object_type)
     return Whole(
-        take, fill, make, programs=programs, bytes_of=write, of_bytes=parse, reads=READS, writes=writes, is_exact=is_exact, in_c=in_c
+        take, fill, make, programs=programs, bytes_of=write, of_bytes=parse, reads=READS, writes=writes, is_exact=is_exact, in_c=direct
     )
 
 
-def functions_in_c(object_type: Any) -> InC | None:
-    """The functions in C of a class of upb's; None of other classes, and where Python's own objects lie in memory in an unknown way.
+def in_c(object_type: Any) -> InC | None:
+    """The functions in C of a class of upb's; None of other classes.
 
     In upb (python/message.c of protobuf) `FromString` makes an empty message and merges the bytes into it. The initialiser does nothing
     where it is given nothing.
     """
-    from rosetta_jit.runtime import specs
-    from rosetta_jit.runtime.attributes.handing import InC
-
-    write, merge, begin = object_type.SerializePartialToString, object_type.MergeFromString, object_type.__init__
-    are_methods = isinstance(write, MethodDescriptorType) and isinstance(merge, MethodDescriptorType)
-    if not (is_native() and are_methods and isinstance(begin, WrapperDescriptorType)):
-        return None
-    owners = {each.__objclass__ for each in (write, merge, begin)}
-    if len(owners) != 1 or owners.pop().__module__ != UPB or type(object_type).__call__ is not type.__call__:
-        return None
-    writes = specs.function_behind(write, specs.VARARGS | specs.KEYWORDS)
-    allocates, merges = specs.allocator_of(object_type), specs.function_behind(merge, specs.ONE_ARGUMENT)
-    return InC(object_type, writes, allocates, merges) if writes and allocates and merges else None
+    return functions_in_c(object_type, UPB, write="SerializePartialToString", merge="MergeFromString")
 
 
 def _has_required(schema: Schema) -> bool:

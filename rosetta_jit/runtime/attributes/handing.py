@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.attributes.code import library
-from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from rosetta_jit.runtime.holder.objects.in_c import InC
 
 Kind = Literal["hand_in", "hand_out"]
 NO_ARGUMENTS = ()
@@ -30,32 +31,6 @@ class _Handing:
     slow: Callable[..., Any]
     spare: Any
     whose: type
-
-
-@dataclass(frozen=True, slots=True)
-class InC:
-    """The functions in C that a class has: what calls them passes over the interpreter's way to them.
-
-    Attributes
-    ----------
-    object_type
-        The class, which has no other functions for its objects.
-    write
-        The address of a method that makes bytes of an object, and takes a tuple and a dict of arguments (``METH_VARARGS | METH_KEYWORDS``).
-    allocate
-        The address of what makes an empty object (``tp_new``), which nothing has to initialise.
-    merge
-        The address of a method that reads bytes into an object, its one argument (``METH_O``).
-    """
-
-    object_type: type
-    write: int
-    allocate: int
-    merge: int
-
-    def words(self, kind: Kind) -> tuple[int, ...]:
-        """What compiled code reads, in this order."""
-        return (self.write, 0, id(NO_ARGUMENTS)) if kind == "hand_in" else (self.allocate, self.merge, id(NO_ARGUMENTS))
 
 
 @cache
@@ -106,7 +81,8 @@ def handing(
     specs.write_word(id(made) + ENTRY, code[kind])
     if in_c is not None:
         made.whose = in_c.object_type
-        for index, word in enumerate(in_c.words(kind)):
+        functions = (in_c.write, 0) if kind == "hand_in" else (in_c.allocate, in_c.merge)
+        for index, word in enumerate((*functions, id(NO_ARGUMENTS))):
             specs.write_word(id(made) + IN_C + 8 * index, word)
     return made
 

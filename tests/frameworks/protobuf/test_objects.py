@@ -248,9 +248,9 @@ def test_the_functions_in_c_do_what_the_methods_do(kind, tmp_path):
 IN_PYTHON = """
 from google.protobuf import struct_pb2
 from google.protobuf.internal import api_implementation
-from rosetta_jit.frameworks.protobuf.objects import functions_in_c
+from rosetta_jit.frameworks.protobuf.objects import in_c
 assert api_implementation.Type() == "python"
-assert functions_in_c(struct_pb2.Value) is None
+assert in_c(struct_pb2.Value) is None
 import rosetta_jit as rj
 value = struct_pb2.ListValue(values=[struct_pb2.Value(bool_value=True)])
 encode, decode = rj.Encoder.of(type(value)), rj.Decoder.of(type(value))

@@ -10,7 +10,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rosetta_jit.runtime.attributes.handing import InC
+    from rosetta_jit.runtime.holder.objects.in_c import InC
     from rosetta_jit.runtime.holder.record import Record
     from rosetta_jit.runtime.holder.serialising import Programs
 
