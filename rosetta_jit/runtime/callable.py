@@ -30,7 +30,7 @@ VECTORCALL, CONTEXT, CALLABLE_BYTES = 64, 72, 80
 MADE, THREAD, REGISTERS, FAILED, OTHERS = 5, 6, 7, 8, 9
 """Words of a program's context: how many messages it has made, if its kernel asks; the thread that its own holder belongs to, or 0; the
 address of its registers, or 0; 1 where an entry comes to the slow path because the kernel for one of several wires has failed; of an
-encoder, the address of two words, a class of other objects and what is called with one of them, or 0."""
+encoder, the address of three words, or 0: a class of other objects, what is called with one of them, and what calls that."""
 
 STATE, INDEX, MESSAGE_BYTES = 16, 56, 72
 ALWAYS, NEVER = -(1 << 63), 1 - (1 << 63)

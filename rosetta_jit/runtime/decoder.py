@@ -13,6 +13,7 @@ from rosetta_jit.runtime.attributes.methods import turning
 from rosetta_jit.runtime.callable import FAILED, THREAD
 from rosetta_jit.runtime.filling import Filling
 from rosetta_jit.runtime.limits import MAX_CLASSES
+from rosetta_jit.runtime.memory import LARGE
 from rosetta_jit.runtime.message_spans import laid_out, source_of
 from rosetta_jit.runtime.program import Loaded, Program, is_foreign
 from rosetta_jit.runtime.room import roomier
@@ -218,7 +219,9 @@ class DecoderBase(Program):
     def _batch(self, count: int) -> Batch:
         from rosetta_jit.runtime.batch import Batch
 
-        return Batch.room(self._loaded.holder_type, max(count, 1))
+        holder_type = self._loaded.holder_type
+        is_large = count * holder_type.family_.layout.lanes[0].stride >= LARGE
+        return Batch.room(holder_type, 1 if is_large or count < 1 else count)  # rows that are many get memory of their own
 
     def _call_slowly(self, *arguments: object, **named: object) -> object:
         """Whatever the entry does not do: wrong arguments, lanes that are too small, errors, holders that borrow."""

@@ -253,7 +253,9 @@ class EncoderBase(Program):
     def _let_call(self, object_type: type, quick: Callable[..., Any]) -> None:
         """From now on, let the entry itself call what encodes objects of a class."""
         if len(self._handed) < MAX_CLASSES:
-            words = np.array([id(object_type), id(quick)], np.int64)
+            from rosetta_jit.runtime.attributes.handing import caller_of
+
+            words = np.array([id(object_type), id(quick), caller_of(quick)], np.int64)
             self._handed.append((words, object_type, quick))  # for good: another thread may be just about to use them
             self._context[1][OTHERS] = words.ctypes.data
 

@@ -20,6 +20,10 @@ PAGE, MANY = 1 << 12, 1 << 14
 """Large messages mostly lie 16 to 64 bytes behind the begin of a page, and what is copied from them a header further. To copy it to 1 to 15
 bytes behind the same place of a page takes ten times as long (docs/performance.md, "Where bytes lie"): its begin is far from there."""
 
+LARGE = 1 << 22
+"""Bytes from which on memory of its own is better than a part of another: numpy asks Linux for pages of 2 MB for so large an array, which
+are filled a tenth sooner (docs/performance.md, "Columns larger than the caches")."""
+
 MOST_BYTES = 1 << 62
 """More than any address space has."""
 

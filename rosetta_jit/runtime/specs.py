@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from types import MethodDescriptorType
 
 # Include/object.h, Include/typeslots.h, Include/structmember.h
 DEFAULT, METHOD_DESCRIPTOR, VECTORCALL, BASETYPE = 1 << 18, 1 << 17, 1 << 11, 1 << 10
 MP_SUBSCRIPT, SQ_LENGTH = 5, 45
 TP_CALL, TP_DEALLOC, TP_ITER, TP_ITERNEXT, TP_SETATTRO, TP_MEMBERS = 50, 52, 62, 63, 69, 72
+TP_NEW = 65
 OBJECT, SSIZE_T, READONLY = 16, 19, 1
-FASTCALL, KEYWORDS = 0x80, 0x02
-"""Flags of methods (Include/methodobject.h); the two together have the arguments of a vectorcall."""
+VARARGS, KEYWORDS, ONE_ARGUMENT, FASTCALL = 0x01, 0x02, 0x08, 0x80
+"""Flags of methods (Include/methodobject.h); the last with that of keywords has the arguments of a vectorcall."""
 
 _KEPT: list[object] = []
 
@@ -123,6 +125,22 @@ def weak_list_offset(slots_end: int) -> int:
 def size_with_weak_list(slots_end: int) -> int:
     """The size of such objects."""
     return max(slots_end, weak_list_offset(slots_end) + 8)
+
+
+def function_behind(method: MethodDescriptorType, flags: int) -> int | None:
+    """The address of the function in C that a method of a built-in class calls, if its flags are these.
+
+    PyMethodDescrObject of Include/cpython/descrobject.h; its third part is a definition as `Method` is one.
+    """
+    definition = Method.from_address(read_word(id(method) + 40))
+    return definition.function if definition.flags == flags and definition.name == method.__name__.encode() else None
+
+
+def allocator_of(owner: type) -> int | None:
+    """The address of the function in C that makes objects of a class (``tp_new``), before they are initialised."""
+    find = ctypes.pythonapi.PyType_GetSlot
+    find.restype, find.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_int]
+    return find(owner, TP_NEW)
 
 
 def function_of(name: str, address: int) -> Callable[..., Any]:

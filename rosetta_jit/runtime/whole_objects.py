@@ -41,7 +41,7 @@ def encoding(encode: Callable[..., Any], new: Callable[[], Any], whole: Whole, *
         return call
     check = None if is_plain and whole.is_exact else whole.programs.decode
     last = None if is_plain else encode
-    return handing("hand_in", decode=check, encode=last, new=new, over=whole.bytes_of, slow=call)
+    return handing("hand_in", decode=check, encode=last, new=new, over=whole.bytes_of, slow=call, in_c=whole.in_c)
 
 
 def encoding_by_steps(
@@ -100,4 +100,4 @@ def decoding_whole(decode: Callable[..., Any], new: Callable[[], Any], whole: Wh
         return slow
     check = None if is_plain and whole.is_exact else decode
     last = None if is_plain else whole.programs.encode
-    return handing("hand_out", decode=check, encode=last, new=new, over=whole.of_bytes, slow=slow)
+    return handing("hand_out", decode=check, encode=last, new=new, over=whole.of_bytes, slow=slow, in_c=whole.in_c)

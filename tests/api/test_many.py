@@ -181,3 +181,23 @@ def test_borrowed_messages_are_left_out():
     message = b"\x0a\x06\x01\x02\x03\x04\x05\x06\x10\x02\x18\x01"
     batch = decode.many([message, message[:5], message], on_error="skip")
     assert [bytes(each.data) for each in batch] == [bytes(range(1, 7))] * 2
+
+
+def test_many_rows_have_memory_of_their_own(decode, broken):
+    """So that numpy asks for large pages; whatever is done with a batch does not depend on it."""
+    from rosetta_jit.kernel.state import ADDRESS, lane_word
+    from rosetta_jit.runtime.memory import LARGE, PAGE
+
+    stride = decode.holder_type.family_.layout.lanes[0].stride
+    count = -(-LARGE // stride)
+    few, many = [decode.many(broken * (number // len(broken) + 1), on_error="mask") for number in (len(broken), count)]
+    assert len(many.lanes.arena) < LARGE
+    assert many.lanes.words[lane_word(0, ADDRESS)] % PAGE == 0
+    assert len(many) >= count
+    for start in (0, len(many) // len(broken) // 2 * len(broken)):
+        part = many[start : start + len(broken)]
+        assert [each.to_dict() for each in part] == [each.to_dict() for each in few[: len(broken)]]
+    assert many.mask().sum() * len(broken) == len(many) * few[: len(broken)].mask().sum()
+    again = decode.many(broken[:1], into=many)
+    assert len(again) == 1
+    assert again[0].to_dict() == few[0].to_dict()

@@ -1,5 +1,5 @@
-; encode(holder, buffer, offset) -> the offset behind what was written; encode(object) of the class that word 9 of the context leads to, with what is
-; called for it; whatever else is left to the slow path.
+; encode(holder, buffer, offset) -> the offset behind what was written; encode(object) of the class that word 9 of the context leads to, behind which
+; lie what is called for it and what calls that; whatever else is left to the slow path.
 define ptr @any_call(ptr %self, ptr %args, i64 %nargsf, ptr %names) noinline {
   %view = alloca [80 x i8], align 8
   %context = call ptr @context(ptr %self)
@@ -21,7 +21,9 @@ compare:
 hand.over:
   %callable.at = getelementptr ptr, ptr %others, i64 1
   %callable = load ptr, ptr %callable.at
-  %handed = tail call ptr @PyObject_Vectorcall(ptr %callable, ptr %args, i64 1, ptr null)
+  %caller.at = getelementptr ptr, ptr %others, i64 2
+  %caller = load ptr, ptr %caller.at
+  %handed = tail call ptr %caller(ptr %callable, ptr %args, i64 1, ptr null)
   ret ptr %handed
 holder:
   %holder.object = load ptr, ptr %args

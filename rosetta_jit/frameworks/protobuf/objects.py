@@ -12,15 +12,20 @@ from rosetta_jit.errors import RosettaError
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.holder.objects.foreign import Foreign, Whole
+from rosetta_jit.runtime.holder.objects.in_c import functions_in_c
 from rosetta_jit.runtime.holder.serialising import programs_of
 
 if TYPE_CHECKING:
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.objects.in_c import InC
 
 
 READS: frozenset[str | None] = frozenset({None, "protobuf", "protobuf-partial"})
 """The encodings that are protobuf's own bytes, the framework's usual one among them."""
+
+UPB = "google._upb._message"
+"""The module of the class from which those of protobuf's C code derive."""
 
 PARTIAL: frozenset[str | None] = frozenset({"protobuf-partial"})
 """Those of them in which a message may lack what is required."""
@@ -45,7 +50,19 @@ def whole(family: Family, object_type: Any) -> Whole | None:
     has_required = _has_required(family.schema)
     writes = PARTIAL if has_required else READS
     is_exact = not has_required and _Alike().message(object_type.DESCRIPTOR)
-    return Whole(take, fill, make, programs=programs, bytes_of=write, of_bytes=parse, reads=READS, writes=writes, is_exact=is_exact)
+    direct = in_c(object_type)
+    return Whole(
+        take, fill, make, programs=programs, bytes_of=write, of_bytes=parse, reads=READS, writes=writes, is_exact=is_exact, in_c=direct
+    )
+
+
+def in_c(object_type: Any) -> InC | None:
+    """The functions in C of a class of upb's; None of other classes.
+
+    In upb (python/message.c of protobuf) `FromString` makes an empty message and merges the bytes into it. The initialiser does nothing
+    where it is given nothing.
+    """
+    return functions_in_c(object_type, UPB, write="SerializePartialToString", merge="MergeFromString")
 
 
 def _has_required(schema: Schema) -> bool:

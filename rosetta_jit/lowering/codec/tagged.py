@@ -13,9 +13,10 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel import ir
-from rosetta_jit.kernel.terms import BEGIN, add, index, mul
+from rosetta_jit.kernel.terms import BEGIN, add, index
 from rosetta_jit.lowering.codec.field_order import NONE, Case, read_cases
 from rosetta_jit.lowering.codec.fields import Cell, HolderFields, converted, scalar_name, span_of
+from rosetta_jit.lowering.codec.packed import read_fixed, read_varints, reads_several
 from rosetta_jit.lowering.codec.tagged_message import (
     Message,
     array_starts,
@@ -321,30 +322,11 @@ def _read_packed(message: Message, entry: Entry) -> None:
     size = read_length(writer, where, message.stop)
     match entry.value:
         case Number(_, scalar, order):
-            _read_packed_fixed(writer, fields, lane, size, scalar, order, where)
+            read_fixed(writer, fields, lane, size, scalar, order, where)
         case Varint() as varint:
             _read_packed_varints(message, entry, varint, lane, size)
         case _:
             raise AssertionError(entry)
-
-
-def _read_packed_fixed(writer: Writer, fields: HolderFields, lane: int, size: ir.Local, scalar: str, order: str, where: Where) -> None:
-    width = ir.WIDTH[scalar]
-    count = writer.let("count", ir.Binary("div", size, index(width)))
-    whole = ir.Compare("eq", ir.Binary("rem", size, index(width)), index(0))
-    writer.expect(whole, "length", where, f"not a multiple of {width} bytes")
-    start = fields.reserve(lane, count)
-    number = ir.Local("i64", writer.fresh("i"))
-    first = writer.position
-    with writer.nested() as body:
-        writer.position = writer.let("item", ir.Binary("add", first, mul(number, width)))
-        writer.require(width, where)
-        value = ir.Load(scalar_name(scalar), writer.position, ">" if order == ">" else "<")
-        element = fields.layout.lanes[lane].element
-        assert isinstance(element, NumberSlot)
-        writer.emit(ir.SetField(ir.Place(lane, add(start, number)), converted(value, element.scalar)))
-    writer.emit(ir.For(number.name, count, block(body)))
-    writer.advance(size)
 
 
 def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: int, size: ir.Local) -> None:
@@ -352,14 +334,22 @@ def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: i
     where = fields.shown(entry.path)
     stop = writer.let("stop", ir.Binary("add", writer.position, size))
     at = writer.var("at", writer.position)
-    with writer.nested() as body:
+
+    def read_one() -> None:
         writer.position = at
         value = _varint_value(message, varint, fields.layout.lanes[lane].element, where, read_element)
         with writer.nested() as known:
             _append(message, lane, value)
         _if_allowed(message, entry, value, known, at)
-        writer.expect(ir.Compare("le", writer.position, stop), "truncated", where, "the last number goes beyond the array")
         writer.assign(at, writer.position)
+
+    with writer.nested() as body:
+        if reads_several(entry, message.tagged):
+            read_varints(writer, fields, varint, lane, stop, at, read_one)
+        else:
+            read_one()
+        writer.position = at
+        writer.expect(ir.Compare("le", at, stop), "truncated", where, "the last number goes beyond the array")
     start = message.starts[entry.path]
     invariant = (ir.Compare("ge", at, BEGIN), ir.Compare("le", at, stop), ir.Compare("le", start, ir.Used(lane)))
     writer.emit(ir.While(ir.Compare("lt", at, stop), block(body), invariant, at))

@@ -13,20 +13,25 @@ from rosetta_jit.runtime.callable import putting
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rosetta_jit.runtime.holder.objects.in_c import InC
+
 Kind = Literal["hand_in", "hand_out"]
-ENTRY, HANDING_BYTES = 64, 72
+NO_ARGUMENTS = ()
+ENTRY, IN_C, HANDING_BYTES = 72, 80, 104
+"""Where the address of the code lies, and those of the functions in C behind ``over``."""
 
 
 class _Handing:
     """Hands over objects of one class. Compiled code reads all of it, in this order in memory (`programs/handing.ll`)."""
 
-    __slots__ = ("decode", "encode", "new", "over", "slow", "spare")
+    __slots__ = ("decode", "encode", "new", "over", "slow", "spare", "whose")
     decode: Callable[..., Any]
     encode: Callable[..., Any]
     new: Callable[[], Any]
     over: Callable[[Any], Any]
     slow: Callable[..., Any]
     spare: Any
+    whose: type
 
 
 _put = putting(_Handing)
@@ -48,6 +53,7 @@ def handing(
     new: Callable[[], Any],
     over: Callable[[Any], Any],
     slow: Callable[..., Any],
+    in_c: InC | None = None,
 ) -> Callable[..., Any]:
     """What hands over the objects of a class.
 
@@ -64,6 +70,8 @@ def handing(
         The class's own function: to hand in, from an object to its bytes; to hand out, from bytes to an object.
     slow
         Does the same for other arguments.
+    in_c
+        The functions in C that do what ``over`` does.
     """
     code = library()
     assert code is not None, "there is code that hands over"
@@ -75,4 +83,15 @@ def handing(
     if encode is not None:
         _put(made, encode=encode)
     specs.write_word(id(made) + ENTRY, code[kind])
+    if in_c is not None:
+        made.whose = in_c.object_type
+        functions = (in_c.write, 0) if kind == "hand_in" else (in_c.allocate, in_c.merge)
+        for index, word in enumerate((*functions, id(NO_ARGUMENTS))):
+            specs.write_word(id(made) + IN_C + 8 * index, word)
     return made
+
+
+def caller_of(function: Callable[..., Any]) -> int:
+    """The address of the function in C that calls a callable, as `PyObject_Vectorcall` does, which it is for all but those made here."""
+    is_ours = library() is not None and isinstance(function, _handing_class())
+    return specs.read_word(id(function) + ENTRY) if is_ours else specs.address_of("PyObject_Vectorcall")

@@ -75,6 +75,7 @@ class Message(Base):
 
 
 OWN_NAMES = (*(name for name in Message.__slots__ if name != "__weakref__"), "index_")
+_LANES_SLOT: Any = vars(Message)["lanes_"]
 
 
 class View(Message):
@@ -213,10 +214,19 @@ def in_row(message: Message, lanes: Lanes, access: Access, row: int) -> bool:
     """Make a new message show a row of lane 0; False if it shows something already."""
     if access.bind is not None:
         return access.bind(message, lanes, access, None, None, lanes.address, row, ALWAYS, _FIRST_LANE, access.table, row, 0)
-    if hasattr(message, "lanes_"):
+    if _shows_something(message):
         return False
     message.lanes_, message.access_, message.parent_, message.index_ = lanes, access, None, row
     bind_state(message, lanes.address)
+    return True
+
+
+def _shows_something(message: Message) -> bool:
+    """Whether a message has lanes. A user's class may give any attribute that is missing (`__getattr__`), so the slot itself is read."""
+    try:
+        _LANES_SLOT.__get__(message)
+    except AttributeError:
+        return False
     return True
 
 

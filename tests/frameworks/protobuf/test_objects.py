@@ -7,6 +7,7 @@ import random
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.runtime.callable import is_native
 from tests.random_mappings.hostile import altered
 
 
@@ -209,6 +210,64 @@ def test_nothing_is_counted_wrong(handed):
     run()
     after = [sys.getrefcount(each) for each in counted]
     assert all(abs(one - other) < 10 for one, other in zip(before, after, strict=True))
+
+
+@pytest.mark.parametrize("kind", ["numbers", "texts", "messages"])
+def test_the_functions_in_c_do_what_the_methods_do(kind, tmp_path):
+    """Those of upb's classes are called without the interpreter; nothing is lost by that, also where they refuse."""
+    import sys
+
+    theirs = compiled(f'syntax = "proto3"; package h; message M {{ {KINDS[kind]} }}', tmp_path)
+    encode, decode = rj.Encoder.of(theirs, encoding="protobuf"), rj.Decoder.of(theirs, encoding="protobuf")
+    in_c = decode.holder_type.family_.wholes[theirs].in_c
+    assert (in_c is not None) == is_native()
+    data = next(each for each in map(bytes.fromhex, FIELDS) if failure(decode, each) is None and theirs.FromString(each).ListFields())
+    value = theirs.FromString(data)
+    for made in [decode.to(data, theirs) for _ in range(3)]:
+        assert made == value
+        assert made.IsInitialized()
+        made.MergeFromString(data)
+        made.Clear()
+        assert made == theirs()
+    assert sys.getrefcount(decode.to(data, theirs)) == sys.getrefcount(theirs.FromString(data))
+
+    def run():
+        for _ in range(100):
+            assert encode(value) == data
+            assert decode.to(data, theirs) == value
+            assert failure(decode.to, b"\xff", theirs) is not None
+
+    counted = (theirs, value, data, (), None)
+    run()
+    before = [sys.getrefcount(each) for each in counted]
+    run()
+    after = [sys.getrefcount(each) for each in counted]
+    assert all(abs(one - other) < 10 for one, other in zip(before, after, strict=True))
+
+
+IN_PYTHON = """
+from google.protobuf import struct_pb2
+from google.protobuf.internal import api_implementation
+from rosetta_jit.frameworks.protobuf.objects import in_c
+assert api_implementation.Type() == "python"
+assert in_c(struct_pb2.Value) is None
+import rosetta_jit as rj
+value = struct_pb2.ListValue(values=[struct_pb2.Value(bool_value=True)])
+encode, decode = rj.Encoder.of(type(value)), rj.Decoder.of(type(value))
+for _ in range(3):
+    assert encode(value) == value.SerializeToString()
+    assert decode.to(value.SerializeToString(), type(value)) == value
+"""
+
+
+def test_messages_of_the_package_in_python():
+    """Whose classes have no functions in C, where protobuf runs without its own."""
+    import os
+    import subprocess
+    import sys
+
+    environment = {**os.environ, "PROTOCOL_BUFFERS_PYTHON_IMPLEMENTATION": "python"}
+    subprocess.run([sys.executable, "-c", IN_PYTHON], check=True, env=environment, timeout=300)
 
 
 def test_threads_hand_over_at_the_same_time(handed):

@@ -1,7 +1,8 @@
 ; Objects of other classes that are handed over as bytes (`attributes.handing`). In what does it lie: 16 a decoder, null where
 ; nothing is to be checked, 24 an encoder, null where the bytes
 ; are already what is wanted; 32 what makes a holder, 40 a function of the objects' own, 48 the Python function for all that is not the common case,
-; 56 a holder that nobody uses just now, or null.
+; 56 a holder that nobody uses just now, or null; 64 the class whose functions in C are known, or null, 80 and 88 these functions, which do the same
+; as 40, and 96 an empty tuple.
 
 ; A holder filled from bytes, which nobody else has until `give_spare`; null of an error.
 define internal ptr @filled(ptr %handing, ptr %bytes) {
@@ -64,6 +65,52 @@ define internal i1 @is_single(i64 %nargsf, ptr %names) alwaysinline {
   ret i1 %single
 }
 
+; The bytes of an object; null of an error. The function in C takes the object, a tuple of arguments and a dict of named ones.
+define internal ptr @written(ptr %handing, ptr %object) alwaysinline {
+  %class = call ptr @pointer(ptr %handing, i64 64)
+  %known = call i1 @is_exactly(ptr %object, ptr %class)
+  br i1 %known, label %quick, label %usual, !prof !0
+quick:
+  %write = call ptr @pointer(ptr %handing, i64 80)
+  %none = call ptr @pointer(ptr %handing, i64 96)
+  %bytes = call ptr %write(ptr %object, ptr %none, ptr null)
+  ret ptr %bytes
+usual:
+  %function = call ptr @pointer(ptr %handing, i64 40)
+  %others = call ptr @called(ptr %function, ptr %object)
+  ret ptr %others
+}
+
+; An object of bytes; null of an error. The functions in C are what allocates an object (`tp_new`), and the method that reads bytes into one.
+define internal ptr @read(ptr %handing, ptr %bytes) {
+  %class = call ptr @pointer(ptr %handing, i64 64)
+  %known = icmp ne ptr %class, null
+  br i1 %known, label %quick, label %usual, !prof !0
+quick:
+  %allocate = call ptr @pointer(ptr %handing, i64 80)
+  %none = call ptr @pointer(ptr %handing, i64 96)
+  %object = call ptr %allocate(ptr %class, ptr %none, ptr null)
+  %made = icmp ne ptr %object, null
+  br i1 %made, label %merge, label %failed, !prof !0
+merge:
+  %merger = call ptr @pointer(ptr %handing, i64 88)
+  %size = call ptr %merger(ptr %object, ptr %bytes)
+  %merged = icmp ne ptr %size, null
+  br i1 %merged, label %done, label %drop, !prof !0
+done:
+  call void @Py_DecRef(ptr %size)
+  ret ptr %object
+drop:
+  call void @Py_DecRef(ptr %object)
+  br label %failed
+failed:
+  ret ptr null
+usual:
+  %function = call ptr @pointer(ptr %handing, i64 40)
+  %others = call ptr @called(ptr %function, ptr %bytes)
+  ret ptr %others
+}
+
 ; Whether the objects' own function decides alone.
 define internal i1 @decides_alone(ptr %handing) alwaysinline {
   %decoder = call ptr @pointer(ptr %handing, i64 16)
@@ -76,8 +123,8 @@ define ptr @hand_in(ptr %handing, ptr %arguments, i64 %nargsf, ptr %names) {
   %single = call i1 @is_single(i64 %nargsf, ptr %names)
   br i1 %single, label %write, label %python, !prof !0
 write:
-  %writer = call ptr @pointer(ptr %handing, i64 40)
-  %bytes = call ptr @PyObject_Vectorcall(ptr %writer, ptr %arguments, i64 1, ptr null)
+  %object = load ptr, ptr %arguments
+  %bytes = call ptr @written(ptr %handing, ptr %object)
   %written = icmp ne ptr %bytes, null
   %alone = call i1 @decides_alone(ptr %handing)
   br i1 %alone, label %alone.bytes, label %check
@@ -128,8 +175,7 @@ whose:
   %alone = call i1 @decides_alone(ptr %handing)
   br i1 %alone, label %alone.object, label %fill
 alone.object:
-  %own.reader = call ptr @pointer(ptr %handing, i64 40)
-  %object = call ptr @called(ptr %own.reader, ptr %message)
+  %object = call ptr @read(ptr %handing, ptr %message)
   %accepted = icmp ne ptr %object, null
   br i1 %accepted, label %done, label %refused, !prof !0
 done:
@@ -142,21 +188,20 @@ fill:
   %good = icmp ne ptr %holder, null
   br i1 %good, label %sort, label %failed, !prof !0
 sort:
-  %reader = call ptr @pointer(ptr %handing, i64 40)
   %encoder = call ptr @pointer(ptr %handing, i64 24)
   %other = icmp ne ptr %encoder, null
   br i1 %other, label %encode, label %same
 same:
   call void @give_spare(ptr %handing, ptr %holder)
-  %read = call ptr @called(ptr %reader, ptr %message)
-  ret ptr %read
+  %own = call ptr @read(ptr %handing, ptr %message)
+  ret ptr %own
 encode:
   %bytes = call ptr @called(ptr %encoder, ptr %holder)
   call void @give_spare(ptr %handing, ptr %holder)
   %encoded = icmp ne ptr %bytes, null
   br i1 %encoded, label %read.bytes, label %failed, !prof !0
 read.bytes:
-  %made = call ptr @called(ptr %reader, ptr %bytes)
+  %made = call ptr @read(ptr %handing, ptr %bytes)
   call void @Py_DecRef(ptr %bytes)
   ret ptr %made
 failed:

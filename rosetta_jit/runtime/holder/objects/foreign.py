@@ -10,6 +10,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rosetta_jit.runtime.holder.objects.in_c import InC
     from rosetta_jit.runtime.holder.record import Record
     from rosetta_jit.runtime.holder.serialising import Programs
 
@@ -37,6 +38,8 @@ class Whole:
         are the bytes of an object.
     is_exact : bool
         Whether the class's own functions refuse whatever the programs would, so that those need not look at what passes.
+    in_c : InC, optional
+        The functions in C behind ``bytes_of`` and ``of_bytes``, where they are known.
     """
 
     take: Callable[[Any, Any], None]
@@ -48,6 +51,7 @@ class Whole:
     reads: frozenset[str | None]
     writes: frozenset[str | None]
     is_exact: bool = False
+    in_c: InC | None = None
 
 
 def same_name(record: Record, field: str) -> tuple[str, ...]:  # noqa: ARG001  whatever the record
