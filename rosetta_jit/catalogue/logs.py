@@ -203,6 +203,16 @@ def no_type(name: str, topic: str, details: str) -> Diagnostic:
     )
 
 
+def no_definition(name: str, topic: str, type_: str) -> Diagnostic:
+    """A log that names a type and has no definition of it."""
+    return Diagnostic(
+        "error",
+        "log-definition",
+        f"{name} has no definition of `{type_}`, the type of the messages of `{topic}`, and the search path has none either",
+        help="search_path=[folder], or --search-path, adds a folder that has its file; imports=[file], or --import, names that file",
+    )
+
+
 def unknown_encoding(name: str, topic: str, encoding: str) -> Diagnostic:
     """Messages in an encoding that no framework has."""
     return Diagnostic("error", "log-encoding", f"{name}: the messages of `{topic}` are encoded as `{encoding}`, which no framework reads")
