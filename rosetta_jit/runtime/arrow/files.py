@@ -74,6 +74,8 @@ class TableFile:
 
     def abandon(self) -> None:
         """Close a file that is not going to be used."""
+        if isinstance(self._writer, _Parquet):
+            self._writer.abandon()
         self._file.close()
 
     def __enter__(self) -> Self:
@@ -92,6 +94,10 @@ class _Parquet:
 
     def __call__(self, table: pa.Table) -> None:
         self._writer.write_table(table, row_group_size=max(table.num_rows, 1))
+
+    def abandon(self) -> None:
+        """Write no end: pyarrow would when the writer goes, into a file that is closed, and report it as an ignored exception."""
+        self._writer.is_open = False
 
 
 class _Arrow:
