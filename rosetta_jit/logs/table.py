@@ -6,6 +6,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.logs.base import Format
+from rosetta_jit.startup.entry_points import offered
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,7 +33,5 @@ FORMATS = (
 @cache
 def formats() -> Mapping[str, Format]:
     """Every format by name."""
-    from importlib.metadata import entry_points
-
-    offered: list[Any] = [each.load() for each in entry_points(group=GROUP)]
-    return {each.name: each for each in (*FORMATS, *offered)}
+    others: list[Any] = [each.load() for each in offered(GROUP)]
+    return {each.name: each for each in (*FORMATS, *others)}
