@@ -102,13 +102,18 @@ def chunk_damaged(name: str, at: int, why: str) -> Diagnostic:
     )
 
 
+def chunk_unread(name: str, at: int, why: str) -> Diagnostic:
+    """A chunk of which nothing can be read."""
+    return Diagnostic("warning", "log-chunk", f"{name}: the chunk at byte {at} cannot be read: {why}", help="its messages are left out")
+
+
 def checksum(name: str, at: int) -> Diagnostic:
     """A chunk whose bytes are not those that were written."""
     return Diagnostic(
         "warning",
         "log-checksum",
         f"{name}: the chunk at byte {at} has another checksum than when it was written; its messages are left out",
-        help="`check=False` reads them as they are",
+        help="`check=False`, or --no-check, reads them as they are",
     )
 
 

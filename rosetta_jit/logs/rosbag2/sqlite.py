@@ -38,7 +38,7 @@ class SqliteReader:
         self._name, self._tell = storage.name, tell
         self.facts, self.pieces = {"storage": "sqlite3"}, (Piece(storage.size),)
         try:
-            self._database = sqlite3.connect(f"{storage.path.resolve().as_uri()}?mode=ro", uri=True, check_same_thread=False)
+            self._database = sqlite3.connect(f"{storage.local('.db3').resolve().as_uri()}?mode=ro", uri=True, check_same_thread=False)
             self._database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_RECORD_BYTES)
             self._check_tables()
             self.connections = self._defined()
