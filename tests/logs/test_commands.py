@@ -222,6 +222,17 @@ def test_a_moment_in_nanoseconds_is_refused(command, capsys):
     assert "'soon' is neither seconds since 1970 nor ISO 8601" in capsys.readouterr().err
 
 
+def test_ctrl_c_ends_a_command_without_a_traceback(command, folder, monkeypatch):
+    """In the middle of a conversion: what is not whole is removed."""
+
+    def pressed(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("rosetta_jit.runtime.arrow.files.TableFile.write", pressed)
+    assert command("convert", "a.mcap", "--topic", "/a", "-o", "interrupted.parquet", code=130).err.endswith("interrupted\n")
+    assert not list(folder.glob("interrupted*"))
+
+
 def test_a_name_that_does_not_say_what_to_write(folder, tmp_path, capsys):
     for name in ("out", "out.parket"):
         assert main(["convert", str(folder / "a.mcap"), "--on-error", "skip", "-o", str(tmp_path / name)]) == 1
