@@ -87,6 +87,21 @@ def test_old_files_have_no_definitions(tmp_path):
     assert rj.open(file, search_path=[tmp_path])["/a"]["x"].shape == (COUNT,)
 
 
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("storage", [StoragePlugin.SQLITE3, StoragePlugin.MCAP])
+def test_a_folder_whose_recorder_was_killed(storage, mode, tmp_path):
+    """There is no metadata.yaml: the files are read as they are, and messages that are compressed one by one are told by their begin."""
+    folder = write_rosbag2(tmp_path / "drive", storage, MODES[mode])
+    (folder / "metadata.yaml").unlink()
+    (file,) = folder.iterdir()
+    file.rename(folder / file.name.replace("drive.", "drive_0."))  # as rosbag2 itself calls it
+    found = []
+    log = rj.open(folder, on_problem=found.append)
+    assert log.format == "rosbag2"
+    assert values(log.messages()) == list(expected(COUNT))
+    assert [each.message for each in found] == [f"{folder} has no file metadata.yaml"]
+
+
 def test_a_database_that_is_a_program(tmp_path):
     """A view that never ends is not asked."""
     path = tmp_path / "a.db3"
