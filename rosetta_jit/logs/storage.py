@@ -20,6 +20,8 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
 
@@ -37,7 +39,7 @@ class Storage:
         self.name, self.is_folder = name, is_folder
         self._file = file
         self._lock = Lock()
-        self._ends = [finalize(self, file.close)]  # who opens a log for one expression closes nothing
+        self._ends: list[Callable[[], object]] = [finalize(self, file.close)]  # who opens a log for one expression closes nothing
         self.size = file.seek(0, os.SEEK_END)
         self._copy: Path | None = None
 

@@ -49,20 +49,22 @@ class Frames:
         LogError
             OpenCV is not installed.
         """
-        if self._video is None or number - self._without < self._next:
-            self._open()
+        video: Any = self._video
+        if video is None or number - self._without < self._next:
+            video = self._video = self._opened()
         place = number - self._without
         if place < 0:
             raise ValueError(f"the video begins with frame {self._without}")
-        while self._next < place and self._video.grab():
+        while self._next < place and video.grab():
             self._next += 1
-        found, frame = self._video.read() if self._next == place else (False, None)
-        if not found or frame.ndim != 3:
+        frame: Any = video.read()[1] if self._next == place else None
+        if frame is None or frame.ndim != 3:
             raise VideoError(f"the video has no frame {number}")
         self._next += 1
         return frame.shape[1], frame.shape[0], frame[:, :, ::-1].tobytes()  # OpenCV's colours are blue, green, red
 
-    def _open(self) -> None:
+    def _opened(self) -> Any:
+        """The video, of which nothing is read."""
         path = next((self._folder / name for name in FILES if (self._folder / name).is_file()), None)
         if path is None:
             raise VideoError(f"there is no {' or '.join(FILES)}")
@@ -74,11 +76,12 @@ class Frames:
             cv: Any = import_module("cv2")
         except ImportError:
             raise LogError((words.needs(str(path), "opencv-python-headless", "videos"),)) from None
-        self._video, self._next = cv.VideoCapture(str(path), cv.CAP_FFMPEG), 0
-        width, height = (self._video.get(each) for each in (cv.CAP_PROP_FRAME_WIDTH, cv.CAP_PROP_FRAME_HEIGHT))
-        if not self._video.isOpened() or not 0 < width * height <= MAX_PIXELS:
+        video: Any = cv.VideoCapture(str(path), cv.CAP_FFMPEG)
+        width, height = (video.get(each) for each in (cv.CAP_PROP_FRAME_WIDTH, cv.CAP_PROP_FRAME_HEIGHT))
+        if not video.isOpened() or not 0 < width * height <= MAX_PIXELS:
             raise VideoError(f"{path.name} has no frames of at most {MAX_PIXELS} pixels")
-        self._without = self._lines_without_frame()
+        self._next, self._without = 0, self._lines_without_frame()
+        return video
 
     def _lines_without_frame(self) -> int:
         """How many lines were written before the video was begun."""
