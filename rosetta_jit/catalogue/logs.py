@@ -122,6 +122,11 @@ def bad_definition(name: str, at: int, why: str) -> Diagnostic:
     return Diagnostic("warning", "log-definition", f"{name}: a definition at byte {at} is damaged: {why}")
 
 
+def bad_row(name: str, table: str, why: str) -> Diagnostic:
+    """Rows of a database that are none of its format."""
+    return Diagnostic("warning", "log-row", f"{name}: a row of the table `{table}` is damaged: {why}", help="such rows are left out")
+
+
 def redefined(name: str, what: str, topic: str) -> Diagnostic:
     """A definition that is there twice, in two forms."""
     return Diagnostic("warning", "log-definition", f"{name}: {what} (`{topic}`) is defined twice, differently; the first counts")
