@@ -39,7 +39,7 @@ class SqliteReader:
         self.facts, self.pieces = {"storage": "sqlite3"}, (Piece(storage.size),)
         try:
             self._database = sqlite3.connect(f"{storage.local('.db3').resolve().as_uri()}?mode=ro", uri=True, check_same_thread=False)
-            self._database.text_factory = lambda octets: octets.decode("utf-8", "surrogateescape")
+            self._database.text_factory = _kept
             self._database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_RECORD_BYTES)
             self._check_tables()
             self.connections = self._defined()
@@ -122,6 +122,11 @@ def _query(wanted: Wanted, table: str) -> tuple[str, list[int]]:
             parameters.append(moment)
     where = f" WHERE {' AND '.join(conditions)}" if conditions else ""
     return f"SELECT id, topic_id, timestamp, data FROM {table}{where} ORDER BY timestamp, id", parameters  # noqa: S608 - of our own words
+
+
+def _kept(octets: bytes) -> str:
+    """Text of which `_octets` gives all bytes again, whatever they are."""
+    return octets.decode("utf-8", "surrogateescape")
 
 
 def _text(value: object) -> str:
