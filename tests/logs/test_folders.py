@@ -174,6 +174,16 @@ def test_images_that_yarp_kept():
     assert pixels == tuple(0.25 * x + y + 3 for y in range(16) for x in range(20))
 
 
+@pytest.mark.parametrize("time", ["9223372037.5", "-9999999999", "1e9", "12345678901", "x", ""])
+def test_a_time_that_is_none(time, tmp_path):
+    (tmp_path / "info.log").write_text("Type: Bottle;\nStamp: tx;\n")
+    (tmp_path / "data.log").write_text(f"1 1.5 7\n2 {time} 8\n3 9223372036.5 9\n")
+    found = []
+    log = rj.open(tmp_path, on_problem=found.append)
+    assert [each.time for each in log.messages(raw=True)] == [1_500_000_000, 9_223_372_036_500_000_000]
+    assert [each.message.rpartition(": ")[2] for each in found] == [f"{time.encode()!r} is no time"]
+
+
 def test_opening_a_folder_of_yarp_reads_no_images(tmp_path, monkeypatch):
     """The lines tell types, counts and times; the files may be many gigabytes."""
     shutil.copytree(DUMPED / "image_mono", tmp_path / "p")
