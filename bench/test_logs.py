@@ -5,6 +5,7 @@ Time is that of all threads on processors: one reads ahead while another one dec
 
 from __future__ import annotations
 
+from itertools import cycle
 from time import process_time
 from typing import TYPE_CHECKING, Any
 
@@ -52,13 +53,14 @@ def varied(subject, count):
         yield START + each * STEP, encode(holder)
 
 
-def mcap_file(path: Path, count: int) -> Path:
+def mcap_file(path: Path, count: int, topics: int = 1) -> Path:
+    """Imus, on several topics in turn."""
     with path.open("wb") as file:
         writer = Writer(file, compression=CompressionType.ZSTD)
         writer.start(profile="ros2")
         schema = writer.register_schema(IMU_2.type, "ros2msg", definition(IMU_2, 2).encode())
-        channel = writer.register_channel("/imu", "cdr", schema)
-        for time, data in varied(IMU_2, count):
+        channels = [writer.register_channel(f"/imu{number or ''}", "cdr", schema) for number in range(topics)]
+        for (time, data), channel in zip(varied(IMU_2, count), cycle(channels), strict=False):
             writer.add_message(channel, log_time=time, publish_time=time, data=data)
         writer.finish()
     return path

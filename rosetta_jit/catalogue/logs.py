@@ -102,19 +102,29 @@ def chunk_damaged(name: str, at: int, why: str) -> Diagnostic:
     )
 
 
+def chunk_unread(name: str, at: int, why: str) -> Diagnostic:
+    """A chunk of which nothing can be read."""
+    return Diagnostic("warning", "log-chunk", f"{name}: the chunk at byte {at} cannot be read: {why}", help="its messages are left out")
+
+
 def checksum(name: str, at: int) -> Diagnostic:
     """A chunk whose bytes are not those that were written."""
     return Diagnostic(
         "warning",
         "log-checksum",
         f"{name}: the chunk at byte {at} has another checksum than when it was written; its messages are left out",
-        help="`check=False` reads them as they are",
+        help="`check=False`, or --no-check, reads them as they are",
     )
 
 
 def bad_definition(name: str, at: int, why: str) -> Diagnostic:
     """A schema or channel that cannot be read."""
     return Diagnostic("warning", "log-definition", f"{name}: a definition at byte {at} is damaged: {why}")
+
+
+def bad_row(name: str, table: str, why: str) -> Diagnostic:
+    """Rows of a database that are none of its format."""
+    return Diagnostic("warning", "log-row", f"{name}: a row of the table `{table}` is damaged: {why}", help="such rows are left out")
 
 
 def redefined(name: str, what: str, topic: str) -> Diagnostic:
@@ -200,6 +210,16 @@ def no_type(name: str, topic: str, details: str) -> Diagnostic:
         "log-no-type",
         f"{name} does not say of which type the messages of `{topic}` are{details}",
         help=f'name it: log["{topic}", "package.type"], or --type; its definition is looked for on the search path',
+    )
+
+
+def no_definition(name: str, topic: str, type_: str) -> Diagnostic:
+    """A log that names a type and has no definition of it."""
+    return Diagnostic(
+        "error",
+        "log-definition",
+        f"{name} has no definition of `{type_}`, the type of the messages of `{topic}`, and the search path has none either",
+        help="search_path=[folder], or --search-path, adds a folder that has its file; imports=[file], or --import, names that file",
     )
 
 

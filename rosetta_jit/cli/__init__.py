@@ -65,6 +65,10 @@ COMMANDS = (
 )
 
 
+INTERRUPTED = 130
+"""The exit code where the user has pressed Ctrl-C, as shells have it: 128 and the number of the signal."""
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; gives the exit code."""
     from rosetta_jit.errors import RosettaError
@@ -81,6 +85,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as error:
         print(f"error: {error}", file=sys.stderr)
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return INTERRUPTED
     return 1
 
 

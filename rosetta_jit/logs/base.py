@@ -14,6 +14,7 @@ from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
+    from pathlib import Path
 
     import numpy as np
     from numpy.typing import NDArray
@@ -188,14 +189,19 @@ class Format:
     open
         An `Open`, as ``module:name``.
     folder
-        For formats that are folders: a pattern of a file that such a folder has.
+        For formats that are folders: a pattern of a file that such a folder has, or several patterns, of which one must fit.
     """
 
     name: str
     suffixes: tuple[str, ...]
     open: str
     magic: bytes = b""
-    folder: str = ""
+    folder: str | tuple[str, ...] = ""
+
+    def is_folder(self, path: Path) -> bool:
+        """Whether a folder may be such a log."""
+        patterns = (self.folder,) if isinstance(self.folder, str) else self.folder
+        return any(next(path.glob(each), None) is not None for each in patterns if each)
 
     def opener(self) -> Open:
         """What opens it, imported when it is needed."""

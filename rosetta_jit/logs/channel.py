@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 import numpy as np
 
 from rosetta_jit.catalogue import logs as words
-from rosetta_jit.errors import DecodeError, LogError
+from rosetta_jit.errors import DecodeError, LogError, SchemaError
 from rosetta_jit.logs.base import Wanted
 from rosetta_jit.logs.moments import nanoseconds, shown
 from rosetta_jit.logs.parts import CLOCKS, Collector, nothing
@@ -102,7 +102,7 @@ class Channel:
         Raises
         ------
         LogError
-            The log does not tell the type, and nobody has named it; or no framework has the encoding.
+            The log does not tell the type, and nobody has named it; it is defined nowhere; or no framework has the encoding.
         SchemaError, MappingError
             The definition, or the mapping, is wrong.
         """
@@ -110,7 +110,14 @@ class Channel:
         if connection.schema_encoding and not connection.schema.strip() and self._has_content():
             connection = replace(connection, schema_encoding="", schema=b"")
         name, chosen = _type_and_options(self._log, connection, self._target, self._options)
-        return kind(name, **chosen) if name == self._target and name.endswith(".mapping") else kind.of(name, **chosen)
+        if name == self._target and name.endswith(".mapping"):
+            return kind(name, **chosen)
+        try:
+            return kind.of(name, **chosen)
+        except SchemaError as error:
+            if self._target is None and not connection.schema and error.diagnostics[0].code == "unknown-type":
+                raise LogError((words.no_definition(self._log.name, self.topic, name),)) from None
+            raise
 
     def _has_content(self) -> bool:
         """Whether the first message is longer than one without fields: then an empty definition is none."""

@@ -1,4 +1,7 @@
-"""Chunks as they were before they were compressed: as much of it as is whole, and never more than the chunk promises."""
+"""Chunks as they were before they were compressed: as much of it as is whole, and never more than the chunk promises.
+
+Memory is taken for no more than the compressed bytes can become, whatever the chunk promises.
+"""
 
 from __future__ import annotations
 
@@ -28,6 +31,10 @@ STEP = 1 << 16
 
 MOST_OF_LZ4 = 256
 """Bytes that one byte of LZ4 stands for, and one more than can be: it counts at most 255 bytes of a copy."""
+
+
+LEAST_OF_ZSTD, MOST_OF_ZSTD = 4, 128 << 10
+"""Bytes that a block of zstd takes at least, and those that it stands for at most: RFC 8878, sections 3.1.1.2.2 and 3.1.1.2.3."""
 
 
 class Scratch:
@@ -96,6 +103,7 @@ def decompressed(name: str, compression: str, body: memoryview, size: int, scrat
 def _zstd(name: str, body: memoryview, size: int, scratch: Scratch) -> tuple[Bytes, str]:
     zstandard = _package("zstandard", name)
     size = min(size, zstd_size(body) or size)  # the frame tells, too, how much it holds
+    size = min(size, MOST_OF_ZSTD * (len(body) // LEAST_OF_ZSTD + 1))  # whatever both promise
     target = scratch.room(size)
 
     def read(step: int) -> tuple[Bytes, str]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rosetta_jit.catalogue import logs as words
-from rosetta_jit.errors import ReportError
+from rosetta_jit.errors import LogError, ReportError
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -91,6 +91,11 @@ class Examination:
                 found.append(words.out_of_order(name, topic, seen.early))
             if seen.first_error is not None:
                 found.append(words.undecodable(name, topic, *seen.first_error, seen.undecodable))
+        for topic in self.log.topics:
+            try:
+                self.log.channel(topic)
+            except LogError as error:  # it has several types
+                found += [replace(each, severity="warning") for each in error.diagnostics]
         unread = [each for number, each in known.items() if number not in self.seen and each.count]
         found += [words.miscounted(name, each.topic, each.count or 0, 0) for each in unread]
         return found

@@ -283,7 +283,7 @@ def format_of(storage: Storage, wanted: str | None = None) -> Format:
             raise LogError((words.unknown_format(f"`{wanted}`", known),))
         return known[wanted]
     if storage.is_folder:
-        found = [each for each in known.values() if each.folder and any(storage.path.glob(each.folder))]
+        found = [each for each in known.values() if each.is_folder(storage.path)]
     else:
         begin = storage.read(0, MAGIC_BYTES)
         found = [each for each in known.values() if each.magic and begin.startswith(each.magic)]

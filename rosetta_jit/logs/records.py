@@ -55,7 +55,7 @@ class Found:
     size
         Of its chunk, as that says itself.
     is_true
-        Whether there is a chunk, and no larger one than the index says; of a region, that is so.
+        Whether there is a chunk, and the file has no more of it than the index says; of a region, that is so.
     sealed
         The chunk's content before it is decompressed; a `Content` where nothing is left to do.
     """
@@ -148,15 +148,15 @@ class Records:
         """A segment, whose chunk is read, and not yet decompressed."""
         if isinstance(segment, Region):
             return Found(number, 0, True, nothing())
-        size = segment.size
+        size, there = segment.size, self._storage.size - segment.at  # a chunk that the file's end cuts is as long as what is there
         if size > MOST_AT_ONCE:  # an index of a bag tells where chunks begin, not where they end
             _, head = self._head(segment.at, size)
-            if head.kind != "chunk" or head.size > size:
+            if head.kind != "chunk" or min(head.size, there) > size:
                 return Found(number, 0, False, nothing())
-            size = head.size
+            size = min(head.size, there)
         record = self._storage.read_into(segment.at, scratch.record(size))
         head = self._grammar.head(bytes(record[:PEEK])) if len(record) > 9 else Head("damaged")
-        is_true = head.kind == "chunk" and head.size <= segment.size
+        is_true = head.kind == "chunk" and min(head.size, there) <= segment.size
         return Found(number, head.size, is_true, self._sealed(record, segment.at) if is_true else nothing())
 
     def _segment(

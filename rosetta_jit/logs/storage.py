@@ -7,6 +7,7 @@ import os
 import shutil
 import sys
 import tempfile
+from errno import ENOENT
 from importlib import import_module
 from pathlib import Path
 from threading import Lock
@@ -19,7 +20,13 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
+
+
+WINDOW = 4 << 20
+"""Bytes that are copied at once."""
 
 
 class Storage:
@@ -32,13 +39,27 @@ class Storage:
         self.name, self.is_folder = name, is_folder
         self._file = file
         self._lock = Lock()
-        self._close = finalize(self, file.close)  # who opens a log for one expression closes nothing
+        self._ends: list[Callable[[], object]] = [finalize(self, file.close)]  # who opens a log for one expression closes nothing
         self.size = file.seek(0, os.SEEK_END)
+        self._copy: Path | None = None
 
     @property
     def path(self) -> Path:
-        """The path of a local file or folder."""
-        return Path(self.name)
+        """The path of a local file or folder; what a log is called that is none."""
+        return _path(self.name) or Path(self.name)
+
+    def local(self, suffix: str) -> Path:
+        """A local file with these bytes, for who cannot read them here: the log itself, or a copy that is there as long as this is."""
+        if (path := _path(self.name)) is not None:
+            return path
+        if self._copy is None:
+            folder = Path(tempfile.mkdtemp(prefix="rosetta-jit-"))
+            self._ends.append(finalize(self, shutil.rmtree, folder, ignore_errors=True))
+            self._copy = folder / f"log{suffix}"
+            with self._copy.open("wb") as file:
+                for at in range(0, self.size, WINDOW):
+                    file.write(self.read(at, WINDOW))
+        return self._copy
 
     def read(self, at: int, size: int) -> bytes:
         """So many bytes from a place on; fewer where the file ends."""
@@ -62,8 +83,9 @@ class Storage:
         return np.frombuffer(self.read(at, size), np.uint8)
 
     def close(self) -> None:
-        """Close the file."""
-        self._close()
+        """Close the file, and remove its copy."""
+        for end in self._ends:
+            end()
 
 
 def open_storage(name: str) -> Storage:
@@ -74,31 +96,39 @@ def open_storage(name: str) -> Storage:
     LogError
         It cannot be read.
     """
+    path = _path(name)
     try:
-        if "://" not in name and Path(name).is_dir():
+        if path is not None and path.is_dir():
             return Storage(name, io.BytesIO(), is_folder=True)
-        return Storage(name, _file(name))
+        return Storage(name, _file(name, path))
     except (OSError, ValueError) as error:
         why = (error.strerror if isinstance(error, OSError) else None) or str(error)
         raise LogError((words.unreadable(name, why),)) from error
 
 
-def _file(name: str) -> BinaryIO:
-    if name == "-":
-        return _spooled(sys.stdin.buffer)
-    if "://" not in name:
-        path = Path(name)
+def _path(name: str) -> Path | None:
+    """Where a local file or folder is; None of what is none."""
+    if name.startswith("file://"):
+        return Path(name.removeprefix("file://"))
+    return None if name == "-" or "://" in name else Path(name)
+
+
+def _file(name: str, path: Path | None) -> BinaryIO:
+    if path is not None:
         if path.exists() and not path.is_file():
             raise OSError(0, "it is no file that ends")
         return path.open("rb")
+    if name == "-":
+        return _spooled(sys.stdin.buffer)
     try:
         fsspec: Any = import_module("fsspec")
     except ImportError:
         raise LogError((words.needs(name, "fsspec", "logs"),)) from None
     try:
         return cast("BinaryIO", fsspec.open(name, "rb").open())
-    except ImportError as error:  # each kind of address has a package of its own
-        raise OSError(0, str(error)) from None
+    except Exception as error:  # noqa: BLE001 - each kind of address has a package of its own, and their errors have no base
+        told = error.__cause__ if isinstance(error, FileNotFoundError) and not error.strerror else error  # else it is the name alone
+        raise OSError(0, str(told or os.strerror(ENOENT)) or type(told).__name__) from None
 
 
 def _spooled(stream: BinaryIO) -> BinaryIO:

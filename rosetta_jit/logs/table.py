@@ -6,6 +6,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.logs.base import Format
+from rosetta_jit.startup.entry_points import offered
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -15,10 +16,13 @@ GROUP = "rosetta_jit.logs"
 
 _HERE = "rosetta_jit.logs"
 
+ROSBAG2_FILES = "*_0.db3", "*_0.mcap", "*_0.db3.zstd", "*_0.mcap.zstd"
+"""The first file of a folder: there is no `metadata.yaml` where the recorder was killed."""
+
 FORMATS = (
     Format("mcap", (".mcap",), f"{_HERE}.mcap.reader:McapReader", b"\x89MCAP0\r\n"),
     Format("bag", (".bag", ".bag.active"), f"{_HERE}.bag.reader:open_bag", b"#ROSBAG V"),
-    Format("rosbag2", (), f"{_HERE}.rosbag2.reader:Rosbag2Reader", folder="metadata.yaml"),
+    Format("rosbag2", (), f"{_HERE}.rosbag2.reader:Rosbag2Reader", folder=("metadata.yaml", *ROSBAG2_FILES)),
     Format("rosbag2-sqlite", (".db3",), f"{_HERE}.rosbag2.sqlite:SqliteReader", b"SQLite format 3\0"),
     Format("yarpdatadumper", (), f"{_HERE}.yarp.reader:DumperReader", folder="data.log"),
     Format("yarpdatadumper-ports", (), f"{_HERE}.yarp.reader:DumperReader", folder="*/data.log"),
@@ -32,7 +36,5 @@ FORMATS = (
 @cache
 def formats() -> Mapping[str, Format]:
     """Every format by name."""
-    from importlib.metadata import entry_points
-
-    offered: list[Any] = [each.load() for each in entry_points(group=GROUP)]
-    return {each.name: each for each in (*FORMATS, *offered)}
+    others: list[Any] = [each.load() for each in offered(GROUP)]
+    return {each.name: each for each in (*FORMATS, *others)}

@@ -62,7 +62,7 @@ def unpacked(sealed: Packed | Content, log: str, at: int, scratch: Scratch, *, c
         return sealed
     data, wrong = decompressed(log, sealed.compression, sealed.body, sealed.size, scratch)
     if wrong:
-        return Content(data, words.chunk_damaged(log, at, wrong))
+        return Content(data, (words.chunk_damaged if data.size else words.chunk_unread)(log, at, wrong))
     if check and sealed.crc is not None and crc32(data) != sealed.crc:
         return nothing(words.checksum(log, at))
     return Content(data)

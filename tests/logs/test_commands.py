@@ -152,6 +152,43 @@ def test_doctor(command):
     assert "does not say of which type" in command("doctor", "a.lcmlog", code=1).out
 
 
+def test_doctor_of_a_log_cut_within_a_chunk(command, folder):
+    """There is no index, so none can lie."""
+    (folder / "cut.mcap").write_bytes((folder / "a.mcap").read_bytes()[:200])
+    found = json.loads(command("doctor", "cut.mcap", "--json", code=1).out)
+    assert [each["code"] for each in found["problems"]] == ["log-unfinished", "log-cut", "log-chunk"]
+
+
+def write_points(path, *schemas):
+    """An MCAP file with a message of each schema on `/x`: a name, and a definition, which may be empty."""
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        for name, text in schemas:
+            channel = writer.register_channel("/x", "cdr", writer.register_schema(name, "ros2msg" if text else "", text))
+            writer.add_message(channel, log_time=1, publish_time=1, data=b"\0\1\0\0\7\0\0\0")
+        writer.finish()
+
+
+def test_doctor_of_a_topic_with_several_types(command, folder):
+    write_points(folder / "two.mcap", ("t/msg/A", b"int32 x"), ("t/msg/B", b"uint32 y"))
+    (found,) = json.loads(command("doctor", "two.mcap", "--json", code=1).out)["problems"]
+    assert (found["code"], found["severity"]) == ("log-types", "warning")
+    assert "`/x` has messages of several types: `t/msg/A`, `t/msg/B`" in found["message"]
+
+
+def test_a_type_whose_definition_is_nowhere(command, folder):
+    """Which type of which topic is missing, and where it is looked for."""
+    write_points(folder / "bare.mcap", ("t/msg/A", b""))
+    for arguments in (["doctor"], ["cat"], ["convert", "-o", "x.parquet"], ["convert", "-o", "x/"], ["plot", "/x.x"]):
+        said = command(arguments[0], "bare.mcap", *arguments[1:], code=1)
+        assert "bare.mcap has no definition of `t/msg/A`, the type of the messages of `/x`" in said.out + said.err
+        assert "--search-path" in said.out + said.err
+    (folder / "own" / "t" / "msg").mkdir(parents=True)
+    (folder / "own" / "t" / "msg" / "A.msg").write_text("int32 x\n")
+    assert "t.msg.A(x=7)" in command("cat", "bare.mcap", "--search-path", "own").out
+
+
 def test_decode_takes_logs_types_and_standard_input(command, folder, monkeypatch):
     assert 'data: "text 5"' in command("decode", "std_msgs/String", "a.bag", "--topic", "/b", "--encoding", "ros1").out
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(Path("a.bag").read_bytes())))
@@ -183,6 +220,17 @@ def test_a_moment_in_nanoseconds_is_refused(command, capsys):
     with pytest.raises(SystemExit):
         command("cat", "a.bag", "--end", "soon")
     assert "'soon' is neither seconds since 1970 nor ISO 8601" in capsys.readouterr().err
+
+
+def test_ctrl_c_ends_a_command_without_a_traceback(command, folder, monkeypatch):
+    """In the middle of a conversion: what is not whole is removed."""
+
+    def pressed(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("rosetta_jit.runtime.arrow.files.TableFile.write", pressed)
+    assert command("convert", "a.mcap", "--topic", "/a", "-o", "interrupted.parquet", code=130).err.endswith("interrupted\n")
+    assert not list(folder.glob("interrupted*"))
 
 
 def test_a_name_that_does_not_say_what_to_write(folder, tmp_path, capsys):

@@ -78,6 +78,33 @@ def test_groups_of_rows_that_readers_can_skip(mcap, tmp_path, monkeypatch):
     assert found.row_group(0).column(0).has_offset_index
 
 
+def test_few_files_of_a_topic_are_open(tmp_path, monkeypatch):
+    """Whatever the order of the times: what comes for a file that is closed goes into another one."""
+    from rosetta_jit.logs.converting import parts
+
+    path, out, add = tmp_path / "x.mcap", tmp_path / "out", parts.Parts.add
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        channel = writer.register_channel("/x", "cdr", writer.register_schema("t/msg/X", "ros2msg", b"int32 x"))
+        for number in range(200):
+            moment = START + number % 50 // 5 * 10**9
+            writer.add_message(channel, log_time=moment, publish_time=moment, data=b"\0\1\0\0" + number.to_bytes(4, "little"))
+        writer.finish()
+
+    def adding(unfinished, *arguments):
+        add(unfinished, *arguments)
+        assert len(unfinished._open) <= parts.STRETCHES_OPEN == 4
+
+    monkeypatch.setattr("rosetta_jit.logs.parts.MESSAGES", 5)
+    monkeypatch.setattr(parts.Parts, "add", adding)
+    log = rj.open(path)
+    FolderConversion(log, [log["/x"]], out, every_ns=10**9).run()
+    assert sorted(ds.dataset(out / "x").to_table()["x"].to_pylist()) == list(range(200))
+    names = [each.name for each in (out / "x" / "start=20231114T221321").iterdir()]
+    assert sorted(names) == ["000000.1.parquet", "000000.2.parquet", "000000.3.parquet", "000000.parquet"]
+
+
 def test_several_topics_through_mappings_of_their_own(tmp_path):
     """One pass over a bag: one topic through a mapping, the other as it is, into a folder and into a log."""
     states = "/joint_states=ros1/joint_positions.mapping"
@@ -188,6 +215,7 @@ def test_a_conversion_that_is_stopped_anywhere_goes_on(mcap, tmp_path, monkeypat
             return spending
 
         with monkeypatch.context() as patch:
+            patch.setattr(parts, "STRETCHES_OPEN", 2)
             patch.setattr(files.TableFile, "close", spend(files.TableFile.close))
             patch.setattr(journal.Journal, "write", spend(journal.Journal.write))
             patch.setattr(Path, "replace", spend(Path.replace))

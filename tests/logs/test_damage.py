@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import bz2
 import random
 import struct
 import tracemalloc
 
+import lz4.frame
 import pytest
+import zstandard
 
 import rosetta_jit as rj
 from rosetta_jit.errors import LogError
+from rosetta_jit.logs.compression import Scratch, decompressed
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
 
 from .made import write_bag, write_lcm, write_mcap, write_old_bag
@@ -152,6 +156,40 @@ def test_a_chunk_that_promises_much(logs, tmp_path, claimed):
     messages, found = read(tmp_path / "a.mcap", bytes(data))
     assert codes(found) == ["log-chunk"]
     assert messages
+
+
+RLE = b"\x28\xb5\x2f\xfd\xc0\x00" + struct.pack("<Q", MAX_RECORD_BYTES) + (100 << 3 | 3).to_bytes(3, "little") + b"a"
+"""A frame of zstd that says that it holds a gigabyte, and has a block of a hundred times the letter a."""
+
+
+@pytest.mark.parametrize(
+    ("compression", "body"),
+    [
+        ("zstd", zstandard.ZstdCompressor(write_content_size=False).compress(b"a" * 100)),
+        ("zstd", RLE),
+        ("lz4", lz4.frame.compress(b"a" * 100)),
+        ("bz2", bz2.compress(b"a" * 100)),
+    ],
+    ids=["zstd", "zstd-lies", "lz4", "bz2"],
+)
+def test_the_memory_for_a_chunk_that_promises_much(compression, body):
+    """As much as its bytes can become: a chunk of some hundred bytes is none of a gigabyte."""
+    tracemalloc.start()
+    found, wrong = decompressed("a.mcap", compression, memoryview(body), MAX_RECORD_BYTES, Scratch())
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 8 << 20
+    assert wrong
+    assert found.tobytes() == b"a" * len(found)
+    assert len(found) == 100 or body is RLE
+
+
+def test_zeros_of_which_a_chunk_has_many():
+    """Of all that is compressed, nothing stands for more bytes."""
+    zeros = bytes(64 << 20)
+    for compression, body in (("zstd", zstandard.compress(zeros, 19)), ("lz4", lz4.frame.compress(zeros)), ("bz2", bz2.compress(zeros))):
+        found, wrong = decompressed("a.mcap", compression, memoryview(body), len(zeros), Scratch())
+        assert (found.tobytes() == zeros, wrong) == (True, "")
 
 
 def test_a_compression_that_is_not_known(logs, tmp_path):

@@ -6,14 +6,17 @@ import json
 import shutil
 import sqlite3
 import struct
+import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 import rosetta_jit as rj
 from rosetta_jit.errors import LogError
+from rosetta_jit.logs.yarp import reader as yarp_reader
 
 from .made import POINT, TEXT, encoders, expected, time_of, values
 
@@ -102,11 +105,26 @@ def test_old_files_have_no_definitions(tmp_path):
         database.execute("DROP TABLE IF EXISTS message_definitions")
     database.close()
     log = rj.open(file)
-    with pytest.raises(rj.SchemaError, match="t/msg/Point"):
+    with pytest.raises(LogError, match=r"a\.db3 has no definition of `t/msg/Point`, the type of the messages of `/a`"):
         log["/a"].to_arrow()
     (tmp_path / "t" / "msg").mkdir(parents=True)
     (tmp_path / "t" / "msg" / "Point.msg").write_text(POINT)
     assert rj.open(file, search_path=[tmp_path])["/a"]["x"].shape == (COUNT,)
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("storage", [StoragePlugin.SQLITE3, StoragePlugin.MCAP])
+def test_a_folder_whose_recorder_was_killed(storage, mode, tmp_path):
+    """There is no metadata.yaml: the files are read as they are, and messages that are compressed one by one are told by their begin."""
+    folder = write_rosbag2(tmp_path / "drive", storage, MODES[mode])
+    (folder / "metadata.yaml").unlink()
+    (file,) = folder.iterdir()
+    file.rename(folder / file.name.replace("drive.", "drive_0."))  # as rosbag2 itself calls it
+    found = []
+    log = rj.open(folder, on_problem=found.append)
+    assert log.format == "rosbag2"
+    assert values(log.messages()) == list(expected(COUNT))
+    assert [each.message for each in found] == [f"{folder} has no file metadata.yaml"]
 
 
 def test_a_database_that_is_a_program(tmp_path):
@@ -179,6 +197,96 @@ def test_images_that_yarp_kept():
     first = next(iter(log["/depth_compressed"]))
     pixels = struct.unpack(f"<{20 * 16}f", bytes(first.pixels))
     assert pixels == tuple(0.25 * x + y + 3 for y in range(16) for x in range(20))
+
+
+@pytest.mark.parametrize("time", ["9223372037.5", "-9999999999", "1e9", "12345678901", "x", ""])
+def test_a_time_that_is_none(time, tmp_path):
+    (tmp_path / "info.log").write_text("Type: Bottle;\nStamp: tx;\n")
+    (tmp_path / "data.log").write_text(f"1 1.5 7\n2 {time} 8\n3 9223372036.5 9\n")
+    found = []
+    log = rj.open(tmp_path, on_problem=found.append)
+    assert [each.time for each in log.messages(raw=True)] == [1_500_000_000, 9_223_372_036_500_000_000]
+    assert [each.message.rpartition(": ")[2] for each in found] == [f"{time.encode()!r} is no time"]
+
+
+def test_opening_a_folder_of_yarp_reads_no_images(tmp_path, monkeypatch):
+    """The lines tell types, counts and times; the files may be many gigabytes."""
+    shutil.copytree(DUMPED / "image_mono", tmp_path / "p")
+    with monkeypatch.context() as patched:
+        patched.setattr(yarp_reader, "image_message", None)
+        log = rj.open(tmp_path / "p")
+        assert (log["/p"].type, log["/p"].count) == ("yarp.sig.ImageOfPixelMono", 12)
+    late = list(log.messages(start=log.end))
+    assert [each.time for each in late] == [log.end]
+    (tmp_path / "p" / "00000003.pgm").write_bytes(b"P5")
+    found = []
+    log = rj.open(tmp_path / "p", on_problem=found.append)
+    assert len(list(log["/p"])) == log["/p"].count == 11  # what could not be read is not counted any more
+    assert [each.code for each in found] == ["log-message"]
+
+
+def write_video(folder, suffix, *, without=0):
+    """A folder as `yarpdatadumper --type video` writes it, by OpenCV as there; the first lines came before the video was begun."""
+    cv = pytest.importorskip("cv2")
+    folder.mkdir()
+    video = cv.VideoWriter(str(folder / f"video.{suffix}"), cv.VideoWriter.fourcc(*"HFYU"), 10, (24, 16), True)
+    frames = [np.random.default_rng(number).integers(0, 256, (16, 24, 3), np.uint8) for number in range(5)]
+    for each in frames:
+        video.write(each[:, :, ::-1])
+    video.release()
+    (folder / "info.log").write_text(f"Type: Image; Video:{suffix}(huffyuv);\nStamp: tx;\n")
+    lines = [f"{number} {1_700_000_000 + number}.000000 frame_{number:08d}\n" for number in range(without + 5)]
+    (folder / "data.log").write_text("".join(lines))
+    (folder / "timecodes.log").write_text("# timecode format v2\n" + "".join(f"{number * 1000}\n" for number in range(5)))
+    return frames
+
+
+@pytest.mark.parametrize("without", [0, 2])
+@pytest.mark.parametrize("suffix", ["mkv", "avi"])
+def test_videos_of_yarp(suffix, without, tmp_path):
+    frames, found = write_video(tmp_path / "v", suffix, without=without), []
+    log = rj.open(tmp_path / "v", on_problem=found.append)
+    assert (log["/v"].type, log["/v"].count) == ("yarp.sig.ImageOfPixelRgb", 5 + without)
+    for _ in range(2):
+        assert [bytes(each.pixels) for each in log["/v"]] == [each.tobytes() for each in frames]
+    assert [each.message.rpartition(": ")[2] for each in found] == ["the video begins with frame 2"] * without
+    late = log.messages(start=log.start + (3 + without) * 10**9)
+    assert [bytes(each.message.pixels) for each in late] == [each.tobytes() for each in frames[3:]]
+
+
+@pytest.mark.parametrize(
+    ("damage", "said"),
+    [
+        (lambda path: path.unlink(), "there is no video.mkv or video.avi"),
+        (lambda path: path.write_bytes(path.read_bytes()[:-4000]), "the video has no frame"),
+        (lambda path: path.write_bytes(b"#EXTM3U\nhttp://127.0.0.1:9/a.ts\n"), "no Matroska or AVI file"),
+        (lambda path: path.write_bytes(path.read_bytes()[:8]), "has no frames"),
+    ],
+    ids=["missing", "cut", "addresses", "begin"],
+)
+def test_damaged_videos_of_yarp(damage, said, tmp_path):
+    """What lies before is read, and it is said once what is wrong."""
+    frames, found = write_video(tmp_path / "v", "mkv"), []
+    damage(tmp_path / "v" / "video.mkv")
+    read = [bytes(each.pixels) for each in rj.open(tmp_path / "v", on_problem=found.append)["/v"]]
+    assert read == [each.tobytes() for each in frames[: len(read)]]
+    (problem,) = found
+    assert problem.code == "log-damaged"
+    assert said in problem.message
+
+
+@pytest.mark.parametrize(("package", "name", "extra"), [("cv2", "frame_00000000", "videos"), ("PIL.Image", "00000000.png [rgb]", "images")])
+def test_a_package_that_images_need(package, name, extra, tmp_path, monkeypatch):
+    """It is named once, not for each image; other ports are read without it."""
+    shutil.copytree(DUMPED / "image_png", tmp_path / "d" / "p")
+    (tmp_path / "d" / "p" / "data.log").write_text("".join(f"{number} {number}.5 {name}\n" for number in range(3)))
+    (tmp_path / "d" / "p" / "video.mkv").write_bytes(b"\x1a\x45\xdf\xa3" + bytes(20))
+    shutil.copytree(DUMPED / "bottle_default", tmp_path / "d" / "b")
+    monkeypatch.setitem(sys.modules, package, None)
+    log = rj.open(tmp_path / "d")
+    assert len(list(log.messages(["/b"], raw=True))) == 40
+    with pytest.raises(LogError, match=rf"pip install 'rosetta-jit\[{extra}\]'"):
+        list(log.messages(["/p"], raw=True))
 
 
 def padded(formula, geometry):

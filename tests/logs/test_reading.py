@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.errors import DecodeError, LogError, SchemaError
+from rosetta_jit.errors import DecodeError, LogError
 
 from .made import BAGS, COMPRESSIONS, LCM_TYPES, POINT, START, STEP, expected, time_of, values, write_bag, write_lcm, write_mcap
 
@@ -276,6 +276,6 @@ def test_a_definition_that_is_empty(folder, size):
     if size == 1:
         assert rj.open(path)["/x"].to_arrow().num_rows == 1
         return
-    with pytest.raises(SchemaError, match="no file declares a message `z/msg/Unknown`"):
+    with pytest.raises(LogError, match="has no definition of `z/msg/Unknown`, the type of the messages of `/x`"):
         rj.open(path)["/x"].to_arrow()
     assert rj.open(path, search_path=[folder])["/x"].to_arrow()["x"].to_pylist() == [[0] * 5]

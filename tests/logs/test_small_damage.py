@@ -163,6 +163,30 @@ def test_messages_of_which_the_end_is_missing(sizes, tmp_path):
     assert left_out
 
 
+@pytest.mark.parametrize("wrong", [None, 1.5, "two", b"\1", "\ud800"], ids=repr)
+def test_values_of_any_type_in_a_database(wrong, tmp_path):
+    """SQLite lets each column hold anything: what is no topic and no message is left out, and the others are read."""
+    path = tmp_path / "a.db3"
+    with sqlite3.connect(path) as database:
+        database.execute("CREATE TABLE topics(id, name, type, serialization_format)")
+        database.execute("CREATE TABLE messages(id, topic_id, timestamp, data)")
+        database.execute("CREATE TABLE message_definitions(topic_type, encoding, encoded_message_definition)")
+        octets = wrong.encode("utf-8", "surrogatepass") if isinstance(wrong, str) else wrong
+        value = "CAST(? AS TEXT)" if isinstance(wrong, str) else "?"
+        database.execute("INSERT INTO topics VALUES (1, '/a', 't/msg/X', 'cdr')")
+        for columns in (f"{value}, '/b', 't/msg/X', 'cdr'", f"2, {value}, 't/msg/X', 'cdr'", f"3, '/c', {value}, {value}"):
+            database.execute(f"INSERT INTO topics VALUES ({columns})", [octets] * columns.count("?"))  # noqa: S608 - our own words
+        for columns in ("1, 1, 5, x'07'", f"2, {value}, 6, x'07'", f"3, 1, {value}, x'07'", f"4, 1, 7, {value}", f"{value}, 1, 8, x'07'"):
+            database.execute(f"INSERT INTO messages VALUES ({columns})", [octets] * columns.count("?"))  # noqa: S608 - our own words
+        database.execute(f"INSERT INTO message_definitions VALUES ({value}, {value}, {value})", [octets] * 3)  # noqa: S608 - our own words
+    database.close()
+    messages, found = read(path, path.read_bytes())
+    data = octets if isinstance(octets, bytes) else b""
+    assert [(each.time, each.topic, each.message) for each in messages] == [(5, "/a", b"\7"), (7, "/a", data), (8, "/a", b"\7")]
+    assert set(codes(found)) == {"log-row"}
+    assert {"/a", "/c"} <= set(rj.open(path, on_problem=list[object]().append).topics)
+
+
 def test_a_cut_folder_of_yarpdatadumper(tmp_path):
     cut_folder(tmp_path / "bottle_cli", 3)
 

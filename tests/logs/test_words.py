@@ -13,6 +13,7 @@ EXAMPLES = {
     "topic": "/imu",
     "type_": "sensor_msgs/msg/Imu",
     "types": ["a/A", "b/B"],
+    "table": "topics",
     "tables": [".parquet", ".csv"],
     "topics": ["/imu", "/tf"],
     "known": ["/imu", "/tf"],

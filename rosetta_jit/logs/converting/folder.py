@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 STEP_BYTES = 256 << 20
 """Messages between one writing of the journal and the next."""
 
-WAITING_BYTES = 64 << 20
+WAITING_BYTES = 16 << 20
 """Messages that wait to become tables, of all topics together."""
 
 QUARANTINE = "_quarantine.jsonl"

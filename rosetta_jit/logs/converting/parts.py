@@ -3,7 +3,8 @@
     folder = _conversion.json, [_quarantine.jsonl], topic*
     topic  = (start=20240501T120000/ 000000.parquet*)*
 
-Each has its name once it is whole and on the disk.
+Each has its name once it is whole and on the disk. A file that is open takes a megabyte, so few of a topic are: messages that come for one
+that is closed go into another, `000000.1.parquet`.
 """
 
 from __future__ import annotations
@@ -26,8 +27,11 @@ if TYPE_CHECKING:
 
     from rosetta_jit.runtime.arrow.files import TableFile
 
-WAITING_BYTES = 64 << 20
+WAITING_BYTES = 20 << 20
 """What is in memory of all files together until their groups of rows are full."""
+
+STRETCHES_OPEN = 4
+"""Of a topic, so many files are open at once: messages come nearly in order."""
 
 SECOND = 10**9
 
@@ -55,6 +59,9 @@ class Parts:
     def __init__(self, folder: Path, suffix: str, every_ns: int, number: int) -> None:
         self._folder, self._suffix, self._every, self.number = folder, suffix, every_ns, number
         self._open: dict[tuple[str, int], _Open] = {}
+        """The one that was used last stands last."""
+        self._closed: list[_Open] = []
+        self._made: dict[tuple[str, int], int] = {}
         self._stretches: set[tuple[str, int]] = set()
 
     def remove_unfinished(self) -> None:
@@ -86,31 +93,51 @@ class Parts:
     def _file(self, name: str, stretch: int) -> TableFile:
         key = name, stretch
         if key not in self._open:
+            self._make_room(name)
             from rosetta_jit.runtime.arrow.files import TableFile
 
             self._stretches.add(key)
             if len(self._stretches) > MAX_STRETCHES:
                 raise LogError((words.many_stretches(str(self._folder), MAX_STRETCHES),))
             begin = str(np.datetime64(stretch * self._every // SECOND, "s")).replace("-", "").replace(":", "")
-            path = self._folder / name / f"start={begin}" / f"{self.number:06d}{self._suffix}"
+            made = self._made[key] = self._made.get(key, -1) + 1
+            file = f"{self.number:06d}{f'.{made}' if made else ''}{self._suffix}"
+            path = self._folder / name / f"start={begin}" / file
             path.parent.mkdir(parents=True, exist_ok=True)
             part = path.with_name(f"{path.name}.part")
             self._open[key] = _Open(path, part, TableFile(part, self._suffix))
+        self._open[key] = self._open.pop(key)
         return self._open[key].file
+
+    def _make_room(self, name: str) -> None:
+        """Before another file of a topic is opened: write what waits for its others, and close the one that was not used for longest."""
+        of_topic = [key for key in self._open if key[0] == name]
+        for key in of_topic:
+            self._open[key].file.flush()
+        if len(of_topic) >= STRETCHES_OPEN:
+            self._open[of_topic[0]].file.close()
+            self._closed.append(self._open.pop(of_topic[0]))
 
     def finish(self) -> None:
         """Give all files their names, when they are on the disk; the next ones are of the next step."""
         for each in self._open.values():
             each.file.close()
+        for each in [*self._closed, *self._open.values()]:
             with each.part.open("rb") as file:
                 os.fsync(file.fileno())
             each.part.replace(each.path)
-        self._open.clear()
+        self._forget()
         self.number += 1
 
     def abandon(self) -> None:
         """Remove those that are not finished."""
         for each in self._open.values():
             each.file.abandon()
+        for each in [*self._closed, *self._open.values()]:
             each.part.unlink(missing_ok=True)
+        self._forget()
+
+    def _forget(self) -> None:
         self._open.clear()
+        self._closed.clear()
+        self._made.clear()

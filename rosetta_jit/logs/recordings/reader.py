@@ -15,16 +15,19 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.storage import Storage
 
 
+XZ = b"\xfd7zXZ\0"
+
+
 class RecordingReader:
     """An open recording."""
 
     def __init__(self, storage: Storage, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
         del check  # xz has its own checksums
-        self._path, self._tell = storage.path, tell
+        self._path, self._tell = storage.local(".rec.xz" if storage.read(0, len(XZ)) == XZ else ".rec"), tell
         times = [(int(block.rows.log_ns.min()), int(block.rows.log_ns.max()), len(block.rows)) for block in self.blocks(Wanted())]
         self.extent = Extent(min(each[0] for each in times), max(each[1] for each in times)) if times else None
         count = sum(each[2] for each in times)
-        self.connections = {0: Connection(0, self._path.name.partition(".")[0], "", "yarp", count=count)}
+        self.connections = {0: Connection(0, storage.path.name.partition(".")[0], "", "yarp", count=count)}
         self.facts, self.pieces = dict[str, str](), (Piece(0),)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:

@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 PART = 1 << 32
 """Connections of file n are numbered from n times this on."""
 
+ZSTD = bytes.fromhex("28b52ffd")
+"""How a frame of zstd begins."""
+
 SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
 
 
@@ -48,6 +51,7 @@ class Rosbag2Reader:
             except LogError as error:  # the others are read
                 for each in error.diagnostics:
                     tell(replace(each, severity="warning"))
+        self._compressed = self._compressed or (not information and self._begins_compressed())
         if not self._parts:
             raise LogError((words.not_a(storage.name, "rosbag2: none of its files can be read"),))
 
@@ -97,6 +101,11 @@ class Rosbag2Reader:
             for block in blocks_of(self._unpacked(blocks)) if self._compressed else blocks:
                 yield Block(block.data, replace(block.rows, channels=block.rows.channels + base), first + block.piece)
 
+    def _begins_compressed(self) -> bool:
+        """Whether the first message is compressed by zstd, where no metadata tell: no encoding begins so."""
+        block = next((block for part in self._parts for block in part.blocks(Wanted())), None)
+        return block is not None and block.data[block.rows.begins[0] :][: len(ZSTD)].tobytes() == ZSTD
+
     def _unpacked(self, blocks: Iterable[Block]) -> Iterator[tuple[int, int, int, bytes]]:
         """The messages of a bag in which each is compressed by zstd, one by one."""
         scratch = Scratch()
@@ -122,6 +131,9 @@ class Rosbag2Reader:
                 found = yaml.load(file.read(MAX_METADATA_BYTES), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
             information = found["rosbag2_bagfile_information"]
             return dict(information)
+        except FileNotFoundError:
+            self._tell(words.missing_file(str(self._folder), path.name))
+            return {}
         except (OSError, yaml.YAMLError, KeyError, TypeError, ValueError, RecursionError) as error:
             self._tell(words.bad_index(str(path), str(error).partition("\n")[0]))
             return {}

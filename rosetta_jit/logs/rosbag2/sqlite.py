@@ -39,8 +39,9 @@ class SqliteReader:
         self._name, self._tell = storage.name, tell
         self.facts, self.pieces = {"storage": "sqlite3"}, (Piece(storage.size),)
         try:
-            self._database = sqlite3.connect(f"{storage.path.resolve().as_uri()}?mode=ro", uri=True, check_same_thread=False)
+            self._database = sqlite3.connect(f"{storage.local('.db3').resolve().as_uri()}?mode=ro", uri=True, check_same_thread=False)
             finalize(self, self._database.close)
+            self._database.text_factory = _kept
             self._database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_RECORD_BYTES)
             self._check_tables()
             self.connections = self._defined()
@@ -72,7 +73,7 @@ class SqliteReader:
             there = {each[1] for each in self._database.execute(f"PRAGMA table_info({table})")}
             if found.get(table) != "table" or not there.issuperset(columns):
                 raise LogError((words.not_a(self._name, "rosbag2 file: it has no tables `topics` and `messages`"),))
-        self._root = int(roots["messages"])
+        self._root = roots["messages"] if isinstance(roots["messages"], int) else 0
         self._has_definitions = found.get("message_definitions") == "table"
 
     def _defined(self) -> dict[int, Connection]:
@@ -80,12 +81,15 @@ class SqliteReader:
         definitions: dict[str, tuple[str, bytes]] = {}
         if self._has_definitions:
             rows = self._database.execute("SELECT topic_type, encoding, encoded_message_definition FROM message_definitions")
-            definitions = {str(type_): (str(encoding), _octets(text)) for type_, encoding, text in rows if text}
+            definitions = {_text(type_): (_text(encoding), _octets(text)) for type_, encoding, text in rows if text}
         found: dict[int, Connection] = {}
         for number, topic, type_, encoding in self._database.execute("SELECT id, name, type, serialization_format FROM topics"):
-            language, text = definitions.get(str(type_), ("", b""))
-            known = ENCODINGS.get(str(encoding), str(encoding))
-            found[int(number)] = Connection(int(number), str(topic), str(type_), known, language, text, int(counts.get(number, 0)))
+            if not isinstance(number, int):
+                self._tell(words.bad_row(self._name, "topics", "its `id` is no number"))
+                continue
+            language, text = definitions.get(_text(type_), ("", b""))
+            known = ENCODINGS.get(_text(encoding), _text(encoding))
+            found[number] = Connection(number, _text(topic), _text(type_), known, language, text, int(counts.get(number, 0)))
         return found
 
     def _messages(self, wanted: Wanted) -> Iterator[tuple[int, int, int, bytes]]:
@@ -95,7 +99,7 @@ class SqliteReader:
                 if self._cut and number in self._cut:
                     continue
                 if not isinstance(topic, int) or not isinstance(time_ns, int):
-                    self._tell(words.bad_definition(self._name, number, "a message without a topic or a time"))
+                    self._tell(words.bad_row(self._name, "messages", "its topic or its time is no number"))
                     continue
                 yield topic, time_ns, time_ns, _octets(data)
         except sqlite3.Error as error:
@@ -122,11 +126,21 @@ def _query(wanted: Wanted, table: str) -> tuple[str, list[int]]:
     return f"SELECT id, topic_id, timestamp, data FROM {table}{where} ORDER BY timestamp, id", parameters  # noqa: S608 - of our own words
 
 
+def _kept(octets: bytes) -> str:
+    """Text of which `_octets` gives all bytes again, whatever they are."""
+    return octets.decode("utf-8", "surrogateescape")
+
+
+def _text(value: object) -> str:
+    """A column of text, which may hold anything: what is no UTF-8 is replaced."""
+    return _octets(value).decode("utf-8", "replace") if isinstance(value, (str, bytes)) else str(value)
+
+
 def _octets(value: object) -> bytes:
     match value:
         case bytes():
             return value
         case str():
-            return value.encode("utf-8", "replace")
+            return value.encode("utf-8", "surrogateescape")
         case _:
             return b""

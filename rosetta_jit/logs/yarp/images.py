@@ -1,6 +1,6 @@
 """Images that `yarpdatadumper` kept as files, as the messages that they came in: YARP 3's form, rows padded to 8 bytes.
 
-`.ppm`, `.pgm`, `.float` and `.floatzip` are read here; `.png` and `.jpg` by Pillow (extra `images`).
+`.ppm`, `.pgm`, `.float` and `.floatzip` are read here; `.png` and `.jpg` by Pillow (extra `images`), frames of videos by `videos`.
 """
 
 from __future__ import annotations
@@ -11,10 +11,15 @@ import zlib
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.catalogue import logs as words
+from rosetta_jit.errors import LogError
 from rosetta_jit.logs.limits import MAX_PIXELS
+from rosetta_jit.logs.yarp.videos import FRAME
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from rosetta_jit.logs.yarp.videos import Frames
 
 HEAD = struct.Struct("<II i4s i4s ii iiiii ii")
 NETPBM = re.compile(rb"P([56])\s(\d+)\s(\d+)\s255\s")
@@ -27,15 +32,31 @@ class ImageError(ValueError):
     """A file that holds no image."""
 
 
-def image_message(folder: Path, content: bytes) -> bytes:
-    """The message of an image: ``content`` names its file, and its pixels.
+def type_of_images(content: bytes) -> str:
+    """The type of the message that `image_message` makes; YARP keeps pixels of all other codes as those of RGB."""
+    name, _, code = content.partition(b" ")
+    match name.rpartition(b".")[2]:
+        case b"float" | b"floatzip":
+            return "yarp.sig.ImageOfPixelFloat"
+        case b"pgm":
+            return "yarp.sig.ImageOfPixelMono"
+        case _:
+            return "yarp.sig.ImageOfPixelMono" if code == b"[mono]" else "yarp.sig.ImageOfPixelRgb"
+
+
+def image_message(folder: Path, content: bytes, frames: Frames) -> bytes:
+    """The message of an image: ``content`` names its file, and its pixels, or a frame of a video.
 
     Raises
     ------
-    ImageError, OSError
-        There is no such file, or it holds no image.
+    ValueError, OSError
+        There is no such file, or it holds no image; a `VideoError` where no further frame can be read either.
+    LogError
+        The package is missing that reads it.
     """
     name, _, _ = content.partition(b" ")
+    if frame := FRAME.fullmatch(name):
+        return _message(b"rgb", *frames.pixels(int(frame[1])))
     file = name.decode("ascii", "replace")
     if not file or "/" in file or "\\" in file or file.startswith("."):
         raise ImageError(f"{file!r} is no name of a file in the folder")
@@ -123,7 +144,7 @@ def _pillow(path: Path) -> tuple[bytes, int, int, bytes]:
     try:
         image: Any = import_module("PIL.Image")
     except ImportError:
-        raise ImageError("it needs the package pillow: pip install 'rosetta-jit[images]'") from None
+        raise LogError((words.needs(str(path), "pillow", "images"),)) from None
     try:
         with image.open(path) as opened:
             code = b"mono" if opened.mode == "L" else b"rgb"

@@ -6,9 +6,9 @@ import json
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Self, cast
 
-import numpy as np
 import pyarrow as pa
 
+from rosetta_jit.runtime.arrow.archive import plain, write_archive
 from rosetta_jit.runtime.arrow.tables import flat
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ ROWS, BYTES = 1 << 17, 16 << 20
 def write_tables(tables: Iterable[pa.Table], path: Path, suffix: str) -> None:
     """Write tables of one schema; ValueError if no file has such a suffix."""
     if suffix == ".npz":
-        _write_archive(tables, path)
+        write_archive(tables, path)
         return
     with TableFile(path, suffix) as file:
         for table in tables:
@@ -74,6 +74,8 @@ class TableFile:
 
     def abandon(self) -> None:
         """Close a file that is not going to be used."""
+        if isinstance(self._writer, _Parquet):
+            self._writer.abandon()
         self._file.close()
 
     def __enter__(self) -> Self:
@@ -92,6 +94,10 @@ class _Parquet:
 
     def __call__(self, table: pa.Table) -> None:
         self._writer.write_table(table, row_group_size=max(table.num_rows, 1))
+
+    def abandon(self) -> None:
+        """Write no end: pyarrow would when the writer goes, into a file that is closed, and report it as an ignored exception."""
+        self._writer.is_open = False
 
 
 class _Arrow:
@@ -136,43 +142,8 @@ def _for_text(given: pa.Table) -> pa.Table:
     types, table = import_module("pyarrow.types"), cast("Any", flat(given))
     for place, column in enumerate(table.schema):
         if types.is_nested(column.type) or types.is_large_binary(column.type) or types.is_fixed_size_binary(column.type):
-            texts = [None if each is None else json.dumps(each, default=_plain) for each in table.column(column.name).to_pylist()]
+            texts = [None if each is None else json.dumps(each, default=plain) for each in table.column(column.name).to_pylist()]
             table = table.set_column(place, column.name, pa.array(texts, pa.large_string()))
         elif types.is_dictionary(column.type):
             table = table.set_column(place, column.name, table.column(column.name).cast(pa.large_string()))
     return table
-
-
-def _plain(value: object) -> object:
-    return value.hex() if isinstance(value, bytes) else str(value)
-
-
-def _write_archive(tables: Iterable[pa.Table], path: Path) -> None:
-    """An array a column, as `rosetta-jit decode --npz` writes them: the elements of lists end to end, beside ``NAME.offsets``."""
-    table = flat(pa.concat_tables(list(tables)))
-    columns: dict[str, Any] = {}
-    for name in table.schema.names:
-        columns |= _arrays(name, table.column(name).combine_chunks())
-    with path.open("wb") as file:
-        np.savez_compressed(file, allow_pickle=False, **columns)
-
-
-def _arrays(name: str, column: Any) -> dict[str, Any]:
-    types = import_module("pyarrow.types")
-    column = column.combine_chunks() if hasattr(column, "combine_chunks") else column
-    if types.is_fixed_size_list(column.type):
-        inner = column.flatten()
-        if not types.is_nested(inner.type):
-            return {name: inner.to_numpy(zero_copy_only=False).reshape(len(column), column.type.list_size)}
-    elif types.is_large_list(column.type) and not types.is_nested(column.type.value_type):
-        offsets = column.offsets.to_numpy() - column.offsets[0].as_py()
-        return {name: _numbers(column.flatten()), f"{name}.offsets": offsets}
-    elif not types.is_nested(column.type):
-        return {name: _numbers(column)}
-    return {name: np.array([json.dumps(each, default=_plain) for each in column.to_pylist()])}
-
-
-def _numbers(column: Any) -> Any:
-    """A column as an array: texts as texts of numpy, bytes in hexadecimal digits."""
-    found = column.to_numpy(zero_copy_only=False)
-    return found if found.dtype != object else np.array([_plain(each) if isinstance(each, bytes) else str(each) for each in found], np.str_)

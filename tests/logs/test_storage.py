@@ -1,0 +1,108 @@
+"""Logs that are no local files: standard input, and addresses of `fsspec`."""
+
+from __future__ import annotations
+
+import io
+import lzma
+import sys
+from pathlib import Path
+
+import fsspec
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.errors import LogError
+
+from .made import write_bag, write_lcm, write_mcap, write_old_bag
+from .test_folders import write_rosbag2
+from .test_small_damage import SMALL
+
+COUNT = 20
+
+
+@pytest.fixture(scope="module")
+def logs(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("logs")
+    (database,) = write_rosbag2(folder / "a").glob("*.db3")
+    written = [write_mcap(folder / "a.mcap", COUNT), write_bag(folder / "a.bag", COUNT, "bz2"), write_old_bag(folder / "old.bag", COUNT)]
+    found = {path.name: path for path in (*written, write_lcm(folder / "a.lcmlog", COUNT), database)}
+    for name, data in (SMALL | {"a.rec.xz": lzma.compress(SMALL["a.rec"])}).items():
+        found[name] = folder / name
+        found[name].write_bytes(data)
+    return found
+
+
+KINDS = ("a.mcap", "a.bag", "old.bag", "a.lcmlog", "a.db3", "a.rec", "a.rec.xz", "a.delimited", "a.tide")
+
+
+def read(name, form=None):
+    found = []
+    with rj.open(name, format=form, on_problem=found.append) as log:
+        channels = [(each.topic, each.type, each.count) for each in log.channels]
+        messages = list(log.messages(raw=True))
+    assert not found
+    assert messages
+    return log.format, channels, messages
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_address_of_fsspec(kind, logs):
+    with fsspec.open(f"memory://logs/{kind}", "wb") as file:
+        file.write(logs[kind].read_bytes())
+    assert read(f"memory://logs/{kind}") == read(logs[kind]) == read(f"file://{logs[kind]}")
+
+
+def test_a_folder_as_an_address(logs):
+    folder = logs["a.db3"].parent
+    assert read(f"file://{folder}") == read(folder)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_standard_input(kind, logs, monkeypatch):
+    form, channels, messages = read(logs[kind])
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(logs[kind].read_bytes())))
+    has_begin = not kind.startswith(("a.rec", "a.delim"))
+    found = read("-", None if has_begin else form)
+    assert [(each.time, each.message) for each in found[2]] == [(each.time, each.message) for each in messages]
+    assert found[:2] == (form, channels) or not has_begin  # topics of the others are named after the file
+
+
+class AddressError(Exception):
+    """Of a package of its own."""
+
+
+class Broken(fsspec.AbstractFileSystem):
+    """A server that refuses, or is not there."""
+
+    protocol = "broken"
+
+    def _open(self, path, mode="rb", **_):  # noqa: ARG002 - fsspec's signature
+        match path.rpartition("/")[2]:
+            case "refused":
+                raise AddressError("403, Forbidden")
+            case "away":
+                raise FileNotFoundError(path) from AddressError("Cannot connect to host")
+            case _:
+                raise FileNotFoundError(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "said"), [("refused", "403, Forbidden"), ("away", "Cannot connect to host"), ("x.mcap", "No such file or directory")]
+)
+def test_an_address_that_cannot_be_opened(name, said):
+    """Whatever the package of the address raises, it is said which log cannot be read, and why."""
+    fsspec.register_implementation("broken", Broken, clobber=True)
+    with pytest.raises(LogError, match=f"broken://{name} cannot be read: {said}"):
+        rj.open(f"broken://{name}")
+
+
+def test_copies_go_with_the_log(logs, monkeypatch, tmp_path):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with fsspec.open("memory://logs/copied.db3", "wb") as file:
+        file.write(logs["a.db3"].read_bytes())
+    log = rj.open("memory://logs/copied.db3")
+    (folder,) = tmp_path.iterdir()
+    assert [each.name for each in Path(folder).iterdir()] == ["log.db3"]
+    assert list(log.messages(raw=True))
+    log.close()
+    assert not list(tmp_path.iterdir())
