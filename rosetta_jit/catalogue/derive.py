@@ -46,13 +46,13 @@ def changes(span: Span | None, function: str) -> Diagnostic:
     return error("no-inverse", message, span, "changes", help_="write it in `unpack-rules:`, or in `pack-rules:`")
 
 
-def several_fields(span: Span | None, places: Sequence[str]) -> Diagnostic:
-    """A relation among more fields of the wire than one, some of which nothing else sets."""
+def several_fields(span: Span | None, places: Sequence[str], why: str = "") -> Diagnostic:
+    """A relation among more fields of the wire than one, some of which nothing else sets; ``why`` as many do not say it, either."""
     listed = " and ".join(f"`{shorten(place)}`" for place in places[:MAX_PLACES])
     message = f"one rule cannot set several fields of the wire: nothing else says what {listed} are"
-    return error(
-        "several-fields", message, span, help_=f"relate all but one of them to the holder by rules of their own, or {_by_hand(places)}"
-    )
+    notes = (f"it cannot be solved together with the other relations of these fields: {why}",) if why else ()
+    help_ = f"relate all but one of them to the holder by rules of their own, or {_by_hand(places)}"
+    return error("several-fields", message, span, notes=notes, help_=help_)
 
 
 def unknown_bound(span: Span | None) -> Diagnostic:

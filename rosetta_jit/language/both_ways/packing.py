@@ -160,6 +160,8 @@ class Packing:
         targets = [each for each in fields if self.known.setters.get(key_of(each, loops)[0], (None,))[0] is rule]
         beside = self.known.beside.get(id(rule))
         checks = () if beside is None or (targets and beside.side == "wire") else checks_of(beside)
+        if beside is not None and beside.is_asked:
+            checks = (*checks, *agreement(place, self.known.replaced(rule.value, loops), rule))
         if targets:
             return (*checks, *(found for target in targets for found in self.setting(target, loops, rule)))
         if beside is not None:
@@ -175,7 +177,7 @@ class Packing:
         if conditional is not None and not fields_of(place, "wire"):
             return self.split(rule, conditional, loops)
         if not all(map(self.is_completed, missing)):
-            self.problems.append(_reason(rule, missing, place, self.known.type_of))
+            self.problems.append(_reason(rule, missing, place, self.known))
         return ()
 
     def setting(self, target: Field, loops: Loops, rule: Relation) -> tuple[Rule, ...]:
@@ -365,15 +367,15 @@ def _rejects(rules: tuple[Rule, ...]) -> bool:
     return bool(rules) and all(isinstance(rule, Reject) for rule in rules)
 
 
-def _reason(rule: Relation, missing: list[Field], place: Expr, type_of: TypeOf) -> Diagnostic:
+def _reason(rule: Relation, missing: list[Field], place: Expr, known: Knowledge) -> Diagnostic:
     """Why a relation cannot be packed."""
     shown = [show_expr(each) for each in missing]
     if fields_of(place, "wire"):
         return words.index_reads(fields_of(place, "wire")[0].span)
     if len(fields_in(rule.value)) > 1:
-        return words.several_fields(rule.value.span, shown)
+        return words.several_fields(rule.value.span, shown, known.unsolved.get(id(rule), ""))
     try:
-        solve(rule.value, rule.place, type_of)
+        solve(rule.value, rule.place, known.type_of)
     except NoInverseError as error:
         return words.no_inverse(error.part.span, str(error), rule.span, shown[0])
     return words.index_reads(missing[0].span)
