@@ -3,9 +3,9 @@
     .speed <-> (.right + .left) * 0.5           `.right` is `.speed + .turn * 0.2`
     .turn  <-> (.right - .left) / 0.4           `.left` is `.speed - .turn * 0.2`
 
-What is done to a whole sum is undone first; then fields are eliminated (Gauss and Jordan). Factors are fractions, and expressions where they
-are parameters or what the holder says. Sums of integers are solved without rounding: packing refuses what leaves a remainder. An integer of
-which floats were computed is the nearest one, and packing checks the relations with it.
+What is done to a whole sum is undone first; then fields are eliminated (Gauss and Jordan). Factors are fractions, and expressions where
+they are parameters or what the holder says. Sums of integers are solved without rounding: packing refuses what leaves a remainder. An
+integer of which floats were computed is the nearest one, and packing checks the relations with it.
 """
 
 from __future__ import annotations

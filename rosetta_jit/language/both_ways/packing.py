@@ -17,6 +17,7 @@ from rosetta_jit.catalogue import groups, layouts
 from rosetta_jit.language.both_ways.array_relations import with_layouts
 from rosetta_jit.language.both_ways.branches import asked_of_holder, facts_of, test_between
 from rosetta_jit.language.both_ways.checks import agreement, checks_of, guard
+from rosetta_jit.language.both_ways.elements import ignored_elements
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solve
 from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.learning import learn
@@ -88,6 +89,8 @@ class Packing:
     """Whether the block is all that a `when` leaves whose blocks are told apart by what is there."""
     blocks: list[Relation] = field(default_factory=list["Relation"])
     written: Mapping[Field, Expr] = field(default_factory=lambda: NOTHING)
+    is_outermost: bool = True
+    """Whether the block is in no `when`."""
 
     @classmethod
     def of(cls, pack_rules: tuple[Rule, ...], type_of: TypeOf, problems: list[Diagnostic]) -> Packing:
@@ -141,6 +144,8 @@ class Packing:
         start, stop = (self.known.replaced(bound, loops) for bound in (rule.start, rule.stop))
         missing = [*fields_of(start, "wire"), *fields_of(stop, "wire")]
         if missing:
+            if self.is_outermost and not loops and (place := ignored_elements(rule)) is not None:
+                return (Default(place, rule.span),)
             if not all(self.is_completed(place) for place in fields_in_rules(rule.body)):
                 self.problems.append(words.unknown_bound(missing[0].span))
             return ()
@@ -271,7 +276,7 @@ class Packing:
 
     def enter(self, block: tuple[Rule, ...], loops: Loops, facts: Mapping[Field, Expr] = NOTHING, owed: _Owed | None = None) -> _Block:
         """A block, with the facts that it has set and the conditions that it is owed checked."""
-        inner = replace(self, known=self.known.inside(), owed=self.owed if owed is None else (*self.owed, owed))
+        inner = replace(self, is_outermost=False, known=self.known.inside(), owed=self.owed if owed is None else (*self.owed, owed))
         learn(inner.known, block, loops, self.is_assigned)
         settings = [inner.fact(place, value, loops) for place, value in facts.items()]
         guards = inner.settle(block, loops)
