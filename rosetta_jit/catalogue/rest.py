@@ -67,7 +67,8 @@ def no_elements(span: Span | None, place: str) -> Diagnostic:
     )
 
 
-def default_count(span: Span | None, array: str) -> Diagnostic:
+def default_count(span: Span | None, count: str, array: str) -> Diagnostic:
     """The number of elements of an array, left at 0 where there are some."""
-    message = f"this tells how many elements `{shorten(array)}` has, and its default is 0"
-    return error("no-default", message, span, "here", help_="set it to the number of elements: `... = len(...)`")
+    message = f"`{shorten(count)}` tells how many elements `{shorten(array)}` has, and its default is 0"
+    help_ = f"set it to the number of elements: `{shorten(count)} = len(...)`, and in `rules:` `len(...) <-> {shorten(count)}`"
+    return error("no-default", message, span, "here", help_=help_)

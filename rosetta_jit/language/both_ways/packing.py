@@ -27,7 +27,7 @@ from rosetta_jit.language.folding import folded
 from rosetta_jit.language.function import written
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_BLOCKS
-from rosetta_jit.model.expr import Binary, Call, Coerced, Len, List, Literal, Path
+from rosetta_jit.model.expr import Binary, Call, Coerced, Item, Len, List, Literal, Path
 from rosetta_jit.model.mapping import (
     Arranged,
     Assign,
@@ -382,5 +382,16 @@ def _reason(rule: Relation, missing: list[Field], place: Expr, known: Knowledge)
     try:
         solve(rule.value, rule.place, known.type_of)
     except NoInverseError as error:
-        return words.no_inverse(error.part.span, str(error), rule.span, shown[0])
+        return words.no_inverse(error.part.span, str(error), rule.span, shown[0], _other_way(error.part))
     return words.index_reads(missing[0].span)
+
+
+def _other_way(part: Expr) -> str:
+    """How an expression that cannot be turned round is written so that it can."""
+    match part:
+        case Binary("==", value, Literal(1)) if type(part.right) is Literal:
+            return words.bit_of(show_expr(value))
+        case Item(Call() as call) if (group := group_of(call)) is not None:
+            return words.all_numbers(show_expr(call), [each.names[0] for each in group.components])
+        case _:
+            return ""
