@@ -319,8 +319,9 @@ class Packing:
 
     def is_unknown(self, known: Expr, written: Expr) -> bool:
         missing = fields_of(known, "wire")
-        if missing and not all(map(self.is_completed, missing)):
-            self.problems.append(words.unknown_condition(written.span, show_expr(missing[0])))
+        unknown = next((each for each in missing if not self.is_completed(each)), None)
+        if unknown is not None:
+            self.problems.append(words.unknown_condition(written.span, show_expr(unknown)))
         return bool(missing)
 
     def is_completed(self, place: Field) -> bool:
