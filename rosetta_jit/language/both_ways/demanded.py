@@ -21,12 +21,14 @@ if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.knowledge import Knowledge
     from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule
+    from rosetta_jit.model.mapping import Assignment, Rule
     from rosetta_jit.model.walk import Field
     from rosetta_jit.source import Span
 
+    Setting = Assignment | SetLength[Path, Expr]
 
-def demanded(rules: tuple[Rule, ...], pack_rules: tuple[Rule, ...], type_of: TypeOf) -> tuple[Assign | SetLength, ...]:
+
+def demanded(rules: tuple[Rule, ...], pack_rules: tuple[Rule, ...], type_of: TypeOf) -> tuple[Setting, ...]:
     """The rules to pack which set the fields that a message has with one value alone, and that nothing else sets.
 
     Their values may have fields of the wire: `known_to_pack` says what packing knows of these.
@@ -38,7 +40,7 @@ def demanded(rules: tuple[Rule, ...], pack_rules: tuple[Rule, ...], type_of: Typ
     known |= {*set_by(pack_rules, lengths=True)}
     by_name = any(isinstance(rule, SameNames) for rule in every_rule(rules))
     measured = {*set_by(pack_rules, lengths=True), *(names_of(path_of(place)) for place in related if _tells_length(place))}
-    found: dict[Field, Assign | SetLength] = {}
+    found: dict[Field, Setting] = {}
     for rule in rules:
         match rule:
             case When(condition, (Reject(),), ()):
@@ -52,13 +54,13 @@ def demanded(rules: tuple[Rule, ...], pack_rules: tuple[Rule, ...], type_of: Typ
     return tuple(found.values())
 
 
-def known_to_pack(rules: tuple[Assign | SetLength, ...], known: Knowledge) -> tuple[Rule, ...]:
+def known_to_pack(rules: tuple[Setting, ...], known: Knowledge) -> tuple[Rule, ...]:
     """Such rules with what packing knows in place of fields of the wire, where it knows all: the rejection reports what it does not."""
     made = (replace(rule, value=known.replaced(rule.value, ())) for rule in rules)
     return tuple(rule for rule in made if not fields_of(rule.value, "wire"))
 
 
-def _setting(place: Field, value: Expr, span: Span | None) -> Assign | SetLength:
+def _setting(place: Field, value: Expr, span: Span | None) -> Setting:
     if isinstance(place, Len):
         return SetLength(place.path, value, span)
     return Assign(place, value, span) if _is_constant(value) else Assign(place, value, span, "checked")
