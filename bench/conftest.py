@@ -24,6 +24,7 @@ ORDER = (
     "filters",
     "lookup",
     "flags",
+    "sums",
     "mapped",
     "bridges",
     "peers",

@@ -151,7 +151,7 @@ def elements_without_length(span: Span | None, path: str) -> Diagnostic:
         "length-never-set",
         f"elements of `{path}` are set, its length is not",
         span,
-        help_=f"add `len({path}) = ...` before",
+        help_=f'add `len({path}) = ...`; of the wire under `rules:`, `reject "..." when len({path}) != ...` says it for both directions',
     )
 
 

@@ -33,11 +33,24 @@ def other_block(condition: str, *, holds: bool) -> str:
     return f"the message would be unpacked as if `{shorten(condition)}` were {'false' if holds else 'true'}"
 
 
-def no_inverse(span: Span | None, why: str, rule: Span | None, place: str) -> Diagnostic:
-    """A relation that cannot be packed."""
+def no_inverse(span: Span | None, why: str, rule: Span | None, place: str, how: str = "") -> Diagnostic:
+    """A relation that cannot be packed; ``how`` it is written so that it can."""
     notes = (f"the relation is at {rule}",) if rule is not None and span is not None and rule != span else ()
     message = f"this cannot be turned round to pack: {why}"
-    return error("no-inverse", message, span or rule, "has no inverse", notes=notes, help_=_by_hand([place]))
+    return error("no-inverse", message, span or rule, "has no inverse", notes=notes, help_=f"{how}{_by_hand([place])}")
+
+
+def bit_of(value: str) -> str:
+    """How a number that is 0 or 1 becomes a bool, so that it can be turned round."""
+    return f"`bool({shorten(value)})` is turned round, if it is 0 or 1; or "
+
+
+def all_numbers(value: str, names: Sequence[str]) -> str:
+    """How all numbers that a function gives are related, of which one was."""
+    each = "[]" if "[]" in value else ""
+    return (
+        f"`{', '.join(f'.{name}{each}' for name in names)} <-> {shorten(value)}` is turned round, with a place for each of its numbers; or "
+    )
 
 
 def changes(span: Span | None, function: str) -> Diagnostic:
@@ -46,13 +59,13 @@ def changes(span: Span | None, function: str) -> Diagnostic:
     return error("no-inverse", message, span, "changes", help_="write it in `unpack-rules:`, or in `pack-rules:`")
 
 
-def several_fields(span: Span | None, places: Sequence[str]) -> Diagnostic:
-    """A relation among more fields of the wire than one, some of which nothing else sets."""
+def several_fields(span: Span | None, places: Sequence[str], why: str = "") -> Diagnostic:
+    """A relation among more fields of the wire than one, some of which nothing else sets; ``why`` as many do not say it, either."""
     listed = " and ".join(f"`{shorten(place)}`" for place in places[:MAX_PLACES])
     message = f"one rule cannot set several fields of the wire: nothing else says what {listed} are"
-    return error(
-        "several-fields", message, span, help_=f"relate all but one of them to the holder by rules of their own, or {_by_hand(places)}"
-    )
+    notes = (f"it cannot be solved together with the other relations of these fields: {why}",) if why else ()
+    help_ = f"relate all but one of them to the holder by rules of their own, or {_by_hand(places)}"
+    return error("several-fields", message, span, notes=notes, help_=help_)
 
 
 def unknown_bound(span: Span | None) -> Diagnostic:

@@ -8,7 +8,7 @@ from rosetta_jit.catalogue.mapping import error, shorten
 from rosetta_jit.catalogue.spelling import closest
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
@@ -42,7 +42,9 @@ def no_component(span: Span | None, name: str, names: Sequence[str]) -> Diagnost
 def arguments(span: Span | None, function: str, groups: Sequence[tuple[str, Sequence[str]]], found: int) -> Diagnostic:
     """Too many or too few arguments of a function of several values."""
     wanted = " and ".join(f"{name} ({_listed(names)})" for name, names in groups)
-    help_ = "each is a struct, a list or an array" + (", or all numbers one by one" if len(groups) == 1 else "")
+    numbers = iter("abcdefghijklmnopqrstuvwxyz")
+    shown = ", ".join(f"[{inner}]" if len(names) > 1 else inner for _, names in groups if (inner := _places(names, numbers)))
+    help_ = f"each is a struct, a list or an array: `{function}({shown})`" + (", or all numbers one by one" if len(groups) == 1 else "")
     return error("group-arguments", f"`{function}` takes {wanted}, not {found} values", span, help_=help_)
 
 
@@ -95,3 +97,8 @@ def compared(span: Span | None) -> Diagnostic:
 
 def _listed(names: Sequence[str]) -> str:
     return ", ".join(f"`{name}`" for name in names)
+
+
+def _places(names: Sequence[str], letters: Iterator[str]) -> str:
+    """Places for some numbers, which are called as nothing else is."""
+    return ", ".join(f".{next(letters, 'x')}" for _ in names)

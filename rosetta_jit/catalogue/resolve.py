@@ -209,6 +209,14 @@ NUMBERS = ("int", "uint", "float")
 """What the types of numbers begin with."""
 
 
+def each_element(function: str, span: Span | None) -> str:
+    """How all numbers of an array are converted, where a conversion is given the array."""
+    value = written_at(span)
+    return (
+        f"of each element: `.a[] = {function}({value}[])`, in `rules:` `.a[] <-> {function}({value}[])`; of one, `{function}({value}[0])`"
+    )
+
+
 def _of_elements(value: str, source: str, target: str) -> str:
     """How an array and a single value can be made of each other."""
     if value.startswith(".") and source.startswith("an array of") and not target.startswith("an array"):

@@ -48,7 +48,27 @@ def no_default(span: Span | None, found: str) -> Diagnostic:
     return error("no-default", f"there is no default for {found}", span, why, help_="set each of them")
 
 
-def default_count(span: Span | None, array: str) -> Diagnostic:
+def elements_in_block(span: Span | None) -> Diagnostic:
+    """A default of each element, within a block."""
+    help_ = "write it beside the blocks, or of one element: `default .a[i].b`"
+    return error("rest", "`default .a[].b` stands within no other block", span, "in a block", help_=help_)
+
+
+def no_elements(span: Span | None, place: str) -> Diagnostic:
+    """Elements of which a field is to have its default, and nothing says how many there are."""
+    array = place[: place.rindex("[]")]
+    message = f"no rule sets how many elements `{shorten(array)}` has, so that `{shorten(place)}` cannot be given a default in each of them"
+    return error(
+        "no-count",
+        message,
+        span,
+        "of each element",
+        help_=f"set it: `len({shorten(array)}) = ...`, or the elements: `{shorten(array)}[].x = ...`",
+    )
+
+
+def default_count(span: Span | None, count: str, array: str) -> Diagnostic:
     """The number of elements of an array, left at 0 where there are some."""
-    message = f"this tells how many elements `{shorten(array)}` has, and its default is 0"
-    return error("no-default", message, span, "here", help_="set it to the number of elements: `... = len(...)`")
+    message = f"`{shorten(count)}` tells how many elements `{shorten(array)}` has, and its default is 0"
+    help_ = f"set it to the number of elements: `{shorten(count)} = len(...)`, and in `rules:` `len(...) <-> {shorten(count)}`"
+    return error("no-default", message, span, "here", help_=help_)

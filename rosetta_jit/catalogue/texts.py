@@ -39,6 +39,12 @@ def text_needed(span: Span | None, function: str, found: str) -> Diagnostic:
     return error("text-needed", f"`{function}` takes a text, not {shorten(found)}", span, f"this is {shorten(found)}", help_=hint)
 
 
+def joined_elements(span: Span | None) -> Diagnostic:
+    """Texts of elements, joined."""
+    help_ = 'name a field that is an array of texts, without `[]`: `join(.names, ", ")`; texts within structs are not joined'
+    return error("text-needed", "`join` takes an array of texts as a whole", span, "a text of each element", help_=help_)
+
+
 def no_constant(span: Span | None, name: str, enum: str, known: Collection[str]) -> Diagnostic:
     """A name in quotes that no constant of an enum has."""
     message = f"enum {shorten(enum)} has no constant `{shorten(name)}`"

@@ -11,7 +11,7 @@ import struct
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.typed import INT64, Binary, Call, Const, Convert, LenOf, Local, Reduce
+from rosetta_jit.language.typed import INT64, Binary, Call, Const, Convert, LenOf, Local, Reduce, Unary
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
@@ -156,8 +156,8 @@ def few_bits(value: Expr) -> tuple[int, int] | None:
 
 
 def counts(value: Expr) -> bool:
-    """Whether an int64 is a number of elements or rounds, some bits of an integer, or a sum of these: none is beyond 2**47, as addresses
-    are not, so that the sum of as many as an expression can have is exact in float64.
+    """Whether an int64 is a number of elements or rounds, some bits of an integer, or a sum of these and of integers of at most 32
+    bits: none is beyond 2**47, as addresses are not, so that the sum of as many as an expression can have is exact in float64.
     """
     match value:
         case LenOf():
@@ -177,10 +177,20 @@ def counts(value: Expr) -> bool:
         case Binary("*", Convert(part), Const(int(factor))):
             return isinstance(part.type, Int) and abs(factor) << part.type.bits <= LARGEST_COUNT
         case Binary("+" | "-", left, right):
-            return all(
-                counts(each) or (isinstance(each, Const) and isinstance(each.value, int) and abs(each.value) <= SMALL)
-                for each in (left, right)
-            )
+            return all(counts(each) or _is_small(each) for each in (left, right))
+        case Unary("-", operand):
+            return counts(operand) or _is_small(operand)
+        case _:
+            return False
+
+
+def _is_small(value: Expr) -> bool:
+    """Whether an int64 is an integer of at most 32 bits, or a constant that is as small."""
+    match value:
+        case Const(int(number)):
+            return abs(number) <= SMALL
+        case Convert(part):
+            return isinstance(part.type, Int) and part.type.bits <= 32
         case _:
             return False
 

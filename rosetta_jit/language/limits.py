@@ -178,6 +178,9 @@ MAX_CONDITIONS = 8
 MAX_BLOCKS = 200
 """blocks that conditions in expressions are split into: a sum of them doubles with each"""
 
+MAX_TOGETHER = 6
+"""fields that relations of their sums are solved for together"""
+
 MAX_PARTS = 100_000
 """parts of all expressions that are put in place of fields"""
 

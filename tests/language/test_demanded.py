@@ -60,3 +60,47 @@ def test_the_sign_of_a_zero_that_is_not_packed():
     assert [loss.place for loss in both.decode.mapping.laws.messages.losses] == [".zero"]
     both = pair('("zero" :double) ("a" :double)', HOLDER, rules.replace("0.0", "1.5"))
     assert both.decode.mapping.laws.messages.kind == "exact"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_checksum_is_checked_and_written(backend):
+    made = pair(
+        '("data" :blob) ("check" :int) ("size" :int)',
+        "required bytes data = 1;",
+        """rules:
+  .data <-> .data
+  reject "damaged" when .check != crc(.data, "CRC-16/MODBUS")
+  reject "another size" when len(.data) + 2 != .size
+""",
+        backend,
+    )
+    message = {"data": b"123456789", "check": 0x4B37, "size": 11}
+    assert made.unpack(**message) == {"data": b"123456789"}
+    assert made.pack(data=b"123456789") == message
+    assert [loss.place for loss in made.decode.mapping.laws.messages.losses] == [".size"]  # for a length need not fit an int32
+    for wrong in ({"check": 0}, {"size": 9}):
+        with pytest.raises(rj.DecodeError, match=r"damaged|another size"):
+            made.unpack(**{**message, **wrong})
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_length_that_a_rejection_asks_for(backend):
+    made = pair(
+        '("values" (:list :double))',
+        "required double a = 1; required double b = 2;",
+        'rules:\n  .a <-> .values[0]\n  .b <-> .values[1] * 2.0\n  reject "two values" when len(.values) != 2\n',
+        backend,
+    )
+    assert made.unpack(values=[1.0, 2.0]) == {"a": 1.0, "b": 4.0}
+    assert made.pack(a=1.0, b=4.0) == {"values": [1.0, 2.0]}
+    with pytest.raises(rj.DecodeError, match="two values"):
+        made.unpack(values=[1.0, 2.0, 3.0])
+
+
+def test_what_is_related_or_does_not_fit_is_not_taken_from_a_rejection():
+    wire, holder = '("n" :int) ("size" :uint8)', "required int32 n = 1;"
+    made = pair(wire, holder, 'rules:\n  .n <-> .n\n  reject "no" when .size != .n + 1\n')
+    assert made.pack(n=254) == {"n": 254, "size": 255}
+    assert made.refused(n=255).path == ".size"
+    with pytest.raises(rj.MappingError, match=r"nothing says what `\.other` is"):
+        pair('("n" :int) ("size" :int) ("other" :int)', holder, 'rules:\n  .n <-> .n\n  reject "no" when .size != .other + 1\n')

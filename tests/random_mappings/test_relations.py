@@ -22,12 +22,13 @@ from tests.random_mappings.orders import chosen_element, elementwise_digits, fla
 from tests.random_mappings.refusals import of_elements, rejected, same, same_arrays, within_blocks
 from tests.random_mappings.relations import Part, below_all, body
 from tests.random_mappings.searches import maps, searched, separated
+from tests.random_mappings.sums import sums
 from tests.random_mappings.test_wires import Side, counted, without_cases
 from tests.random_mappings.wires import WIRES, package
 from tests.random_mappings.wrapped import held, repeated, united
 
 MESSAGES = 15
-FORMS = (parameter, date, unit, digits, taken_apart, flags, joined, divided, moment, rejected, within_blocks, same)
+FORMS = (parameter, date, unit, digits, taken_apart, flags, joined, sums, divided, moment, rejected, within_blocks, same)
 ARRAY_FORMS = (listed, widened, octets, searched, maps, separated, of_elements, same_arrays)
 WRAPPED = (held, repeated, united)
 ORDERS = (ordered, padded, flagged, sliced, members, chosen_element, elementwise_digits)

@@ -46,7 +46,7 @@ def are_same(left: Polynomial, right: Polynomial, facts: Facts = NOTHING) -> boo
     if left == right:
         return True
     rest = reduced(subtract(left, right), facts)
-    return _put(rest, list(_products(rest))[:MAX_SUBSTITUTED]) == number(0)
+    return _put(rest, list(_products(rest))[:MAX_SUBSTITUTED]) == number(0) or _without_divisors(rest) == number(0)
 
 
 def reduced(polynomial: Polynomial, facts: Facts) -> Polynomial:
@@ -182,6 +182,34 @@ def _products(polynomial: Polynomial) -> Iterator[Fact]:
     """What was divided, as its quotient times the divisor; what was divided first comes first."""
     for atom in _atoms(polynomial):
         yield from _undone(atom)
+
+
+def _without_divisors(polynomial: Polynomial) -> Polynomial:
+    """A number times the constants that its quotients are divided by: each quotient times its divisor is what was divided."""
+    for _ in range(MAX_SUBSTITUTED):
+        divided = (atom for atom in _atoms(polynomial) if atom.head == "divide" and len(atom.arguments) == 2)
+        found = next(((atom, by) for atom in divided if (by := atom.arguments[1].constant()) and _is_single(atom, polynomial)), None)
+        if found is None:
+            break
+        polynomial = _multiplied(polynomial, *found)
+    return polynomial
+
+
+def _is_single(atom: Atom, polynomial: Polynomial) -> bool:
+    """Whether no term has an atom more than once."""
+    return all(dict(monomial).get(atom, 1) == 1 for monomial, _ in polynomial.terms)
+
+
+def _multiplied(polynomial: Polynomial, quotient: Atom, by: int) -> Polynomial:
+    """A number times the divisor of a quotient."""
+    result = number(0)
+    for monomial, coefficient in polynomial.terms:
+        if (quotient, 1) in monomial:
+            term = multiply(product(monomial - {(quotient, 1)}, coefficient), quotient.arguments[0])
+        else:
+            term = product(monomial, coefficient * by)
+        result = add(result, term)
+    return result
 
 
 def _undone(atom: Atom) -> Iterator[Fact]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import fields
 from rosetta_jit.catalogue import layouts as words
+from rosetta_jit.catalogue import texts as text_words
 from rosetta_jit.language.arrays.counts import ONE, LayoutError, times
 from rosetta_jit.language.arrays.element_loops import Moves, element_of
 from rosetta_jit.language.arrays.filters import filter_of, is_filtered, joined
@@ -146,6 +147,8 @@ class _Expansion:
     def loops(self, rule: Assignment, lengths: Lengths, level: int, *, whole: bool) -> tuple[Rule, ...]:
         if rule.where is not None:
             return self.filtered(rule, lengths, level)
+        if not has_each(rule.place) and (texts := _joined_elements(rule.value)) is not None:
+            raise LayoutError(text_words.joined_elements(texts.span))
         value, padding = _padded(rule.value)
         value, packed = _packed(value)
         is_whole = isinstance(value, Path) if packed else whole or padding
@@ -357,6 +360,12 @@ def _whole(value: Expr) -> Path | Call:
     if isinstance(value, Path | Call):
         return value
     raise LayoutError(words.scalar_needs_each(value.span) if isinstance(value, Literal) else words.not_an_array(value.span))
+
+
+def _joined_elements(value: Expr) -> Expr | None:
+    """The texts of elements that an expression joins."""
+    calls = (part for part in parts(value) if isinstance(part, Call) and part.function == "join")
+    return next((call.arguments[0] for call in calls if call.arguments and has_each(call.arguments[0])), None)
 
 
 def _many(rule: Assignment) -> Diagnostic:

@@ -13,7 +13,7 @@ from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.both_ways.bit_sums import with_sums
 from rosetta_jit.language.both_ways.bits import Bits
 from rosetta_jit.language.both_ways.checks import checks_of
-from rosetta_jit.language.both_ways.demanded import demanded
+from rosetta_jit.language.both_ways.demanded import demanded, known_to_pack
 from rosetta_jit.language.both_ways.inverse import condition_in
 from rosetta_jit.language.both_ways.packing import Packing
 from rosetta_jit.language.both_ways.presence import with_flags
@@ -44,7 +44,8 @@ def derive(mapping: model.Mapping, type_of: TypeOf, constant_of: ConstantOf, pro
     if mapping.rules is None:
         return mapping
     found: list[Diagnostic] = []
-    own = (*(mapping.pack_rules or ()), *demanded(mapping.rules, mapping.pack_rules or (), type_of))
+    wanted = demanded(mapping.rules, mapping.pack_rules or (), type_of)
+    own = (*(mapping.pack_rules or ()), *wanted)
     packing, bits = Packing.of(own, type_of, found), Bits(type_of, constant_of, {})
     rules = bits.rules(with_sums(mapping.rules, packing.is_completed, constant_of))
     pack_rules = packing.block(with_flags(rules, packing.is_completed), ())
@@ -52,6 +53,7 @@ def derive(mapping: model.Mapping, type_of: TypeOf, constant_of: ConstantOf, pro
     if conditional and depth < MAX_CONDITIONS:
         split = tuple(_by_blocks(rule, conditional) for rule in mapping.rules)
         return derive(replace(mapping, rules=split), type_of, constant_of, problems, depth + 1)
+    own = (*(mapping.pack_rules or ()), *known_to_pack(wanted, packing.known))
     problems.extend((*found, *(words.too_many_blocks(span, MAX_CONDITIONS) for span in conditional)))
     return replace(
         mapping,

@@ -62,7 +62,7 @@ class NoInverseError(Exception):
 def solve(expr: Expr, value: Expr, type_of: TypeOf) -> Solution:
     """The field of an expression that has exactly one, so that the expression is ``value``; raises NoInverseError."""
     while not isinstance(expr, Path | Len):
-        expr, value = _step(expr, value, type_of)
+        expr, value = step(expr, value, type_of)
     return Solution(expr, value)
 
 
@@ -146,8 +146,8 @@ def _fields(expr: Expr) -> Iterator[Field]:
         yield from _fields(part)
 
 
-def _step(expr: Expr, value: Expr, type_of: TypeOf) -> tuple[Expr, Expr]:
-    """One operation taken from the expression, and its opposite done to the value."""
+def step(expr: Expr, value: Expr, type_of: TypeOf) -> tuple[Expr, Expr]:
+    """One operation taken from the expression, and its opposite done to the value; raises NoInverseError."""
     match expr:
         case Unary(operator, operand, span):
             return operand, Unary(operator, value, span)

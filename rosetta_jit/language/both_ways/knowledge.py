@@ -55,6 +55,8 @@ class Beside:
     digits: tuple[Digit, ...]
     refused: tuple[tuple[Expr, str], ...] = ()
     """Conditions that must not hold, and why."""
+    is_asked: bool = False
+    """Whether packing asks that unpacking gives the holder's value again."""
 
 
 @dataclass(slots=True)
@@ -68,6 +70,8 @@ class Knowledge:
     sizes: dict[Key, int] = field(default_factory=dict["Key", int])
     budget: Budget = field(default_factory=Budget)
     beside: dict[int, Beside] = field(default_factory=dict[int, "Beside"])
+    unsolved: dict[int, str] = field(default_factory=dict[int, str])
+    """Why a relation is not solved together with others, of which there are as many as fields."""
     flags: dict[Key, Expr] = field(default_factory=dict["Key", "Expr"])
     """What of the holder says whether a field of the wire is there."""
     signals: dict[Call, Expr] = field(default_factory=dict["Call", "Expr"])
@@ -77,7 +81,7 @@ class Knowledge:
         """The same, for a block that may know more."""
         shapes = {shape: list(keys) for shape, keys in self.shapes.items()}
         known = dict(self.setters), dict(self.values), shapes, dict(self.sizes)
-        return Knowledge(self.type_of, *known, self.budget, self.beside, dict(self.flags), dict(self.signals))
+        return Knowledge(self.type_of, *known, self.budget, self.beside, self.unsolved, dict(self.flags), dict(self.signals))
 
     def learn(self, place: Field, value: Expr, loops: Loops) -> None:
         """That a field has a value, unless that is known."""

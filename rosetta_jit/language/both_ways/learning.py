@@ -10,6 +10,7 @@ from rosetta_jit.language.both_ways.image_relations import images_of
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solved
 from rosetta_jit.language.both_ways.inverse_parts import below, part, plain, put_together, rest_of, taken_part
 from rosetta_jit.language.both_ways.knowledge import Beside, Knowledge, Loop, Loops, key_of
+from rosetta_jit.language.both_ways.linear_relations import related, solve_together
 from rosetta_jit.language.both_ways.presence import flag_of, is_kept
 from rosetta_jit.language.both_ways.signal_relations import frames_of, told_in_all
 from rosetta_jit.language.both_ways.text_parts import numbers_of_texts
@@ -17,6 +18,7 @@ from rosetta_jit.language.function import Affine, written
 from rosetta_jit.language.operators import form_of
 from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
 from rosetta_jit.model.mapping import Arranged, For, Relation, When
+from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.walk import Field, fields_of, parts, path_of, rebuilt
 
 if TYPE_CHECKING:
@@ -46,6 +48,7 @@ def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops, is_assigned: 
     later = [each for each in relations if id(each[0]) not in done]
     for _ in range(2):
         later = [each for each in later if not _solve_rest(known, *each)]
+    later = _solve_sums(known, later, is_assigned)
     later = [each for each in later if not _solve_parts(known, *each, is_assigned)]
     for each in later:
         _solve_rest(known, *each)
@@ -109,6 +112,41 @@ def _solve_rest(known: Knowledge, rule: Relation, loops: Loops) -> bool:
     if conditional is not None:
         return _solve_choice(known, rule, conditional, place, loops)
     return _set_by(known, rule, _with_known(rule.value, unknown, known, loops), place, loops)
+
+
+def _solve_sums(
+    known: Knowledge, later: list[tuple[Relation, Loops]], is_assigned: Callable[[Field], bool]
+) -> list[tuple[Relation, Loops]]:
+    """Relations of several fields that are not known, as many as there are of these; gives those that are left."""
+    open_: list[tuple[Relation, Loops, Expr, list[Field]]] = []
+    for rule, loops in later:
+        place = known.replaced(rule.place, loops)
+        unknown = [each for each in fields_in(rule.value) if known.value(each, loops) is None]
+        is_single = isinstance(rule.place, Path) and not fields_of(place, "wire") and condition_in(rule.value) is None
+        if len(unknown) > 1 and is_single and not any(map(is_assigned, unknown)):
+            open_.append((rule, loops, place, unknown))
+    done: set[int] = set()
+    for numbers in related([frozenset((loops, each) for each in unknown) for _, loops, _, unknown in open_]):
+        done |= _solve_sum(known, [open_[number] for number in numbers])
+    return [each for each in later if id(each[0]) not in done]
+
+
+def _solve_sum(known: Knowledge, rules: list[tuple[Relation, Loops, Expr, list[Field]]]) -> set[int]:
+    """Relations that have some fields in common: each field is set by the first relation that has it."""
+    loops = rules[0][1]
+    fields = list(dict.fromkeys(field for _, _, _, unknown in rules for field in unknown))
+    expressions = [(_with_known(rule.value, unknown, known, around), place) for rule, around, place, unknown in rules]
+    try:
+        found = solve_together(expressions, fields, known.type_of)
+    except NoInverseError as error:
+        at = show_expr(error.part)[1:-1] if isinstance(error.part, Binary) else show_expr(error.part)
+        known.unsolved.update({id(rule): f"at `{at}`, {error.why}" for rule, _, _, _ in rules})
+        return set()
+    for solution in found.solutions:
+        _say(known, next(rule for rule, _, _, unknown in rules if solution.place in unknown), solution.place, solution.value, loops)
+    for rule, _, _, _ in rules:
+        known.beside[id(rule)] = Beside(rule, "holder", (), is_asked=found.is_checked)
+    return {id(rule) for rule, _, _, _ in rules}
 
 
 def _solve_parts(known: Knowledge, rule: Relation, loops: Loops, is_assigned: Callable[[Field], bool]) -> bool:

@@ -17,6 +17,7 @@ from rosetta_jit.catalogue import groups, layouts
 from rosetta_jit.language.both_ways.array_relations import with_layouts
 from rosetta_jit.language.both_ways.branches import asked_of_holder, facts_of, test_between
 from rosetta_jit.language.both_ways.checks import agreement, checks_of, guard
+from rosetta_jit.language.both_ways.elements import ignored_elements
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solve
 from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.learning import learn
@@ -26,7 +27,7 @@ from rosetta_jit.language.folding import folded
 from rosetta_jit.language.function import written
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_BLOCKS
-from rosetta_jit.model.expr import Binary, Call, Coerced, Len, List, Literal, Path
+from rosetta_jit.model.expr import Binary, Call, Coerced, Item, Len, List, Literal, Path
 from rosetta_jit.model.mapping import (
     Arranged,
     Assign,
@@ -88,6 +89,8 @@ class Packing:
     """Whether the block is all that a `when` leaves whose blocks are told apart by what is there."""
     blocks: list[Relation] = field(default_factory=list["Relation"])
     written: Mapping[Field, Expr] = field(default_factory=lambda: NOTHING)
+    is_outermost: bool = True
+    """Whether the block is in no `when`."""
 
     @classmethod
     def of(cls, pack_rules: tuple[Rule, ...], type_of: TypeOf, problems: list[Diagnostic]) -> Packing:
@@ -141,6 +144,8 @@ class Packing:
         start, stop = (self.known.replaced(bound, loops) for bound in (rule.start, rule.stop))
         missing = [*fields_of(start, "wire"), *fields_of(stop, "wire")]
         if missing:
+            if self.is_outermost and not loops and (place := ignored_elements(rule)) is not None:
+                return (Default(place, rule.span),)
             if not all(self.is_completed(place) for place in fields_in_rules(rule.body)):
                 self.problems.append(words.unknown_bound(missing[0].span))
             return ()
@@ -160,6 +165,8 @@ class Packing:
         targets = [each for each in fields if self.known.setters.get(key_of(each, loops)[0], (None,))[0] is rule]
         beside = self.known.beside.get(id(rule))
         checks = () if beside is None or (targets and beside.side == "wire") else checks_of(beside)
+        if beside is not None and beside.is_asked:
+            checks = (*checks, *agreement(place, self.known.replaced(rule.value, loops), rule))
         if targets:
             return (*checks, *(found for target in targets for found in self.setting(target, loops, rule)))
         if beside is not None:
@@ -175,7 +182,7 @@ class Packing:
         if conditional is not None and not fields_of(place, "wire"):
             return self.split(rule, conditional, loops)
         if not all(map(self.is_completed, missing)):
-            self.problems.append(_reason(rule, missing, place, self.known.type_of))
+            self.problems.append(_reason(rule, missing, place, self.known))
         return ()
 
     def setting(self, target: Field, loops: Loops, rule: Relation) -> tuple[Rule, ...]:
@@ -269,7 +276,7 @@ class Packing:
 
     def enter(self, block: tuple[Rule, ...], loops: Loops, facts: Mapping[Field, Expr] = NOTHING, owed: _Owed | None = None) -> _Block:
         """A block, with the facts that it has set and the conditions that it is owed checked."""
-        inner = replace(self, known=self.known.inside(), owed=self.owed if owed is None else (*self.owed, owed))
+        inner = replace(self, is_outermost=False, known=self.known.inside(), owed=self.owed if owed is None else (*self.owed, owed))
         learn(inner.known, block, loops, self.is_assigned)
         settings = [inner.fact(place, value, loops) for place, value in facts.items()]
         guards = inner.settle(block, loops)
@@ -312,8 +319,9 @@ class Packing:
 
     def is_unknown(self, known: Expr, written: Expr) -> bool:
         missing = fields_of(known, "wire")
-        if missing and not all(map(self.is_completed, missing)):
-            self.problems.append(words.unknown_condition(written.span, show_expr(missing[0])))
+        unknown = next((each for each in missing if not self.is_completed(each)), None)
+        if unknown is not None:
+            self.problems.append(words.unknown_condition(written.span, show_expr(unknown)))
         return bool(missing)
 
     def is_completed(self, place: Field) -> bool:
@@ -365,15 +373,26 @@ def _rejects(rules: tuple[Rule, ...]) -> bool:
     return bool(rules) and all(isinstance(rule, Reject) for rule in rules)
 
 
-def _reason(rule: Relation, missing: list[Field], place: Expr, type_of: TypeOf) -> Diagnostic:
+def _reason(rule: Relation, missing: list[Field], place: Expr, known: Knowledge) -> Diagnostic:
     """Why a relation cannot be packed."""
     shown = [show_expr(each) for each in missing]
     if fields_of(place, "wire"):
         return words.index_reads(fields_of(place, "wire")[0].span)
     if len(fields_in(rule.value)) > 1:
-        return words.several_fields(rule.value.span, shown)
+        return words.several_fields(rule.value.span, shown, known.unsolved.get(id(rule), ""))
     try:
-        solve(rule.value, rule.place, type_of)
+        solve(rule.value, rule.place, known.type_of)
     except NoInverseError as error:
-        return words.no_inverse(error.part.span, str(error), rule.span, shown[0])
+        return words.no_inverse(error.part.span, str(error), rule.span, shown[0], _other_way(error.part))
     return words.index_reads(missing[0].span)
+
+
+def _other_way(part: Expr) -> str:
+    """How an expression that cannot be turned round is written so that it can."""
+    match part:
+        case Binary("==", value, Literal(1)) if type(part.right) is Literal:
+            return words.bit_of(show_expr(value))
+        case Item(Call() as call) if (group := group_of(call)) is not None:
+            return words.all_numbers(show_expr(call), [each.names[0] for each in group.components])
+        case _:
+            return ""

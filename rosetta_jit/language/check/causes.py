@@ -26,7 +26,7 @@ UNDECLARED = frozenset(("unknown-state", "parameter-type"))
 UNUSED = frozenset(("parameter-unused",))
 """Warnings about a name that a rule may have meant."""
 
-OF_CALLS = frozenset(("arguments", "signal"))
+OF_CALLS = frozenset(("arguments", "group-arguments", "signal"))
 """Mistakes in what a function is given, which leave open what undoes it."""
 
 OF_GROUPS = frozenset(("no-group",))
@@ -44,7 +44,7 @@ OF_TYPES = frozenset(("type-clash", "lossy-conversion"))
 DERIVED = frozenset(("not-comparable",))
 """Mistakes of the checks that relations of one field make of each other."""
 
-OF_INVERSES = frozenset(("no-inverse",))
+OF_INVERSES = frozenset(("no-inverse", "several-fields"))
 """Mistakes of packing alone."""
 
 

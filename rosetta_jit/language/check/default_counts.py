@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import rest as words
-from rosetta_jit.language.places import field_names
+from rosetta_jit.language.places import field_names, shown_place
 from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, SetLength
 from rosetta_jit.model.types import Array, Bytes, Int, Struct
 from rosetta_jit.model.walk import every_rule, fields_of, names_of, path_of
@@ -28,7 +28,7 @@ def defaulted_counts(rules: tuple[Rule, ...], target: Message) -> list[Diagnosti
         owner = _owner(rule.place, target)
         arrays = [each for each in (owner.fields if owner is not None else ()) if (*around, each.name) in filled]
         counted = (each for each in arrays if name in _counts(target.value_type(each.type)))
-        problems.extend(words.default_count(rule.span, f".{each.name}") for each in counted)
+        problems.extend(words.default_count(rule.span, shown_place(rule.place.steps), f".{each.name}") for each in counted)
     return problems
 
 

@@ -25,7 +25,7 @@ from rosetta_jit.language.groups import function_of, group_functions
 from rosetta_jit.language.typed import Call, Const, Convert
 from rosetta_jit.language.units.conversion import check_arguments
 from rosetta_jit.model.expr import Name
-from rosetta_jit.model.types import Bool, Enum, Float, Int
+from rosetta_jit.model.types import Array, Bool, Enum, Float, Int
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -103,6 +103,8 @@ def _conversion(expr: model.Call, target: Type, scope: Scope, type_expr: TypeExp
     rules = rules_between(value.type, target)
     if not rules:
         how = "leave the conversion out: it is of this type already" if same(value.type, target) else ""
+        if isinstance(value.type, Array) and isinstance(value.type.element, Int | Float) and isinstance(target, Int | Float):
+            how = words.each_element(expr.function, value.span)
         scope.problems.append(words.type_clash(value.span, describe(value.type), describe(target), how))
         return None
     rule = _rule(expr, rules, scope)

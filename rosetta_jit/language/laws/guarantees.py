@@ -13,6 +13,7 @@ from rosetta_jit.language.algebra.normal_form import normal
 from rosetta_jit.language.laws.chain import UNSHOWN, Lost, Rounding, come_back
 from rosetta_jit.language.laws.execution_paths import ExecutionPath, UnfollowedError, execution_paths
 from rosetta_jit.language.laws.roundtrip import Result, Trip
+from rosetta_jit.language.laws.sums import comes_back_rounded
 from rosetta_jit.language.laws.writes import FILTERED
 from rosetta_jit.language.limits import MAX_WORK
 from rosetta_jit.language.places import field_names, shown_names, shown_place
@@ -31,6 +32,9 @@ if TYPE_CHECKING:
 
 ORDINARY = (1e-30, 1e30)
 """Magnitudes beyond which a bound is not shown."""
+
+
+IN_SUMS = "it is rounded, by as much as the other fields of its sums are large"
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,4 +184,6 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
             if any(same_number(value, each) for each in (goal, *trip.equal_to(goal))):
                 return None
             found = come_back(value, goal)
-            return Lost("what no relation takes of it comes back as 0") if found == UNSHOWN and is_of_digits(value, goal) else found
+            if found == UNSHOWN and is_of_digits(value, goal):
+                return Lost("what no relation takes of it comes back as 0")
+            return Lost(IN_SUMS) if found == UNSHOWN and comes_back_rounded(value, goal) else found

@@ -9,15 +9,18 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import rest as words
+from rosetta_jit.language import typed
 from rosetta_jit.language.limits import MAX_DEFAULTS
-from rosetta_jit.language.places import field_names, places_in, shown_names, shown_place, value_inside
+from rosetta_jit.language.places import field_names, places_in, rules_within, shown_names, shown_place, value_inside
+from rosetta_jit.language.resolve.element_defaults import elements_of, lengths_in
 from rosetta_jit.language.typed import INT64, Assign, Const, FieldStep, Ignore, IndexStep, Place, SetLength
-from rosetta_jit.language.untouched import never_set, unread
+from rosetta_jit.language.untouched import never_set, unread, untouched
 from rosetta_jit.model.expr import Member, Path
 from rosetta_jit.model.mapping import Default, Rest
 from rosetta_jit.model.types import Array, Bool, Float, Int, Struct, Union
 
 if TYPE_CHECKING:
+    from rosetta_jit.language.resolve.element_defaults import Elements
     from rosetta_jit.language.scope import Message, Scope
     from rosetta_jit.language.typed import Expr, Rule
     from rosetta_jit.language.untouched import Names
@@ -33,18 +36,31 @@ def ignored(rest: Rest, rules: tuple[Rule, ...], scope: Scope) -> list[Ignore[Pl
     return [Ignore(_place(names[len(within) :], scope.base(side), source, rest.span), rest.span) for names in found]
 
 
-def defaulted(rest: Rest, rules: tuple[Rule, ...], broken: list[Names], scope: Scope) -> list[Default[Path]]:
-    """That each field which the rules do not set has its default; what is within the elements of an array has to be set."""
+def defaulted(
+    rest: Rest, rules: tuple[Rule, ...], broken: list[Names], scope: Scope
+) -> tuple[list[Default[Path]], list[tuple[Elements, Span | None]]]:
+    """That each field which the rules do not set has its default, and each within the elements of an array whose length they set."""
     side = scope.target
     target, within = scope.messages[side], field_names(scope.base(side))
-    unset = (names for names in never_set(rules, target, within) if not any(names[: len(each)] == each for each in broken))
-    found = [names for names in unset if not _is_in_array(names[len(within) :], target)]
-    _note(rest, found, within, scope)
-    return [Default(Path(side, tuple(Member(name) for name in names[len(within) :]), rest.span), rest.span) for names in found]
+    single = [names for names in never_set(rules, target, within) if not _is_broken(names, broken)]
+    single = [names for names in single if not _is_in_array(names[len(within) :], target)]
+    touched = {field_names(rule.place) for rule in rules_within(rules) if isinstance(rule, Assign | typed.Default)}
+    known, elements = lengths_in(rules), dict["Names", "Elements"]()
+    for names in untouched(touched, target, target.root, within):
+        inner = elements_of(names, target)
+        if inner is not None and inner.array in known and not _is_broken(names, broken):
+            elements[names] = inner
+    _note(rest, [*single, *elements], within, scope)
+    rules_of_fields = [Default(Path(side, tuple(Member(name) for name in names[len(within) :]), rest.span), rest.span) for names in single]
+    return rules_of_fields, [(each, rest.span) for each in elements.values()]
+
+
+def _is_broken(names: Names, broken: list[Names]) -> bool:
+    return any(names[: len(each)] == each for each in broken)
 
 
 def elements_filled(rules: tuple[Rule, ...], scope: Scope) -> tuple[Rule, ...]:
-    """``edition: 2012``: with 0 in place of each number of an array of known length that no rule sets, where all others are named."""
+    """The rules, with 0 in place of each number of an array of known length that no rule sets, where all others are named."""
     return (*rules, *(made for rule in rules if isinstance(rule, SetLength) for made in _filled(rule, rules, scope)))
 
 

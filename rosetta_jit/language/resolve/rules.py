@@ -24,6 +24,7 @@ from rosetta_jit.language.limits import MAX_DEFAULTS, MAX_PROBLEMS
 from rosetta_jit.language.places import field_names, places_in
 from rosetta_jit.language.resolve.coerced_values import fitted
 from rosetta_jit.language.resolve.defaults import ManyDefaultsError, default_rules, has_array
+from rosetta_jit.language.resolve.element_defaults import is_of_elements, named_elements, with_defaults
 from rosetta_jit.language.resolve.expressions import type_expr, type_index, type_integer
 from rosetta_jit.language.resolve.fitting import fit
 from rosetta_jit.language.resolve.groups import length_rules, paths_of, type_group
@@ -108,19 +109,26 @@ class _Block:
 
     def whole(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[typed.Rule, ...]:
         """All rules of one mapping for a direction."""
-        written = tuple(rule for rule in rules if not isinstance(rule, model.Rest))
+        left = [rule for rule in rules if isinstance(rule, model.Rest) or is_of_elements(rule)]
+        written = tuple(rule for rule in rules if rule not in left)
         found = self.rules(elementwise(numbered(written, scope), scope, self.broken), scope)
-        rests = [rule for rule in rules if isinstance(rule, model.Rest)]
+        rests = [rule for rule in left if isinstance(rule, model.Rest)]
         if scope.is_old and rules:
             found = elements_filled(last_ones(found, scope), scope)
             rests += [] if any(rest.word == "default" for rest in rests) else [model.Rest("default", rules[0].span, written=False)]
-        return (*found, *(made for rest in rests for made in self.rest(rest, found, scope)))
+        found = with_defaults(found, named_elements(left, found, self.broken, scope), scope)
+        for rest in rests:
+            found = self.rest(rest, found, scope)
+        return found
 
-    def rest(self, rule: model.Rest, others: tuple[typed.Rule, ...], scope: Scope) -> list[typed.Rule]:
-        """What the fields that no other rule reads, or sets, are said to be."""
+    def rest(self, rule: model.Rest, others: tuple[typed.Rule, ...], scope: Scope) -> tuple[typed.Rule, ...]:
+        """The rules, and what the fields that none of them reads, or sets, are said to be."""
         if rule.word == "ignore":
-            return [*ignored(rule, others, scope)]
-        return [made for each in defaulted(rule, others, self.broken, scope) for made in self.made(each, scope) if made is not None]
+            return (*others, *ignored(rule, others, scope))
+        others = elements_filled(others, scope)
+        fields, elements = defaulted(rule, others, self.broken, scope)
+        made = [made for each in fields for made in self.made(each, scope) if made is not None]
+        return (*with_defaults(others, elements, scope), *made)
 
     def rules(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[typed.Rule, ...]:
         for rule, behind in pairwise(rules):
@@ -192,6 +200,9 @@ class _Block:
                 return self.when(rule, scope)
             case model.Reject(text, span, pieces, written):
                 return typed.Reject(text, span, type_pieces(pieces, scope, type_expr), written=written)
+            case model.Default() if is_of_elements(rule):
+                scope.problems.append(about_rest.elements_in_block(rule.span))
+                return None
             case model.Ignore(path) | model.Default(path):
                 return self.left_alone(rule, path, scope)
             case model.SetState():

@@ -1,0 +1,76 @@
+"""`default .a[].b` and `default rest`: fields of elements, and elements, that no rule sets."""
+
+from __future__ import annotations
+
+import pytest
+
+import rosetta_jit as rj
+from tests.language.pairs import BACKENDS, pair
+
+POINTS = '("points" (:list (:bottle ("x" :double) ("y" :double) ("label" :string)))) ("n" :int)'
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("rest", ["ignore .points[].y\n  ignore .points[].label\n  ignore .n", "ignore rest"])
+def test_what_is_ignored_of_elements_is_packed_as_its_default(rest: str, backend: str) -> None:
+    made = pair(POINTS, "repeated double x = 1;", f"rules:\n  .x[] <-> .points[].x\n  {rest}\n", backend)
+    points = [{"x": float(x), "y": 1.0, "label": "here"} for x in range(3)]
+    assert made.unpack(points=points, n=2) == {"x": [0.0, 1.0, 2.0]}
+    assert made.pack(x=[0.0, 1.0]) == {"points": [{"x": 0.0, "y": 0.0, "label": ""}, {"x": 1.0, "y": 0.0, "label": ""}], "n": 0}
+    assert made.pack(x=[]) == {"points": [], "n": 0}
+    assert str(made.decode.mapping.laws.holders) == "exact inverse"
+    losses = [loss.place for loss in made.decode.mapping.laws.messages.losses]
+    assert losses == [".points[].y", ".points[].label", ".n"]
+
+
+def test_in_one_direction_and_within_arrays_in_arrays() -> None:
+    made = pair(
+        '("rows" (:list (:bottle ("cells" (:list (:bottle ("a" :int) ("b" :int)))) ("c" :int))))',
+        "repeated int32 sizes = 1;",
+        """unpack-rules:
+  .sizes[] = int32(len(.rows[].cells))
+pack-rules:
+  len(.rows) = len(.sizes)
+  for i from 0 to len(.sizes)
+    len(.rows[i].cells) = .sizes[i]
+    for j from 0 to .sizes[i]
+      .rows[i].cells[j].a = int32(10 * i + j)
+    end
+  end
+  default .rows[].cells[].b
+  default .rows[].c
+""",
+    )
+    rows = [{"cells": [{"a": 0, "b": 0}, {"a": 1, "b": 0}], "c": 0}, {"cells": [{"a": 10, "b": 0}], "c": 0}]
+    assert made.pack(sizes=[2, 1]) == {"rows": rows}
+
+
+def test_elements_that_the_schema_gives_a_default() -> None:
+    files = {
+        "lab/msg/Part.msg": "float64 x\nfloat64 w 1.0\nstring name 'part'\n",
+        "lab/msg/Parts.msg": "Part[] parts\n",
+        "h.proto": 'syntax = "proto3"; message H { repeated double x = 1; }',
+        "m.mapping": 'import "lab/msg/Parts.msg"\nimport "h.proto"\ndata-holder: H\nwire-schema: lab/msg/Parts\n'
+        "rules:\n  .x[] <-> .parts[].x\n  ignore rest\n",
+    }
+    encode = rj.Encoder("m.mapping", schema=files, backend="interpreter")
+    read = rj.Decoder.of("lab/msg/Parts", schema=files, imports=["lab/msg/Parts.msg"], backend="interpreter")
+    assert read(encode(encode.holder_type.from_dict({"x": [2.0]}))).to_dict() == {"parts": [{"x": 2.0, "w": 1.0, "name": "part"}]}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_elements_beside_that_no_key_names(backend: str) -> None:
+    made = pair(
+        '("name" (:list :string)) ("position" (:list :double)) ("velocity" (:list :double))',
+        "required double elbow = 1; required double wrist = 2; required double speed = 3;",
+        """rules:
+  .elbow <-> .position[.name[] = "elbow"]
+  .wrist <-> .position[.name[] = "wrist"]
+  .speed <-> .velocity[.name[] = "wrist"]
+  ignore rest
+""",
+        backend,
+    )
+    packed = made.pack(elbow=1.0, wrist=2.0, speed=3.0)
+    assert packed == {"name": ["elbow", "wrist"], "position": [1.0, 2.0], "velocity": [0.0, 3.0]}
+    assert made.unpack(**packed) == {"elbow": 1.0, "wrist": 2.0, "speed": 3.0}
