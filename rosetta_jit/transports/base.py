@@ -18,7 +18,7 @@ from rosetta_jit.transports.message import Message
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from rosetta_jit.transports.address import Option
+    from rosetta_jit.transports.address import Address, Option
 
     Bytes = bytes | memoryview
     Deliver = Callable[["Message"], object]
@@ -193,6 +193,11 @@ class Sink(End):
 class Caller(End):
     """The asking end of remote procedure calls; a context manager. Transports derive from it."""
 
+    def __init__(self, address: Address, options: Mapping[str, Any]) -> None:
+        super().__init__(str(address))
+        self._most: int = options["max_message"]
+        self._timeout: float = options["timeout"]
+
     def __call__(
         self, data: bytes | bytearray | memoryview, *, timeout: float | None = None, attributes: Mapping[str, Any] | None = None
     ) -> Message:
@@ -203,6 +208,12 @@ class Caller(End):
         TransportError
             Nothing came within ``timeout`` seconds (default: the option `timeout`), or the peer said that it failed.
         """
+        until = monotonic() + (self._timeout if timeout is None else timeout)
+        self.check_size(len(data), self._most)
+        return self.ask(data, until, attributes or {})
+
+    def ask(self, data: bytes | bytearray | memoryview, until: float, attributes: Mapping[str, Any]) -> Message:
+        """Send a question, and wait for its answer until a moment of the monotonic clock; for transports."""
         raise NotImplementedError
 
     def close(self) -> None:
@@ -314,7 +325,7 @@ class Pending:
 
 @dataclass(frozen=True, slots=True)
 class Transport:
-    """One transport; every function as ``module:name``, imported when it is first used. Empty where it lacks a direction.
+    """One transport; every function, or class of ends, as ``module:name``, imported when first used. Empty where it lacks a direction.
 
     Attributes
     ----------

@@ -7,7 +7,6 @@ import re
 import threading
 from collections import deque
 from contextlib import suppress
-from functools import cache
 from itertools import count
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
@@ -15,6 +14,7 @@ from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.connecting import Listener, resolve
 from rosetta_jit.transports.feeding import ProtocolError
 from rosetta_jit.transports.limits import MAX_CONNECTIONS, MAX_TASKS
+from rosetta_jit.transports.processes import per_process
 from rosetta_jit.transports.ros1.tcpros import header, read_header
 from rosetta_jit.transports.ros1.xmlrpc import Answering, ask
 from rosetta_jit.transports.stream import Stream
@@ -238,14 +238,8 @@ class Nodes:
             node.close()
 
 
-def nodes() -> Nodes:
-    """Those of this process."""
-    return _nodes_of(os.getpid())
-
-
-@cache
-def _nodes_of(_: int) -> Nodes:
-    return Nodes()
+nodes = per_process(Nodes)
+"""Those of this process."""
 
 
 def uris_in(value: object) -> list[str]:

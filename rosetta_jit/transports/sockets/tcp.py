@@ -116,11 +116,6 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
     source.opened(lambda: links.close(0))
 
 
-def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
-    """Send to all connections."""
-    return TcpSink(address, options, lost)
-
-
 class TcpSink(Sink):
     """Sends each message to every connection; where there is none yet, `send` waits for one."""
 

@@ -110,11 +110,6 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
     source.opened(close)
 
 
-def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
-    """Send messages to a topic, as CDR."""
-    return Ros2Sink(address, options, lost)
-
-
 class Ros2Sink(Sink):
     """Publishes to a topic, with the attachment that rmw_zenoh demands."""
 
