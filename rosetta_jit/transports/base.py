@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.startup.garbage import imported
+from rosetta_jit.startup.garbage import object_at
 from rosetta_jit.transports.end import End
 from rosetta_jit.transports.limits import MAX_QUEUE_BYTES
 from rosetta_jit.transports.message import Message
@@ -70,7 +70,7 @@ class Source(End):
             self._callback_failed(error)
 
     def taker(self, channel: str, type_: str | None = None, attributes: Mapping[str, Any] | None = None) -> Callable[[Bytes], object]:
-        """What takes the bytes of messages that are alike in all else; for transports. As `arrived`, and quicker."""
+        """A function that takes the bytes of messages, which are alike in all else; quicker than `arrived`. For transports."""
 
         def take(data: Bytes) -> None:
             self.messages += 1
@@ -297,12 +297,12 @@ class Pending:
         self._error: TransportError | None = None
 
     def answer(self, message: Message) -> None:
-        """It came."""
+        """Keep the answer, which has come, and wake the thread that waits for it."""
         self._message = message.keep()
         self._done.set()
 
     def fail(self, error: TransportError) -> None:
-        """It will not come; the first reason counts."""
+        """Keep the reason why no answer will come; the first one counts."""
         if not self._done.is_set():
             self._error = error
             self._done.set()
@@ -373,8 +373,7 @@ class Transport:
 
     def function(self, direction: str) -> Callable[..., Any]:
         """The function for a direction, `subscribe` and so on, or `check`; the caller has seen that there is one."""
-        module, _, name = cast("str", getattr(self, direction)).partition(":")
-        return cast("Callable[..., Any]", getattr(imported(module), name))
+        return cast("Callable[..., Any]", object_at(getattr(self, direction)))
 
 
 def _nothing() -> None:
