@@ -94,9 +94,9 @@ class Loaded:
         number = -1 - result
         if number < len(self.sites):
             return self.sites[number]
-        others = None if self.on_demand is None else self.on_demand.place.sites
-        assert others is not None, "it has run"
-        return others[number - len(self.sites)]
+        later_sites = None if self.on_demand is None else self.on_demand.place.sites
+        assert later_sites is not None, "it has run"
+        return later_sites[number - len(self.sites)]
 
 
 def entry_of(library: Library | None, state: Kept) -> int | None:

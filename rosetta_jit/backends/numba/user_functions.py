@@ -38,12 +38,12 @@ class FunctionTypeError(ValueError):
 
 def compile_function(declared: UserFunction) -> binding.ModuleRef:
     """A module that defines the function under its name as one of the host; raises FunctionTypeError."""
-    given: Any = declared.function
-    options = {key: value for key, value in getattr(given, "targetoptions", {}).items() if key in KEPT}
-    types_of_locals: Any = getattr(given, "locals", {})
+    callee: Any = declared.function
+    options = {key: value for key, value in getattr(callee, "targetoptions", {}).items() if key in KEPT}
+    types_of_locals: Any = getattr(callee, "locals", {})
     decorate: Any = njit
     arguments = tuple(NUMBA_TYPES[each] for each in declared.parameters)
-    function = getattr(given, "py_func", given)
+    function = getattr(callee, "py_func", callee)
 
     def compiled(signature: object) -> Dispatcher:
         return decorate(signature, locals=types_of_locals, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)(function)

@@ -91,13 +91,13 @@ def _cast(array: pa.Array, dtype: np.dtype[Any], path: str) -> NDArray[Any]:
 
 def _rounded(array: pa.Array, dtype: np.dtype[Any], path: str) -> NDArray[Any]:
     """Floats that are what they were."""
-    given = _numpy(array)
+    floats = _numpy(array)
     with np.errstate(over="ignore"):
-        values = given.astype(dtype)
-        same = values.astype(given.dtype) == given
+        values = floats.astype(dtype)
+        same = values.astype(floats.dtype) == floats
     wrong = np.flatnonzero(~same & ~np.isnan(values))
     if len(wrong):
-        raise ValuesError(path, f"value {wrong[0]}, {given[wrong[0]]}, is none of {dtype}; cast the column to round it")
+        raise ValuesError(path, f"value {wrong[0]}, {floats[wrong[0]]}, is none of {dtype}; cast the column to round it")
     return values
 
 
