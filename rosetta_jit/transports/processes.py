@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 
 def per_process(make: Callable[[], T]) -> Callable[[], T]:
-    """What gives the one object of this process, which is made when it is first asked for."""
+    """A function that returns the one object of this process, and makes it at the first call."""
 
     @cache
     def of_process(_: int) -> T:

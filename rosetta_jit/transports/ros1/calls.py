@@ -128,7 +128,7 @@ class RosCaller(Caller):
 
 
 def serve(address: Address, server: Server, options: Mapping[str, Any]) -> None:
-    """Answer the questions to a service; one whose answer fails is told the error's text."""
+    """Answer the calls of a service; a caller whose call fails gets the error's text."""
     node = nodes().enter(options)
     service = Service(node, graph_name(address), server, options)
     try:
@@ -146,7 +146,7 @@ def serve(address: Address, server: Server, options: Mapping[str, Any]) -> None:
 
 
 class Service:
-    """A service of a node, and who asks it now."""
+    """A service of a node, and the callers that are connected now."""
 
     kind = "service"
 

@@ -73,7 +73,7 @@ class Node:
         self._thread.start()
 
     def ask(self, method: str, *arguments: object) -> Any:
-        """What the master answers; the node's name goes first."""
+        """Call a method of the master, with the node's name as the first argument, and return its answer."""
         return ask(self.master, method, self.name, *arguments)
 
     def add(self, part: Part, *, patient: bool) -> None:
@@ -176,7 +176,7 @@ class Node:
         return next((each for each in self._parts if (each.kind, each.name) == (kind, name)), None)
 
     def _methods(self) -> dict[str, Callable[..., object]]:
-        """What other nodes may ask."""
+        """The methods that other nodes may call, by name."""
 
         def of(kind: str) -> list[list[str]]:
             return [[each.name, each.type] for each in self._parts if each.kind == kind]

@@ -94,7 +94,7 @@ class Subscription:
         raise refuse(stream, "a subscriber")
 
     def left(self, stream: Stream, why: str) -> None:
-        """Of connections that others made, there are none."""
+        """Nothing to do: others do not connect to a subscription."""
 
     def close(self) -> None:
         """End all connections."""

@@ -50,7 +50,7 @@ def frames(take: Callable[[memoryview], object], most: int, *, is_client: bool, 
 
 
 class Participant:
-    """Who listens on a scope: gets its events in the loop's thread, or in that of who sends them in this process."""
+    """A listener on a scope. It gets the events in the loop's thread; those that this process sends, in the sender's thread."""
 
     def __init__(self, scope: str, counts: End, take: Callable[[Event], object]) -> None:
         self.scope = scope

@@ -183,7 +183,7 @@ def waited(links: Links, seconds: float) -> tuple[Stream, ...]:
 
 
 def _ignore(_: Stream) -> Machine:
-    """What a receiver sends back is of no interest."""
+    """Read what a receiver sends back, and drop it."""
     from rosetta_jit.transports.feeding import Between
 
     while True:
