@@ -317,7 +317,7 @@ def is_foreign(value: object) -> bool:
 def one_by_one(
     kernel: run.Run, data: NDArray[np.uint8], spans: MessageSpans, first: int, count: int, lanes: Lanes, size: run.Run | None = None
 ) -> int:
-    """What the compiled `many` does, in Python."""
+    """Do in Python what the compiled `many` does."""
     for number in range(first, count):
         begin, end = spans.span(number)
         result = 0 if spans.are_in(number, data.size) else None

@@ -141,7 +141,7 @@ def text_of(type_: String, array: pa.Array, path: str) -> tuple[NDArray[Any], In
 
 
 def blob_of(array: pa.Array, path: str) -> tuple[NDArray[np.uint8], Indices]:
-    """The same of bytes."""
+    """The content of bytes fields, one behind the other, and how many bytes each has."""
     type_ = array.type
     if not (types.is_binary(type_) or types.is_large_binary(type_) or types.is_fixed_size_binary(type_)):
         raise refused("bytes", array, path)

@@ -30,7 +30,7 @@ def is_kept(entry: Entry) -> bool:
 
 
 def take_slots(made: type, entries: Sequence[Entry]) -> KeptFields:
-    """Where a class's objects keep what shows each field. The slots are no attributes any more: only accessors use them."""
+    """The offsets of a class's slots, each of which keeps the view of a field. They stop being attributes: only accessors use them."""
     offsets: dict[str, int] = {}
     for slot in slots(entries):
         offsets[entries[int(slot.rpartition("_")[2])].name] = specs.slot_offset(made.__dict__[slot])
@@ -99,7 +99,7 @@ def _c_name(name: str) -> bytes:
 
 
 def accessors(entry: Entry, *, plain_arrays: bool) -> tuple[str, str]:
-    """The symbols of what reads and writes a field."""
+    """The symbols of the getter and the setter of a field."""
     match entry.node:
         case Scalar(cell):
             scalar = SCALARS[cell.key & 15]

@@ -45,7 +45,7 @@ def handing(
     over: Callable[[Any], Any],
     slow: Callable[..., Any],
 ) -> Callable[..., Any]:
-    """What hands over the objects of a class.
+    """The object that hands over the objects of a class.
 
     Parameters
     ----------

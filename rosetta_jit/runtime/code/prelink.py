@@ -40,7 +40,7 @@ class _UnknownError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _Tables:
-    """Where the jumps and the slots lie, and in which order."""
+    """The places of the jumps and the slots, and their order."""
 
     wants: tuple[str, ...]
     jumps: int
@@ -153,7 +153,7 @@ def _target(kind: int, file: int, symbol: Symbol, places: Mapping[_Key, int], ta
 
 
 def _place(file: int, symbol: Symbol, places: Mapping[_Key, int]) -> int:
-    """Where a symbol of a file lies."""
+    """The place of a file's symbol in memory."""
     if (file, symbol.section) not in places:
         raise _UnknownError  # a number and no place, or something that object files share
     return places[file, symbol.section] + symbol.value

@@ -32,7 +32,7 @@ _ABSENT = object()
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """What a function can reach.
+    """All that a function can reach.
 
     Attributes
     ----------

@@ -67,7 +67,7 @@ def _has_manners(base: type) -> bool:
 
 
 def _member(member: enum.Enum) -> tuple[object, ...]:
-    """Its value, and the number or text that it is itself."""
+    """A member's value, and the number or text that the member is itself, if it is one."""
     number = int.__repr__(member) if isinstance(member, int) else None
     return vars(member).get("_value_"), number, str.__str__(member) if isinstance(member, str) else None
 
