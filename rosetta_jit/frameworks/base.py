@@ -153,7 +153,7 @@ class Framework:
     infer: str = ""
 
     def successors(self, older: str) -> Successors | None:
-        """What became of types of an older framework's in this one; None where it does not follow that."""
+        """The function that says what became of an older framework's types in this one; None where this one does not follow that."""
         return cast("Successors", object_at(self.follows[older])) if older in self.follows else None
 
     def tree(self, source: str, target: str) -> Tree | None:
@@ -180,7 +180,7 @@ class Framework:
         return cast("Encoder", object_at(self.encodings[name]))
 
     def drafts(self) -> Infer | None:
-        """What drafts schemas from captured messages; None where its bytes do not tell where a field begins."""
+        """The function that drafts schemas from captured messages; None where its bytes do not tell where a field begins."""
         return cast("Infer", object_at(self.infer)) if self.infer else None
 
     def reads(self, file: str) -> bool:

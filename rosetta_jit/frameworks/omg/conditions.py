@@ -29,7 +29,7 @@ def holds(tokens: list[Token], end: Token) -> bool:
 
 
 def answer_defined(line: Iterable[Token], macros: Container[str]) -> Iterator[Token]:
-    """The same tokens with `defined X` and `defined(X)` answered, before macros are expanded."""
+    """The tokens of a condition with 0 or 1 in place of each `defined X` and `defined(X)`, before macros are expanded."""
     rest = iter(line)
     for token in rest:
         if token.kind != "word" or token.text != "defined":

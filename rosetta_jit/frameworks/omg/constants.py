@@ -90,7 +90,7 @@ def as_text(value: Value, type_: Type) -> Value:
 
 
 def word_of(type_: Type) -> str:
-    """What a person calls a type."""
+    """The word by which people call a type."""
     return getattr(type_, "spelling", "") or getattr(type_, "name", "") or type(type_).__name__.lower()
 
 
