@@ -70,7 +70,7 @@ class Source(End):
             self._callback_failed(error)
 
     def taker(self, channel: str, type_: str | None = None, attributes: Mapping[str, Any] | None = None) -> Callable[[Bytes], object]:
-        """A function that takes the bytes of messages, which are alike in all else; quicker than `arrived`. For transports."""
+        """A function that takes the bytes of messages, which are alike in all else: quicker than `arrived`; for transports."""
 
         def take(data: Bytes) -> None:
             self.messages += 1
