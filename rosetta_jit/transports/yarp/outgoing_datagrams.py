@@ -187,7 +187,7 @@ class Group:
         return ipaddress.ip_address(self.contact.host).packed + self.contact.port.to_bytes(2, "big")
 
 
-def told_udp(line: socket.socket, name: str, failed: Callable[[], object]) -> Sender:
+def greeted_by_udp(line: socket.socket, name: str, failed: Callable[[], object]) -> Sender:
     """Say hello by a connection, and get the place to send to.
 
     Raises
@@ -211,7 +211,7 @@ def told_udp(line: socket.socket, name: str, failed: Callable[[], object]) -> Se
     return Sender(sock, failed)
 
 
-def told_mcast(line: socket.socket, name: str, group: Group) -> None:
+def greeted_by_mcast(line: socket.socket, name: str, group: Group) -> None:
     """Say hello by a connection, and wait until the reader has joined the group: then it closes.
 
     Raises
