@@ -79,10 +79,10 @@ class Bridge(BridgeBase):
         encode_mapping: str | os.PathLike[str] | None = None,
         **options: Unpack[BridgeOptions],
     ) -> None:
-        given = _given(options)
+        sides = _sides(options)
         read, written = (None if each is None else os.fspath(each) for each in (decode_mapping, encode_mapping))
-        decode = request_of("decode", given["decode"], mapping=read, type_=options.get("decode_type"))
-        encode = request_of("encode", given["encode"], mapping=written, type_=options.get("encode_type"))
+        decode = request_of("decode", sides["decode"], mapping=read, type_=options.get("decode_type"))
+        encode = request_of("encode", sides["encode"], mapping=written, type_=options.get("encode_type"))
         self._make(BridgeRequest(decode, encode))
 
     @classmethod
@@ -166,7 +166,7 @@ class Bridge(BridgeBase):
         self._start(cast("LoadedBridge", answer(request, request.decode.backend, _build, _linked, _interpreted)))
 
 
-def _given(options: BridgeOptions) -> dict[str, Options]:
+def _sides(options: BridgeOptions) -> dict[str, Options]:
     unknown = sorted(set(options) - BridgeOptions.__annotations__.keys())
     if unknown:
         raise TypeError(f"unknown option {unknown[0]!r}; a bridge has options of two halves: decode={{…}} and encode={{…}}")

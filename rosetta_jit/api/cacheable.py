@@ -21,21 +21,21 @@ MAX_REASONS = 10
 
 def doubts(called: Iterable[GivenFunction]) -> tuple[str, ...]:
     """Why functions are not identified, before they are compiled."""
-    return tuple(f"{given.name}: {why}" for given in called for why in given.identity.uncertain)
+    return tuple(f"{callee.name}: {why}" for callee in called for why in callee.identity.uncertain)
 
 
 def doubts_of_compiled(called: Iterable[GivenFunction], addressing: Collection[str]) -> tuple[str, ...]:
     """Why the code of functions cannot be kept that were identified, or are not: they changed meanwhile, or their code has addresses."""
     found: list[str] = []
-    for given in called:
+    for callee in called:
         from rosetta_jit.catalogue import uncertain as words  # most programs call no functions
         from rosetta_jit.runtime.functions.identity import settle
 
-        is_same = settle(given.identity, given.function, given.name)
-        if given.name in addressing:
-            found.append(words.address_in_code(given.name))
-        elif given.identity.digest is not None and not is_same:
-            found.append(words.changed_while_compiled(given.name))
+        is_same = settle(callee.identity, callee.function, callee.name)
+        if callee.name in addressing:
+            found.append(words.address_in_code(callee.name))
+        elif callee.identity.digest is not None and not is_same:
+            found.append(words.changed_while_compiled(callee.name))
     return tuple(found)
 
 

@@ -61,9 +61,9 @@ def programs_of(
 
     A name that ends in ``.mapping``, or is a file's, is that of a mapping; any other one that is no folder's is that of a type.
     """
-    given = plain_parameters(parameters or {})
+    values = plain_parameters(parameters or {})
     found = [
-        Request(direction, mapping=name, encoding=encoding, parameters=given)
+        Request(direction, mapping=name, encoding=encoding, parameters=values)
         if _is_mapping(name)
         else Request(direction, type=name, encoding=encoding)
         for each in names

@@ -154,7 +154,7 @@ class Decoders(_Programs[Decoder]):
         return holder
 
     def encoder(self, **options: Unpack[Options]) -> Encoder:
-        """What encodes the holder as a whole, in an encoding of its own framework: ``decoders.encoder(encoding="ros1")``."""
+        """An encoder of the whole holder, in an encoding of its own framework: ``decoders.encoder(encoding="ros1")``."""
         imported("rosetta_jit.pipeline.bridge")
         from rosetta_jit.pipeline.bridge import closed
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol, cast
 
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.startup.garbage import imported
+from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,14 +46,9 @@ class Backend:
 
 def runner_of(backend: Backend) -> Runner:
     """What makes kernels callable."""
-    return cast("Runner", _named(backend.runner))
+    return cast("Runner", object_at(backend.runner))
 
 
 def text_of(backend: Backend, kernel: Kernel) -> str:
     """A kernel as the backend's text."""
-    return cast("Callable[[Kernel], str]", _named(backend.text))(kernel)
-
-
-def _named(place: str) -> object:
-    module, _, name = place.partition(":")
-    return getattr(imported(module), name)
+    return cast("Callable[[Kernel], str]", object_at(backend.text))(kernel)

@@ -1,4 +1,4 @@
-"""What a route knows of the types of its messages, and the ends of channels want to know, where addresses do not say it."""
+"""The options by which a route tells the ends of its channels the types of its messages, where the addresses do not say them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def wanted(source: str, translate: Translator) -> dict[str, Any]:
 
 
 def served(place: str, request: Translator, reply: Translator) -> dict[str, Any]:
-    """Options for a server: the service of ROS 1 whose requests are read, or the type of what RSB is answered."""
+    """Options for a server: for ROS 1 the service whose requests are read, for RSB the type of the answers."""
     return wanted(place, request) or announced(place, reply)
 
 

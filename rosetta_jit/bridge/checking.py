@@ -1,4 +1,4 @@
-"""What can be said of a bridge's file without running it: whether its addresses and mappings are right, and what each route does."""
+"""Checks a bridge's file without running it: whether its addresses and mappings are right, and what each route does."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def _checked(text: str, direction: str, span: Span, found: list[Diagnostic], *, 
 
 
 def _misplaced(address: Address, transport: Transport, span: Span) -> Iterator[Diagnostic]:
-    """The mistake in what an address names, where there is one."""
+    """The mistake in the channel that an address names; None where there is none."""
     try:
         transport.function("check")(address)
     except AddressError as error:
@@ -118,8 +118,8 @@ def _compiled(
     try:
         return translator(translation, configuration.search_path) if route is None else translator_of(route, configuration.search_path)
     except (RosettaError, TypeError, ValueError) as error:
-        given: dict[str, Any] = json.loads(translation.text)
-        keys = [key for key in ("decode_mapping", "encode_mapping", "decode_type", "encode_type", "between") if key in given]
+        arguments: dict[str, Any] = json.loads(translation.text)
+        keys = [key for key in ("decode_mapping", "encode_mapping", "decode_type", "encode_type", "between") if key in arguments]
         path = (*here, "mapping") if keys[:1] == ["decode_mapping"] else (*here, *keys[:1])
         found.append(words.bad_mapping(configuration.spans.of(*path), str(error)))
         return Unchanged()
@@ -162,14 +162,14 @@ def _explained_rpc(rpc: Rpc, search_path: tuple[str, ...]) -> dict[str, Any]:
 def _by(translation: Translation) -> str:
     if not translation.text:
         return "as they are"
-    given: dict[str, Any] = json.loads(translation.text)
-    if "between" in given:
-        return " to ".join(map(str, given["between"]))
+    arguments: dict[str, Any] = json.loads(translation.text)
+    if "between" in arguments:
+        return " to ".join(map(str, arguments["between"]))
     sides = (("decode", "read"), ("encode", "write"))
     parts: list[str] = []
     for side, verb in sides:
-        what = given.get(f"{side}_mapping") or given.get(f"{side}_type") or "the data-holder as it is"
-        encoding = given.get(side, {}).get("encoding")
+        what = arguments.get(f"{side}_mapping") or arguments.get(f"{side}_type") or "the data-holder as it is"
+        encoding = arguments.get(side, {}).get("encoding")
         parts.append(f"{verb} {what}{f' ({encoding})' if encoding else ''}")
     return ", ".join(parts)
 

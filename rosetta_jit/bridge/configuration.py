@@ -225,14 +225,14 @@ class _Reading:
 
     def sources(self, table: dict[str, Any], place: tuple[str | int, ...]) -> tuple[tuple[str, str], ...]:
         """The address of each wire of a route that joins several."""
-        given = cast("dict[str, object]", table.get("sources", {}))
-        if "sources" in table and (not given or not all(isinstance(each, str) and "*" not in each for each in given.values())):
+        addresses = cast("dict[str, object]", table.get("sources", {}))
+        if "sources" in table and (not addresses or not all(isinstance(each, str) and "*" not in each for each in addresses.values())):
             self.problems.append(words.bad_value(self.spans.of(*place, "sources"), "sources", KINDS["sources"][1]))
-        if given and not ("mapping" in table or "decode_mapping" in table):
+        if addresses and not ("mapping" in table or "decode_mapping" in table):
             self.problems.append(words.missing_key(self.spans.of(*place, "sources"), "this route", "a `mapping` of several wires"))
-        if "on" in table and table["on"] not in given:
+        if "on" in table and table["on"] not in addresses:
             self.problems.append(words.bad_value(self.spans.of(*place, "on"), "on", "one of the names in `sources`"))
-        return tuple((wire, str(address)) for wire, address in given.items())
+        return tuple((wire, str(address)) for wire, address in addresses.items())
 
     def rpc(self, table: dict[str, Any], number: int) -> Rpc:
         place = ("rpc", number)
@@ -252,18 +252,18 @@ class _Reading:
     def translation(self, table: Mapping[str, Any], place: tuple[str | int, ...]) -> Translation:
         import json
 
-        given = {key: table[key] for key in TRANSLATION if key in table}
+        arguments = {key: table[key] for key in TRANSLATION if key in table}
         ways = (
             ("mapping", "decode_mapping", "decode_type"),
             ("decode_mapping", "decode_type"),
             ("encode_mapping", "encode_type"),
             ("between", *(key for key in TRANSLATION if key != "between")),
         )
-        for one, other in [(one, other) for one, *others in ways for other in others if {one, other} <= given.keys()]:
+        for one, other in [(one, other) for one, *others in ways for other in others if {one, other} <= arguments.keys()]:
             self.problems.append(words.two_ways(self.spans.of(*place, other), one, other))
-        if "mapping" in given:
-            given["decode_mapping"] = given.pop("mapping")
-        return Translation(json.dumps(given, sort_keys=True, default=str) if given else "")
+        if "mapping" in arguments:
+            arguments["decode_mapping"] = arguments.pop("mapping")
+        return Translation(json.dumps(arguments, sort_keys=True, default=str) if arguments else "")
 
 
 def _takes(key: str, value: Any) -> bool:

@@ -34,7 +34,7 @@ LINGER_S = 5.0
 
 
 class Inlet:
-    """What brings the messages of one wire to a route that joins several."""
+    """An entrance to a route that joins several wires: it takes the messages of one of them."""
 
     def __init__(self, live: LiveRoute, wire: str) -> None:
         self.live, self.wire = live, wire

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.bridge.limits import MAX_ASKING
 from rosetta_jit.errors import TransportError
-from rosetta_jit.transports.conversation import Conversation
+from rosetta_jit.transports.http_server import Handler, QuestionServer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -28,10 +27,6 @@ REASONS = {
     "failed": ("messages_failed_total", "cause", "Messages that could not be translated."),
 }
 CONTENT = "text/plain; version=0.0.4; charset=utf-8"
-
-
-ASKING_S = 5.0
-"""How long one question may take."""
 
 
 def text(snapshot: list[dict[str, Any]]) -> str:
@@ -106,7 +101,7 @@ class MetricsServer:
     def __init__(self, place: str, snapshot: Snapshot) -> None:
         host, _, port = place.rpartition(":")
         try:
-            self._server = _Server((host or "127.0.0.1", int(port)), _Handler)
+            self._server = _Server((host or "127.0.0.1", int(port)), _Handler, MAX_ASKING)
         except (OSError, ValueError, OverflowError) as error:
             raise TransportError("taken", place, f"metrics cannot be served there: {error}") from None
         self._server.snapshot = snapshot
@@ -120,51 +115,14 @@ class MetricsServer:
         self._server.server_close()
 
 
-class _Server(ThreadingHTTPServer):
+class _Server(QuestionServer):
     snapshot: Snapshot
-    daemon_threads = True
-
-    def __init__(self, place: tuple[str, int], handler: type[BaseHTTPRequestHandler]) -> None:
-        super().__init__(place, handler)
-        self._room = threading.Semaphore(MAX_ASKING)
-
-    def get_request(self) -> tuple[Any, Any]:
-        """The next connection, for one question."""
-        sock, place = super().get_request()
-        return Conversation.over(sock, ASKING_S), place
-
-    def process_request(self, request: Any, client_address: Any) -> None:
-        """Answer in a thread of its own, unless too many ask at the same time; then hang up."""
-        if self._room.acquire(blocking=False):
-            super().process_request(request, client_address)
-        else:
-            self.shutdown_request(request)
-
-    def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Answer, in that thread."""
-        try:
-            super().process_request_thread(request, client_address)
-        finally:
-            self._room.release()
-
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        """Whoever asks may go away before the answer has come, and nobody wants to read of it."""
 
 
-class _Handler(BaseHTTPRequestHandler):
-    timeout = ASKING_S
-
-    def do_GET(self) -> None:
+class _Handler(Handler):
+    def do_GET(self) -> None:  # noqa: N802 - http.server's name
         """Answer one question."""
         if self.path.partition("?")[0] not in ("/", "/metrics"):
             self.send_error(404)
             return
-        body = text(cast("_Server", self.server).snapshot()).encode()
-        self.send_response(200)
-        self.send_header("Content-Type", CONTENT)
-        self.send_header("Content-Length", str(len(body)))
-        self.end_headers()
-        self.wfile.write(body)
-
-    def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - http.server's name
-        """Say nothing: whoever watches asks every few seconds."""
+        self.answer(CONTENT, text(cast("_Server", self.server).snapshot()).encode())

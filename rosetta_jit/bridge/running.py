@@ -215,7 +215,7 @@ class Running:
         wait(begun, wait_s)
 
     def _try_all(self, key: str, routes: list[tuple[str, Live]]) -> None:
-        """Those of one source, one after the other."""
+        """Try to open the routes of one source, one after the other."""
         try:
             for name, each in routes:
                 self._try(name, each)

@@ -42,7 +42,7 @@ class LiveService:
         return {f"{side}.{name}": value for side, translate in sides for name, value in translate.state().items()}
 
     def answer(self, message: Message) -> bytes:
-        """Ask the other service. What fails is told to who asked."""
+        """Ask the other service, and return its answer. An error goes back to the caller."""
         begun, counts = perf_counter_ns(), self.counts
         counts.taken += 1
         counts.bytes_in += len(message.data)

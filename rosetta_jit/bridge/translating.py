@@ -100,7 +100,7 @@ class Bridged:
         self.program: Callable[[Any], bytes] | None = None if self.keeps else bridge
 
     def __call__(self, message: Any, wire: str = "", is_due: Callable[[], bool] = always) -> bytes | memoryview | None:
-        """What the message becomes."""
+        """The translated message."""
         del wire
         if not is_due():
             return None
@@ -126,7 +126,7 @@ class Bridged:
         return {name: value for half, variables in halves.items() for name, value in _shown(half, variables).items()}
 
     def announced(self, framework: str, half: Half) -> dict[str, str]:
-        """As the bridge says."""
+        """See `rosetta_jit.Bridge.announced`."""
         return self._bridge.announced(framework, half)
 
 
@@ -176,7 +176,7 @@ class Joined:
             }
 
     def announced(self, framework: str, half: Half) -> dict[str, str]:
-        """What is written; each wire is of a type of its own."""
+        """The type that is written, alone: each wire that is read has a type of its own."""
         return self._encode.announced(framework) if half == "encode" else {}
 
 
@@ -198,45 +198,45 @@ def translator(translation: Translation, search_path: tuple[str, ...]) -> Transl
 
 
 def differences(translation: Translation, search_path: tuple[str, ...]) -> tuple[str, ...]:
-    """As of `rosetta_jit.Bridge.differences`. Raises as `translator`."""
+    """See `rosetta_jit.Bridge.differences`. Raises what `translator` raises."""
     return _bridge(json.loads(translation.text), search_path).differences if translation.text else ()
 
 
-def _bridge(given: dict[str, Any], search_path: tuple[str, ...]) -> Bridge:
+def _bridge(arguments: dict[str, Any], search_path: tuple[str, ...]) -> Bridge:
     from rosetta_jit.api.bridges import Bridge
 
-    if "between" in given:
-        return Bridge.between(*given["between"])
-    options = _options(given, search_path)
-    one, other = given.get("decode_mapping"), given.get("encode_mapping")
-    if one is None and other is None and "decode_type" in given:
-        return Bridge.of(given["decode_type"], given.get("encode_type"), **options)
-    types = {key: given[key] for key in ("decode_type", "encode_type") if key in given}
+    if "between" in arguments:
+        return Bridge.between(*arguments["between"])
+    options = _options(arguments, search_path)
+    one, other = arguments.get("decode_mapping"), arguments.get("encode_mapping")
+    if one is None and other is None and "decode_type" in arguments:
+        return Bridge.of(arguments["decode_type"], arguments.get("encode_type"), **options)
+    types = {key: arguments[key] for key in ("decode_type", "encode_type") if key in arguments}
     return Bridge(one, other, **options, **types)
 
 
 def translator_of(route: Route, search_path: tuple[str, ...]) -> Translator:
-    """What a file says of the messages of a route. Raises as `translator`."""
+    """The translator that a file describes for a route. Raises what `translator` raises."""
     if not route.sources:
         return translator(route.translation, search_path)
     from rosetta_jit.api.programs import Encoder
     from rosetta_jit.api.wires import Decoders
 
-    given: dict[str, Any] = json.loads(route.translation.text)
-    options = _options(given, search_path)
-    decoders = Decoders(given["decode_mapping"], **options["decode"])
+    arguments: dict[str, Any] = json.loads(route.translation.text)
+    options = _options(arguments, search_path)
+    decoders = Decoders(arguments["decode_mapping"], **options["decode"])
     for wire in decoders:
         if wire not in dict(route.sources):
             raise ValueError(f"`sources` has no address for wire `{wire}`")
     for wire, _ in route.sources:
         if wire not in decoders:
             raise ValueError(f"the mapping has no wire `{wire}`: its wires are {', '.join(decoders)}")
-    if "encode_mapping" in given:
-        return Joined(decoders, Encoder(given["encode_mapping"], **options["encode"]), route.on)
-    if "encode_type" in given:
-        return Joined(decoders, Encoder.of(given["encode_type"], **options["encode"]), route.on)
+    if "encode_mapping" in arguments:
+        return Joined(decoders, Encoder(arguments["encode_mapping"], **options["encode"]), route.on)
+    if "encode_type" in arguments:
+        return Joined(decoders, Encoder.of(arguments["encode_type"], **options["encode"]), route.on)
     return Joined(decoders, decoders.encoder(**options["encode"]), route.on)
 
 
-def _options(given: dict[str, Any], search_path: tuple[str, ...]) -> dict[str, Any]:
-    return {side: {"search_path": search_path, **given.get(side, {})} for side in ("decode", "encode")}
+def _options(arguments: dict[str, Any], search_path: tuple[str, ...]) -> dict[str, Any]:
+    return {side: {"search_path": search_path, **arguments.get(side, {})} for side in ("decode", "encode")}

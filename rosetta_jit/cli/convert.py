@@ -113,14 +113,14 @@ def _misplaced(arguments: argparse.Namespace, kind: Kind) -> list[str]:
     of_decoded = {"--on-error": arguments.on_error != "stop"}
     match kind:
         case "table":
-            given = of_folders | of_logs
+            idle = of_folders | of_logs
         case "folder":
-            given = of_logs
+            idle = of_logs
         case "log" if arguments.mapping and not arguments.to:
-            given = of_tables | of_folders
+            idle = of_tables | of_folders
         case "log":
-            given = of_tables | of_folders | of_decoded | ({"--mapping": arguments.mapping} if arguments.to else {})
-    return [option for option, value in given.items() if value]
+            idle = of_tables | of_folders | of_decoded | ({"--mapping": arguments.mapping} if arguments.to else {})
+    return [option for option, value in idle.items() if value]
 
 
 def _options(arguments: argparse.Namespace) -> dict[str, Any]:

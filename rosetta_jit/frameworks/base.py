@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, Protocol, cast
 
 from rosetta_jit.model.types import name_parts
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.startup.garbage import imported
+from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -153,35 +153,35 @@ class Framework:
     infer: str = ""
 
     def successors(self, older: str) -> Successors | None:
-        """What became of types of an older framework's in this one; None where it does not follow that."""
-        return cast("Successors", _found(self.follows[older])) if older in self.follows else None
+        """The function that says what became of an older framework's types in this one; None where this one does not follow that."""
+        return cast("Successors", object_at(self.follows[older])) if older in self.follows else None
 
     def tree(self, source: str, target: str) -> Tree | None:
         """What messages of one encoding become in another one, if they describe themselves and differ in codes alone."""
-        return cast("TreeOf", _found(self.transcoding))(source, target) if self.transcoding else None
+        return cast("TreeOf", object_at(self.transcoding))(source, target) if self.transcoding else None
 
     definition: str = ""
     announcement: str = ""
 
     def probes(self) -> Probes:
         """The probes of its features, none where it offers none."""
-        return cast("Probes", _found(self.features)) if self.features else {}
+        return cast("Probes", object_at(self.features)) if self.features else {}
 
     def definition_of(self, struct: Struct, schema: Schema) -> Definition | None:
         """The definition of a struct as logs carry it; None where that cannot be had."""
-        return cast("Define", _found(self.definition))(struct, schema) if self.definition else None
+        return cast("Define", object_at(self.definition))(struct, schema) if self.definition else None
 
     def announced(self, struct: Struct, schema: Schema) -> dict[str, str]:
         """What a publisher says of a struct, by the names of transports' options."""
-        return cast("Announce", _found(self.announcement))(struct, schema) if self.announcement else {}
+        return cast("Announce", object_at(self.announcement))(struct, schema) if self.announcement else {}
 
     def encoding(self, name: str) -> Encoder:
         """The encoding of a name."""
-        return cast("Encoder", _found(self.encodings[name]))
+        return cast("Encoder", object_at(self.encodings[name]))
 
     def drafts(self) -> Infer | None:
-        """What drafts schemas from captured messages; None where its bytes do not tell where a field begins."""
-        return cast("Infer", _found(self.infer)) if self.infer else None
+        """The function that drafts schemas from captured messages; None where its bytes do not tell where a field begins."""
+        return cast("Infer", object_at(self.infer)) if self.infer else None
 
     def reads(self, file: str) -> bool:
         """Whether it has a front end for a file of that name."""
@@ -206,7 +206,7 @@ class Framework:
     def file_of(self, type_: str, text: str) -> str:
         """The name of the file that a text would be which comes without one, and declares a type."""
         if self.texts:
-            return cast("FileOf", _found(self.texts))(self, type_, text)
+            return cast("FileOf", object_at(self.texts))(self, type_, text)
         return "/".join(name_parts(type_)) + next(iter(self.idl))
 
     def front_end(self, file: str) -> FrontEnd:
@@ -220,16 +220,11 @@ def manners_of(place: str) -> Manners:
         from rosetta_jit.runtime.holder import PLAIN
 
         return PLAIN
-    return cast("Manners", _found(place))
+    return cast("Manners", object_at(place))
 
 
 def _lazy(place: str) -> FrontEnd:
     def parse(*arguments: object) -> Schema:
-        return cast("FrontEnd", _found(place))(*arguments)  # pyright: ignore[reportArgumentType] - passed on as they are
+        return cast("FrontEnd", object_at(place))(*arguments)  # pyright: ignore[reportArgumentType] - passed on as they are
 
     return parse
-
-
-def _found(place: str) -> object:
-    module, _, name = place.partition(":")
-    return getattr(imported(module), name)

@@ -96,8 +96,8 @@ def _type_measured(call: model.Call, arguments: list[typed.Expr], scope: Scope) 
     known = typed_integers(numbers, scope)
     if known is None:
         return None
-    given = known if len(known) == 4 else [*known, typed.Const(DEFAULTS[named], INT64)]
-    return typed.Call(call.function, (image, typed.Const(named, String()), *given), Bytes(), call.span)
+    measures = known if len(known) == 4 else [*known, typed.Const(DEFAULTS[named], INT64)]
+    return typed.Call(call.function, (image, typed.Const(named, String()), *measures), Bytes(), call.span)
 
 
 def typed_integers(numbers: list[typed.Expr], scope: Scope) -> list[typed.Expr] | None:
@@ -141,9 +141,9 @@ def bytes_of(value: typed.Expr, values: Evaluation) -> Extent:
             _check_measures(source, measures, values)
             size = _host_answer(MEASURE, (index(SIZE),), (source,), values)
             return _filled(DECOMPRESS, (), source, size, values)
-        case typed.Call("compress", (pixels, typed.Const(str(format_)), *given)):
+        case typed.Call("compress", (pixels, typed.Const(str(format_)), *measures)):
             source = bytes_of(pixels, values)
-            numbers = (index(FORMATS.index(format_)), *(values.writer.let("number", values.of(each)) for each in given))
+            numbers = (index(FORMATS.index(format_)), *(values.writer.let("number", values.of(each)) for each in measures))
             size = _host_answer(COMPRESSED, numbers, (source,), values)
             return _filled(COMPRESS, numbers, source, size, values)
         case typed.Call():

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from functools import cache
-from importlib import import_module
 from typing import TYPE_CHECKING, Protocol, cast
 
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -61,8 +61,7 @@ class Language:
 
     def files(self, unit: Unit) -> dict[str, str]:
         """The texts of a unit's files by their names."""
-        module, _, name = self.printer.partition(":")
-        return cast("Files", getattr(import_module(module), name))(unit)
+        return cast("Files", object_at(self.printer))(unit)
 
 
 LANGUAGES = (

@@ -75,3 +75,10 @@ def type_of(expr: ir.Expr) -> ir.Scalar:
             return "u64"
         case ir.Scale():
             return "i64"
+
+
+def is_wider(target: ir.Scalar, source: ir.Scalar) -> bool:
+    """Whether all values of an integer type are ones of another."""
+    if target[0] == source[0]:
+        return ir.WIDTH[target] >= ir.WIDTH[source]
+    return target[0] == "i" and ir.WIDTH[target] > ir.WIDTH[source]

@@ -10,7 +10,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING, Protocol, cast
 
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.startup.garbage import imported
+from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -205,5 +205,4 @@ class Format:
 
     def opener(self) -> Open:
         """What opens it, imported when it is needed."""
-        module, _, name = self.open.partition(":")
-        return cast("Open", getattr(imported(module), name))
+        return cast("Open", object_at(self.open))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.file_errors import named, whole
-from rosetta_jit.startup.garbage import imported
+from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -60,17 +60,16 @@ def written(path: Path, format_: str | None = None) -> Generator[Writer]:
         No format has such files, or the folder is there already.
     """
     if format_ is not None:
-        module, _, name = FOLDERS[format_].partition(":")
+        make = object_at(FOLDERS[format_])
         with whole_folder(path) as folder:
-            writer: Writer = getattr(imported(module), name)(str(path), folder)
+            writer: Writer = make(str(path), folder)
             yield writer
             writer.finish()
         return
     place = next((each for suffix, each in WRITERS.items() if path.name.endswith(suffix)), None)
     if place is None:
         raise LogError((words.no_writer(str(path), WRITERS),))
-    module, _, name = place.partition(":")
-    make = getattr(imported(module), name)
+    make = object_at(place)
     with whole(path) as part, part.open("wb") as file:
         writer = make(str(path), file)
         yield writer

@@ -103,7 +103,7 @@ class _Conversion:
         self.writer.expect(condition, "image", self.where, why, line=self.line)
 
     def check(self, size: Expr) -> None:
-        """That the pixels are as many as the width, the height and the step say."""
+        """Check that there are as many pixels as the width, the height and the step say."""
         picture = self.picture
         for side, name in ((picture.width, "width"), (picture.height, "height")):
             self.must(Compare("ge", side, index(2)), f"a {name} below 2")
@@ -118,7 +118,7 @@ class _Conversion:
         self.must(Compare("eq", size, wanted), "the pixels are not as many as the width, the height and the step say")
 
     def source(self, number: Expr, size: Expr) -> Expr:
-        """Where a row of the picture begins."""
+        """The byte at which a row of the picture begins."""
         apart = self.writer.checked("mul", number, self.picture.step, self.where)
         return self.begin(self.picture.pixels, apart, size)
 
@@ -129,7 +129,7 @@ class _Conversion:
         return self.writer.let("begin", Binary("add", view.first, apart))
 
     def target(self, view: View, number: Expr, row: Expr) -> Expr:
-        """Where a row of the result begins."""
+        """The byte at which a row of the result begins."""
         return self.begin(view, self.writer.checked("mul", number, row, self.where), row)
 
     # --- pixels ----------------------------------------------------------------------------------------------------------
@@ -194,7 +194,7 @@ class _Conversion:
     # --- YUV of RGB --------------------------------------------------------------------------------------------------------
 
     def check_rgb(self, size: Expr) -> None:
-        """That the pixels of RGB are as many as the width, the height and the step say."""
+        """Check that there are as many pixels of RGB as the width, the height and the step say."""
         picture = self.picture
         for side, name in ((picture.width, "width"), (picture.height, "height")):
             self.must(Compare("ge", side, index(2)), f"a {name} below 2")

@@ -33,7 +33,7 @@ class Elements:
 
     @property
     def writer(self) -> Writer:
-        """Where statements go."""
+        """The writer that takes the statements."""
         return self.values.writer
 
     @contextmanager

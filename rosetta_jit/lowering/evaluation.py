@@ -44,7 +44,7 @@ class Source(Protocol):
         ...
 
     def address(self, place: typed.Place, values: Evaluation) -> Address:
-        """Where the bytes of a string or bytes field begin."""
+        """The address of the bytes of a string or bytes field."""
         ...
 
     def present(self, place: typed.Place, values: Evaluation) -> Expr:
@@ -57,7 +57,7 @@ class Evaluation(Protocol):
 
     @property
     def writer(self) -> Writer:
-        """Where statements go."""
+        """The writer that takes the statements."""
         ...
 
     @property

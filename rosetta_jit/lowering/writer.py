@@ -215,11 +215,11 @@ class Writer:
         return ir.Local(type_, self.fresh(name))
 
     def within(self, at: ir.Expr) -> tuple[ir.Expr, ir.Expr]:
-        """That a place is one of the message."""
+        """The claim that a place lies in the message."""
         return ir.Compare("ge", at, BEGIN), ir.Compare("le", at, END)
 
     def behind(self, at: ir.Expr, after: ir.Expr) -> tuple[ir.Expr, ...]:
-        """That one place of the message lies behind another."""
+        """The claim that one place of the message lies behind another."""
         return *self.within(after), ir.Compare("gt", after, at)
 
     def call(self, name: str, make: Callable[[Writer], Contract], arguments: tuple[ir.Expr, ...], where: Where) -> tuple[ir.Local, ...]:
@@ -260,7 +260,7 @@ class Writer:
         return self.var(stem, self.position)
 
     def position_invariant(self, at: ir.Local) -> tuple[ir.Expr, ...]:
-        """What always holds of a position: between the begin and the end, or small enough to add to."""
+        """The invariant of a position: it lies between the begin and the end, or is small enough to add to."""
         if self.direction == "size":
             return ir.Compare("ge", at, index(0)), ir.Compare("le", at, index(MAX_SIZE))
         return ir.Compare("ge", at, BEGIN), ir.Compare("le", at, END)

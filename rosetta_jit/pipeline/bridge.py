@@ -46,7 +46,7 @@ class BridgeBuild:
 
     @cached_property
     def halves(self) -> tuple[Build, Build]:
-        """What decodes and what encodes. MappingError where they do not meet."""
+        """The decoding and the encoding half. Raises MappingError where the holder of one is not that of the other."""
         decode, encode = self.request.decode, self.request.encode
         if is_open(decode) and is_open(encode):
             raise MappingError((words.half_a_bridge(),))
@@ -69,7 +69,7 @@ class BridgeBuild:
         return tuple(line for half, is_read in pairs if isinstance(half, SuccessorBuild) for line in half.differences(is_read=is_read))
 
     def _referring(self, build: Build) -> Build:
-        """What decodes, with bytes left in the message where nothing else is written to their lane."""
+        """The decoding half. It leaves bytes in the message where no rule writes other bytes to their lane."""
         references = References()
         referring = build.referring(references)
         written = _written_lanes(referring.lowered)
@@ -97,7 +97,7 @@ class BridgeBuild:
 
     @property
     def backend(self) -> Backend:
-        """The one that was asked for of what decodes."""
+        """The backend of the decoding half."""
         return self.halves[0].backend
 
     @cached_property

@@ -165,7 +165,7 @@ class Build:
 
     @property
     def _span(self) -> Span | None:
-        """Where the program as a whole is to be blamed."""
+        """The place to show for errors of the program as a whole."""
         return self.types.wire.span if self.types.rules is None else self.checked.mapping.wire_span
 
     def _mapped(self, rules: tuple[Rule, ...]) -> Mapped:
@@ -174,7 +174,7 @@ class Build:
         return Mapped(rules, types.schema, *ends, self._layout(types.wire), registers=len(types.state.initial), share=types.share)
 
     def _choices(self, framework: Framework, encoding: str) -> Choices:
-        """What the request says about the encoding, if the encoding leaves it to say."""
+        """The choices that the encoding offers and the request makes."""
         request = self.request
         if request.byte_order not in (None, *get_args(ByteOrder)):
             raise report(request, words.unknown_byte_order(request.byte_order))

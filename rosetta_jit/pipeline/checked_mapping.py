@@ -22,12 +22,12 @@ class CheckedMapping:
 
     @property
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """What is suspect, and not wrong."""
+        """The diagnostics of what is suspect, and yet not wrong."""
         return self.checked.warnings
 
     @property
     def notes(self) -> tuple[Diagnostic, ...]:
-        """What was made of what the mapping leaves open: the fields that `ignore rest` and `default rest` stand for."""
+        """The decisions that the mapping leaves to the compiler: the fields that `ignore rest` and `default rest` stand for."""
         return self.checked.notes
 
     @cached_property

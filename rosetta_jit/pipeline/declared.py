@@ -30,15 +30,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Files:
-    """Where a request's files are: those ``given`` as texts, those that are searched for, and what was found of both."""
+    """Where a request's files are: those given as ``texts``, those that are searched for, and what was found of both."""
 
-    given: dict[str, str]
+    texts: dict[str, str]
     search: SearchPath
     reading: Reading
 
     def digests(self) -> dict[str, str | None]:
-        """Those that were read, by digest, and those that would have been read instead if they existed."""
-        lookups = [each for each in self.reading.lookups if each.found not in self.given]
+        """The files that were read, with their digests, and the files that would have been read instead if they existed."""
+        lookups = [each for each in self.reading.lookups if each.found not in self.texts]
         preferred = (path for lookup in lookups for path in self.search.preferred(lookup))
         return dict.fromkeys(preferred) | {lookup.found: lookup.digest for lookup in lookups if lookup.found is not None}
 
@@ -49,8 +49,8 @@ class Files:
 
 def files_of(request: Request) -> Files:
     """The files of a request, of which none has been read."""
-    given = _given(request)
-    return Files(given, SearchPath.of(request.folders, files=given), Reading())
+    texts = _texts(request)
+    return Files(texts, SearchPath.of(request.folders, files=texts), Reading())
 
 
 def declared_types(request: Request, files: Files) -> Types:
@@ -70,7 +70,7 @@ def declared_types(request: Request, files: Files) -> Types:
     found = [each for name, each in schema.types.items() if isinstance(each, Struct) and same_name(name, request.type or "")]
     if not found:
         why = [each for name, each in schema.left_out.items() if same_name(name, request.type or "")]
-        near = () if request.imports or files.given else similar_types(request.type or "", readers_of(request), files.search)
+        near = () if request.imports or files.texts else similar_types(request.type or "", readers_of(request), files.search)
         raise SchemaError(tuple(why) or (words.unknown_type(request.type or "", (*schema.types, *near)),))
     return Types(found[0], found[0], schema, None)
 
@@ -79,8 +79,8 @@ def _imported(request: Request, files: Files) -> Schema:
     """All that the named files declare; without names, the files given as text, or the file where such a type should be."""
     readers = readers_of(request)
     type_name = request.type or ""
-    given = tuple(name for name in files.given if not name.endswith(SUFFIX))
-    names = request.imports or given or tuple(readers.guesses(type_name))
+    names_given = tuple(name for name in files.texts if not name.endswith(SUFFIX))
+    names = request.imports or names_given or tuple(readers.guesses(type_name))
     types: dict[str, Any] = {}
     constants: dict[str, Any] = {}
     left_out: dict[str, Any] = {}
@@ -117,7 +117,7 @@ def of_a_size(request: Request, types: Types) -> Types:
     return types
 
 
-def _given(request: Request) -> dict[str, str]:
+def _texts(request: Request) -> dict[str, str]:
     """The files that came as texts. One without a name declares the type, in the language of the framework that is asked for."""
     files = dict(request.files)
     if "" in files:
@@ -137,7 +137,7 @@ def readers_of(request: Request) -> Readers:
 
 
 def report(request: Request, diagnostic: Diagnostic) -> SchemaError | MappingError:
-    """What is wrong with a request, as the error that its user expects."""
+    """The error for a diagnostic: MappingError or SchemaError, by what the request names."""
     return (MappingError if request.mapping is not None else SchemaError)((diagnostic,))
 
 

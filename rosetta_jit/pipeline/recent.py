@@ -1,4 +1,4 @@
-"""What the texts of the last requests said: the encoder of a mapping, after its decoder, has nothing read and checked again."""
+"""Remembers what was read and checked for the last requests, so that the encoder of a mapping need not do it again after the decoder."""
 
 from __future__ import annotations
 

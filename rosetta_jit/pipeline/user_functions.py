@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 def check_given(request: Request, declared: Mapping[str, Signature]) -> None:
     """Refuse functions that no mapping declares."""
-    problems = tuple(words.not_declared(given.name, declared.keys()) for given in request.functions if given.name not in declared)
+    problems = tuple(words.not_declared(each.name, declared.keys()) for each in request.functions if each.name not in declared)
     if problems:
         raise MappingError(problems)
 
@@ -32,17 +32,17 @@ def check_given(request: Request, declared: Mapping[str, Signature]) -> None:
 def called_functions(request: Request, declared: Mapping[str, Signature], kernels: Iterable[Kernel]) -> tuple[UserFunction, ...]:
     """The functions that kernels call, as given. A name with a dot is one of ours."""
     called = sorted({call.function for call in calls_to_host(kernels) if "." not in call.function})
-    given = {each.name: each.function for each in request.functions}
-    missing = tuple(words.not_given(declared[name].span, name) for name in called if name not in given)
+    functions = {each.name: each.function for each in request.functions}
+    missing = tuple(words.not_given(declared[name].span, name) for name in called if name not in functions)
     if missing:
         raise MappingError(missing)
-    return tuple(_user_function(declared[name], given[name]) for name in called)
+    return tuple(_user_function(declared[name], functions[name]) for name in called)
 
 
-def _user_function(signature: Signature, given: object) -> UserFunction:
-    assert callable(given)
+def _user_function(signature: Signature, function: object) -> UserFunction:
+    assert callable(function)
     parameters: tuple[Scalar, ...] = tuple(scalar_type(each) for each in signature.parameters)
-    return UserFunction(signature.name, given, parameters, scalar_type(signature.result))
+    return UserFunction(signature.name, function, parameters, scalar_type(signature.result))
 
 
 def check_compiled(functions: Iterable[UserFunction], declared: Mapping[str, Signature]) -> tuple[str, ...]:

@@ -77,7 +77,7 @@ def _state(declared: Declared, wires: Sequence[str], kept: Sequence[tuple[str, E
 
 
 def _memory(state: Declared, wires: Sequence[str], kept: Sequence[tuple[str, Expr]]) -> Memory:
-    """Where the values of messages are kept."""
+    """The state variables in which values of messages are kept."""
     variables = state.variables("holder")
     values = {value: variables[variable_of_value(number)] for number, (_, value) in enumerate(kept)}
     return Memory(values, {wire: Binary(">", variables[variable_of(wire)], Const(0, INT64), BOOL) for wire in wires})

@@ -29,10 +29,10 @@ def _begun_in_python(arena: bytearray, begin: bytes, places: bytes) -> int:
 
 @cache
 def begin() -> Callable[[bytearray, bytes, bytes], int]:
-    """What does so: compiled code where there is such."""
+    """The function that copies a beginning: compiled, where code can be."""
     return _begun_in_python if library() is None else functions()["begin"]
 
 
 def address_of_bytes(arena: bytearray) -> int:
-    """Where bytes of ours lie."""
+    """The address of bytes of ours."""
     return ctypes.addressof(ctypes.c_char.from_buffer(arena))

@@ -162,7 +162,7 @@ def _part(values: Any, start: int, count: int) -> Any:
 
 
 def listed(value: Any) -> Any:
-    """Python's own values of a column, or of what is in one."""
+    """A column, or a value in one, as Python's own values."""
     match value:
         case Ragged():
             return value.to_list()

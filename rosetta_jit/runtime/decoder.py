@@ -128,7 +128,7 @@ class DecoderBase(Program):
     _to.__name__ = "to"
 
     def _givers_of(self, types: Mapping[str, type]) -> Givers:
-        """What makes objects with classes out of a table; the last table's is kept."""
+        """A maker of objects for a table of classes; that of the last table is kept."""
         kept: tuple[Mapping[str, type], Givers] | None = vars(self).get("_kept_givers")
         if kept is None or kept[0] is not types:
             from rosetta_jit.runtime.holder.objects.giving import Givers
@@ -298,7 +298,7 @@ class DecoderBase(Program):
         return value
 
     def _refuse_part(self, how: str) -> None:
-        """Where a message has to fill a whole holder."""
+        """Refuse a decoder of one of several wires, whose messages do not fill a whole holder."""
         if self._loaded.wire is not None:
             from rosetta_jit.runtime.joining import NOT_WHOLE
 
@@ -313,7 +313,7 @@ class DecoderBase(Program):
         return True
 
     def _holder_of_thread(self) -> Holder:
-        """What stands for the decoder's own holder in this thread."""
+        """The holder of this thread: the decoder's own, or one that stands for it."""
         holders = self._owners.setdefault("others", local())
         if not hasattr(holders, "own"):
             holders.own = self.new()

@@ -287,7 +287,7 @@ class EncoderBase(Program):
             return self._written_row(alone, 0, target)
 
     def _of_foreign(self, value: object, use: Callable[..., Any], *more: object) -> Any:
-        """What comes of a holder with the values of an object of another class, or of a dict."""
+        """The result of ``use`` for a holder with the values of an object of another class, or of a dict."""
         holder = self._borrow()
         try:
             takers = self._loaded.holder_type.family_.takers

@@ -1,4 +1,4 @@
-"""Where many messages lie in one buffer."""
+"""The begins and ends of many messages in one buffer."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class MessageSpans:
 
     @property
     def addresses(self) -> tuple[int, int]:
-        """Where compiled code finds begins and ends."""
+        """The addresses of begins and ends, for compiled code."""
         begins = _address_of(self.begins)
         return begins, begins + self.apart if self.apart else _address_of(self.ends)
 

@@ -47,12 +47,12 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class OnDemand:
-    """What a program knows of the other one.
+    """A program's knowledge of the one that is made on demand.
 
     Attributes
     ----------
     opening
-        What the messages begin with that are left to it, and no others.
+        The bytes with which those messages begin that are left to it, and no others.
     byte_order
         What it is asked for with.
     name
@@ -74,7 +74,7 @@ class OnDemand:
 
     @property
     def place(self) -> Place:
-        """Where the other one is found."""
+        """The place at which the code finds the other program's kernel."""
         place = self.library.prepared
         assert isinstance(place, Place)
         return place

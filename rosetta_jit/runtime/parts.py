@@ -120,10 +120,10 @@ def errors_together(parts: Iterable[tuple[Errors, NDArray[np.int64] | None, int]
     errors, kept, is_whole, first = dict[int, "DecodeError"](), list["NDArray[np.int64]"](), True, 0
     for refused, numbers, count in parts:
         is_whole = is_whole and numbers is None
-        given = np.arange(count) if numbers is None else numbers
+        kept_numbers = np.arange(count) if numbers is None else numbers
         errors.update((first + number, error) for number, error in refused.items())
-        kept.append(first + given)
-        first += 1 + max(int(given.max(initial=-1)), max(refused, default=-1))
+        kept.append(first + kept_numbers)
+        first += 1 + max(int(kept_numbers.max(initial=-1)), max(refused, default=-1))
     return errors, None if is_whole else np.concatenate(kept)
 
 

@@ -94,9 +94,9 @@ class Loaded:
         number = -1 - result
         if number < len(self.sites):
             return self.sites[number]
-        others = None if self.on_demand is None else self.on_demand.place.sites
-        assert others is not None, "it has run"
-        return others[number - len(self.sites)]
+        later_sites = None if self.on_demand is None else self.on_demand.place.sites
+        assert later_sites is not None, "it has run"
+        return later_sites[number - len(self.sites)]
 
 
 def entry_of(library: Library | None, state: Kept) -> int | None:
@@ -321,7 +321,7 @@ def is_foreign(value: object) -> bool:
 def one_by_one(
     kernel: run.Run, data: NDArray[np.uint8], spans: MessageSpans, first: int, count: int, lanes: Lanes, size: run.Run | None = None
 ) -> int:
-    """What the compiled `many` does, in Python."""
+    """Do in Python what the compiled `many` does."""
     for number in range(first, count):
         begin, end = spans.span(number)
         result = 0 if spans.are_in(number, data.size) else None

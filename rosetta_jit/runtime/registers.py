@@ -148,5 +148,5 @@ class Lent:
 
 
 def address_of(registers: Registers | None) -> int:
-    """Where registers lie, 0 where there are none."""
+    """The address of registers; 0 where there are none."""
     return 0 if registers is None else registers.address

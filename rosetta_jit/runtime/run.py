@@ -216,7 +216,7 @@ def decode_error(site: Site, lanes: Lanes, begin: int, end: int) -> DecodeError:
 
 
 def encode_error(site: Site, lanes: Lanes) -> EncodeError:
-    """The same of an encoder."""
+    """The error that a failed encoder has left in the state."""
     path, _ = _located(site, lanes, 0, 0)
     return EncodeError(cast("Kind", site.kind), path, _sentence(site, lanes))
 

@@ -86,7 +86,7 @@ def with_attributes(created: type, attributes: Mapping[str, object]) -> type:
 
 
 def address_of(function: str) -> int:
-    """Where a function of Python's C interface is."""
+    """The address of a function of Python's C interface."""
     return ctypes.cast(getattr(ctypes.pythonapi, function), ctypes.c_void_p).value or 0
 
 
@@ -96,7 +96,7 @@ def attribute_of(owner: type, definition: GetSet) -> Any:
 
 
 def member_of(owner: type, definition: Member) -> Any:
-    """The same of a member."""
+    """The descriptor of a member."""
     return _described(ctypes.pythonapi.PyDescr_NewMember, owner, definition)
 
 

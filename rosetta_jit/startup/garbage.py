@@ -6,7 +6,7 @@ import gc
 import sys
 from contextlib import contextmanager
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -44,6 +44,12 @@ def imported(name: str) -> ModuleType:
         module = import_module(name)
         _call_all_old()
     return module
+
+
+def object_at(place: str) -> Any:
+    """What a place `module:name` names; its module is imported when it is first asked for."""
+    module, _, name = place.partition(":")
+    return getattr(imported(module), name)
 
 
 def _call_all_old() -> None:

@@ -47,7 +47,7 @@ class Option:
 
     @property
     def wanted(self) -> str:
-        """What it takes, in words."""
+        """The values that the option takes, in words."""
         match self.kind:
             case "text":
                 return "a text"
@@ -130,7 +130,7 @@ class Address:
 
     @property
     def place(self) -> Span:
-        """Where the rest stands."""
+        """The span of the rest, for errors."""
         start = len(self.scheme) + 1
         end = self.text.find("?")
         return Span(Text("address", self.text), start, len(self.text) if end < 0 else end)

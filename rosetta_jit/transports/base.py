@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.startup.garbage import imported
+from rosetta_jit.startup.garbage import object_at
 from rosetta_jit.transports.end import End
 from rosetta_jit.transports.limits import MAX_QUEUE_BYTES
 from rosetta_jit.transports.message import Message
@@ -18,7 +18,7 @@ from rosetta_jit.transports.message import Message
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from rosetta_jit.transports.address import Option
+    from rosetta_jit.transports.address import Address, Option
 
     Bytes = bytes | memoryview
     Deliver = Callable[["Message"], object]
@@ -70,7 +70,7 @@ class Source(End):
             self._callback_failed(error)
 
     def taker(self, channel: str, type_: str | None = None, attributes: Mapping[str, Any] | None = None) -> Callable[[Bytes], object]:
-        """What takes the bytes of messages that are alike in all else; for transports. As `arrived`, and quicker."""
+        """A function that takes the bytes of messages, which are alike in all else: quicker than `arrived`; for transports."""
 
         def take(data: Bytes) -> None:
             self.messages += 1
@@ -193,6 +193,11 @@ class Sink(End):
 class Caller(End):
     """The asking end of remote procedure calls; a context manager. Transports derive from it."""
 
+    def __init__(self, address: Address, options: Mapping[str, Any]) -> None:
+        super().__init__(str(address))
+        self._most: int = options["max_message"]
+        self._timeout: float = options["timeout"]
+
     def __call__(
         self, data: bytes | bytearray | memoryview, *, timeout: float | None = None, attributes: Mapping[str, Any] | None = None
     ) -> Message:
@@ -203,6 +208,12 @@ class Caller(End):
         TransportError
             Nothing came within ``timeout`` seconds (default: the option `timeout`), or the peer said that it failed.
         """
+        until = monotonic() + (self._timeout if timeout is None else timeout)
+        self.check_size(len(data), self._most)
+        return self.ask(data, until, attributes or {})
+
+    def ask(self, data: bytes | bytearray | memoryview, until: float, attributes: Mapping[str, Any]) -> Message:
+        """Send a question, and wait for its answer until a moment of the monotonic clock; for transports."""
         raise NotImplementedError
 
     def close(self) -> None:
@@ -286,12 +297,12 @@ class Pending:
         self._error: TransportError | None = None
 
     def answer(self, message: Message) -> None:
-        """It came."""
+        """Keep the answer, which has come, and wake the thread that waits for it."""
         self._message = message.keep()
         self._done.set()
 
     def fail(self, error: TransportError) -> None:
-        """It will not come; the first reason counts."""
+        """Keep the reason why no answer will come; the first one counts."""
         if not self._done.is_set():
             self._error = error
             self._done.set()
@@ -314,7 +325,7 @@ class Pending:
 
 @dataclass(frozen=True, slots=True)
 class Transport:
-    """One transport; every function as ``module:name``, imported when it is first used. Empty where it lacks a direction.
+    """One transport; every function, or class of ends, as ``module:name``, imported when first used. Empty where it lacks a direction.
 
     Attributes
     ----------
@@ -362,8 +373,7 @@ class Transport:
 
     def function(self, direction: str) -> Callable[..., Any]:
         """The function for a direction, `subscribe` and so on, or `check`; the caller has seen that there is one."""
-        module, _, name = cast("str", getattr(self, direction)).partition(":")
-        return cast("Callable[..., Any]", getattr(imported(module), name))
+        return cast("Callable[..., Any]", object_at(getattr(self, direction)))
 
 
 def _nothing() -> None:

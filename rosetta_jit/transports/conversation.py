@@ -32,7 +32,7 @@ class Conversation(socket.socket):
 
     @classmethod
     def over(cls, sock: socket.socket, seconds: float) -> Self:
-        """The same connection; the socket that was given is closed."""
+        """A conversation over a connected socket, which it takes over: the given object is closed."""
         made = cls(fileno=sock.detach())
         made.until = monotonic() + seconds
         made.settimeout(seconds)

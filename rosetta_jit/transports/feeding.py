@@ -185,7 +185,7 @@ class Feed:
         self._machine.close()
 
     def _found(self, want: Until) -> int:
-        """Where the delimiter ends; 0 where it did not come yet."""
+        """The position behind the delimiter; 0 where it has not come yet."""
         size = len(want.delimiter)
         base, end = max(self._start, self._searched - size + 1), min(self._end, self._start + want.most)
         while end - base >= size:

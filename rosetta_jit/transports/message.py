@@ -46,7 +46,7 @@ class Message:
         self.attributes = NOTHING if attributes is None else attributes
 
     def keep(self) -> Message:
-        """The same with bytes of its own, which stay valid."""
+        """Copy the bytes of the message, so that they stay valid; gives the message itself."""
         if not isinstance(self.data, bytes):
             self.data = bytes(self.data)
         return self

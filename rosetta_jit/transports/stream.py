@@ -86,7 +86,7 @@ class Stream:
         self._deadline = loop().later(seconds, lambda: self.end(why))
 
     def in_time(self) -> None:
-        """What `within` waited for has come."""
+        """Stop the timer of `within`: what it waited for has come."""
         if self._deadline is not None:
             self._deadline.cancel()
             self._deadline = None

@@ -14,6 +14,7 @@ from rosetta_jit.bridge.counting import WINDOW_S, Latencies, RouteCounts
 from rosetta_jit.bridge.limits import MAX_CAUSES
 from rosetta_jit.bridge.metrics import MetricsServer, text
 from rosetta_jit.bridge.table import rows
+from rosetta_jit.transports import http_server
 from tests.bridge.routes import route
 from tests.transports.free import free_port, until
 
@@ -80,7 +81,7 @@ def test_the_table_and_the_metrics(run):
 
 def test_who_asks_for_metrics_and_says_nothing_holds_up_nobody(monkeypatch):
     monkeypatch.setattr(asking, "MAX_ASKING", 2)
-    monkeypatch.setattr(asking, "ASKING_S", 0.3)
+    monkeypatch.setattr(http_server, "ANSWER_S", 0.3)
     metrics = MetricsServer("0", list)
     try:
         with socket.create_connection(("127.0.0.1", metrics.port)), socket.create_connection(("127.0.0.1", metrics.port)):

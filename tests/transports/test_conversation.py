@@ -11,6 +11,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.errors import TransportError
+from rosetta_jit.transports import http_server
 from rosetta_jit.transports.conversation import connected
 from rosetta_jit.transports.ros1 import xmlrpc
 from rosetta_jit.transports.yarp.admin import ask_port, leave
@@ -76,7 +77,7 @@ def test_nodes_that_answer_byte_by_byte(monkeypatch):
 
 
 def test_who_asks_a_node_byte_by_byte_is_hung_up_on(monkeypatch):
-    monkeypatch.setattr(xmlrpc, "TIMEOUT_S", 0.2)
+    monkeypatch.setattr(http_server, "ANSWER_S", 0.2)
     node = xmlrpc.Answering("127.0.0.1", {})
     try:
         with socket.create_connection(("127.0.0.1", node.port), 5) as slow:

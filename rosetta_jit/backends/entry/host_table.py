@@ -41,7 +41,7 @@ def table_text(kernels: Sequence[Kernel]) -> str:
 
 
 def _parameters(numbers: int, extents: int) -> str:
-    given = [f"i64 %number{number}" for number in range(numbers)]
+    arguments = [f"i64 %number{number}" for number in range(numbers)]
     for extent in range(extents):
-        given += [f"ptr %bytes{extent}", f"i64 %size{extent}"]
-    return "".join(f", {each}" for each in given)
+        arguments += [f"ptr %bytes{extent}", f"i64 %size{extent}"]
+    return "".join(f", {each}" for each in arguments)

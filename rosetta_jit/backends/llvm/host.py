@@ -36,8 +36,8 @@ def host_called(frame: Frame, call: HostCall) -> tuple[ir.Value, ir.Value]:
     function = intrinsic(frame.module, symbol(call.function), I32, parameters)
     result = frame.entry.alloca(_passed(call.result.type), name="result")
     exception = frame.entry.alloca(POINTER, name="exception")
-    given = [expression(frame, argument) for argument in call.arguments]
-    passed = [builder.zext(value, I8) if type_ == "bool" else value for value, type_ in zip(given, types, strict=True)]
+    arguments = [expression(frame, argument) for argument in call.arguments]
+    passed = [builder.zext(value, I8) if type_ == "bool" else value for value, type_ in zip(arguments, types, strict=True)]
     for extent in extents_of(call):
         passed += [pointer(frame, extent.address), expression(frame, extent.size)]
     return builder.call(function, [result, exception, *passed]), result

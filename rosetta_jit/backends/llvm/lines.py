@@ -131,9 +131,9 @@ class Lines(ir.IRBuilder):
         signature = fn.function_type
         if signature.var_arg:
             return super().call(fn, args, name)
-        given = ", ".join([f"{each.type} {each.get_reference()}" for each in args])
+        arguments = ", ".join([f"{each.type} {each.get_reference()}" for each in args])
         convention, result = getattr(fn, "calling_convention", ""), signature.return_type
-        text = f"call {convention}{' ' if convention else ''}{result} {fn.get_reference()}({given})"
+        text = f"call {convention}{' ' if convention else ''}{result} {fn.get_reference()}({arguments})"
         if result != NOTHING:
             return self._named(result, text, name)
         line = Line(NOTHING, "", text)

@@ -64,12 +64,12 @@ def compile_function(declared: UserFunction) -> binding.ModuleRef:
     return _module(declared.name, dispatcher)
 
 
-def _taken_apart(given: Any) -> tuple[Any, dict[str, Any]]:
+def _taken_apart(callee: Any) -> tuple[Any, dict[str, Any]]:
     """The Python function, and what `njit` was told of it: options that change what it computes, and types of locals."""
-    if type(given) is not CPUDispatcher:
-        return given, {}
-    options = {key: value for key, value in given.targetoptions.items() if key in KEPT}
-    return given.py_func, {**options, "locals": given.locals}
+    if type(callee) is not CPUDispatcher:
+        return callee, {}
+    options = {key: value for key, value in callee.targetoptions.items() if key in KEPT}
+    return callee.py_func, {**options, "locals": callee.locals}
 
 
 def has_addresses(module: binding.ModuleRef) -> bool:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.state import NOW, NUMBER
-from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.kernel.terms import is_wider, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -168,11 +168,5 @@ def _binary(op: str, type_: ir.Scalar, left: str, right: str) -> str:
 
 def _convert(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
     """Nothing where every value of the source is one of the target."""
-    is_wider = source not in FLOATS | {"bool"} and target not in FLOATS | {"bool"} and _holds(target, source)
-    return value if is_wider or target == source else f'convert("{target}", {value})'
-
-
-def _holds(target: ir.Scalar, source: ir.Scalar) -> bool:
-    if target[0] == source[0]:
-        return ir.WIDTH[target] >= ir.WIDTH[source]
-    return target[0] == "i" and ir.WIDTH[target] > ir.WIDTH[source]
+    is_whole = source not in FLOATS | {"bool"} and target not in FLOATS | {"bool"} and is_wider(target, source)
+    return value if is_whole or target == source else f'convert("{target}", {value})'

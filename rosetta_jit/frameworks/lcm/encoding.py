@@ -69,7 +69,7 @@ class _Fields:
         return codec
 
     def value(self, type_: Type, path: Path, around: Path) -> Codec:
-        """What is at a path; ``around`` is that of the struct whose fields tell sizes."""
+        """The codec of the value at a path; ``around`` is the path of the struct whose fields hold sizes."""
         match type_:
             case Int(bits, signed):
                 return Number(path, f"{'i' if signed else 'u'}{bits}", ">")

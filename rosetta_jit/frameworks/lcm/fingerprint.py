@@ -31,7 +31,7 @@ def fingerprint(struct: Struct, schema: Schema) -> int:
 
 
 def own_hash(struct: Struct) -> int:
-    """What a struct's own fields give, without the structs in it."""
+    """The hash of a struct's own fields, without the structs in them."""
     value = STRUCT_SEED
     for each in struct.fields:
         shape = shape_of(each)

@@ -12,6 +12,7 @@ from rosetta_jit.frameworks.lcm.fingerprint import fingerprint
 from rosetta_jit.frameworks.lcm.limits import MAX_FILES, MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.schema import schema_of
 from rosetta_jit.model.types import Array, Ref, Struct
+from rosetta_jit.parsing.idl import refuse
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -45,13 +46,8 @@ def parse(source: Source, load: Load) -> Schema:
     gathered = gather(source, load, problems)
     schema = schema_of(gathered, problems)
     check_endless(schema, problems)
-    if problems:
-        raise SchemaError(tuple(sorted(problems[:MAX_PROBLEMS], key=_place)))
+    refuse(problems, MAX_PROBLEMS)
     return schema
-
-
-def _place(problem: Diagnostic) -> tuple[str, int]:
-    return ("", 0) if problem.span is None else (problem.span.source.name, problem.span.start)
 
 
 def check_endless(schema: Schema, problems: list[Diagnostic]) -> None:

@@ -60,7 +60,7 @@ class _Reader:
 
     @property
     def span(self) -> Span:
-        """Where the next word stands; at the end, right behind the last one."""
+        """The place of the next word; at the end, the place right behind the last one."""
         if self.index < len(self.tokens):
             token = self.tokens[self.index]
             return Span(self.source, token.start, token.end)

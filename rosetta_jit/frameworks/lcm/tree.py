@@ -79,7 +79,7 @@ Declaration = StructDeclaration | EnumDeclaration
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """What a source declares, in order."""
+    """The declarations of a source, in order."""
 
     source: Source
     declarations: tuple[Declaration, ...]

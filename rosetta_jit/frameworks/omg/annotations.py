@@ -31,7 +31,7 @@ Options = tuple[tuple[str, "Constant"], ...]
 
 @dataclass(frozen=True, slots=True)
 class Annotations:
-    """Those of one declaration; of two with one name, the last counts."""
+    """The annotations of one declaration; of two with one name, the last counts."""
 
     written: tuple[Annotation, ...]
     lookup: Lookup

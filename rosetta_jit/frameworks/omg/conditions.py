@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.cursor import Cursor, SyntaxProblem
-from rosetta_jit.frameworks.omg.expressions import CONDITIONS, Binary, Expr, Literal, Operators, ScopedName, Unary, expression
+from rosetta_jit.frameworks.omg.expressions import CONDITIONS, Binary, Expr, Literal, Operators, ScopedName, Unary, computed, expression
 from rosetta_jit.frameworks.omg.lexer import LiteralError, Token, number
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Iterable, Iterator
+    from collections.abc import Container, Iterable, Iterator
 
 
 def holds(tokens: list[Token], end: Token) -> bool:
@@ -29,7 +29,7 @@ def holds(tokens: list[Token], end: Token) -> bool:
 
 
 def answer_defined(line: Iterable[Token], macros: Container[str]) -> Iterator[Token]:
-    """The same tokens with `defined X` and `defined(X)` answered, before macros are expanded."""
+    """The tokens of a condition with 0 or 1 in place of each `defined X` and `defined(X)`, before macros are expanded."""
     rest = iter(line)
     for token in rest:
         if token.kind != "word" or token.text != "defined":
@@ -74,43 +74,11 @@ def _value(node: Expr) -> int:
             decided = (_value(left) != 0) == (operator == "||")
             return int(operator == "||") if decided else int(_value(right) != 0)
         case Binary():
-            return _wrapped(_applied(node, _value(node.left), _value(node.right)))
+            return _wrapped(computed(node, _value(node.left), _value(node.right), SyntaxProblem))
         case _:
             assert_never(node)
-
-
-def _applied(node: Binary, left: int, right: int) -> int:
-    match node.operator:
-        case "/" | "%" if right == 0:
-            raise SyntaxProblem(say.division_by_zero(node.right.span))
-        case "/":
-            return abs(left) // abs(right) * (1 if (left < 0) == (right < 0) else -1)
-        case "%":
-            return abs(left) % abs(right) * (-1 if left < 0 else 1)
-        case "<<" | ">>" if not 0 <= right < 64:
-            raise SyntaxProblem(say.shift(node.right.span))
-        case _:
-            return int(_SIMPLE[node.operator](left, right))
 
 
 def _wrapped(value: int) -> int:
     """Conditions are computed in 64 bits."""
     return (value + (1 << 63)) % (1 << 64) - (1 << 63)
-
-
-_SIMPLE: dict[str, Callable[[int, int], int]] = {
-    "|": int.__or__,
-    "^": int.__xor__,
-    "&": int.__and__,
-    "==": int.__eq__,
-    "!=": int.__ne__,
-    "<": int.__lt__,
-    ">": int.__gt__,
-    "<=": int.__le__,
-    ">=": int.__ge__,
-    "<<": int.__lshift__,
-    ">>": int.__rshift__,
-    "+": int.__add__,
-    "-": int.__sub__,
-    "*": int.__mul__,
-}

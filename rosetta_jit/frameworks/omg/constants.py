@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 from typing import Literal as OneOf
 
 from rosetta_jit.frameworks.omg import diagnostics as say
-from rosetta_jit.frameworks.omg.expressions import Binary, Expr, Literal, ScopedName, Unary
+from rosetta_jit.frameworks.omg.expressions import Binary, Expr, Literal, ScopedName, Unary, computed
 from rosetta_jit.frameworks.omg.lexer import LiteralError, number, unescape
 from rosetta_jit.frameworks.omg.problems import LookupProblem
 from rosetta_jit.model.types import Bool, Float, Int, Ref, String
@@ -90,7 +90,7 @@ def as_text(value: Value, type_: Type) -> Value:
 
 
 def word_of(type_: Type) -> str:
-    """What a person calls a type."""
+    """The word by which people call a type."""
     return getattr(type_, "spelling", "") or getattr(type_, "name", "") or type(type_).__name__.lower()
 
 
@@ -149,7 +149,7 @@ def _unary(operator: str, operand: Value, span: Span) -> Value:
 def _binary(node: Binary, operator: str, left: Value, right: Value) -> Value:
     match left, right:
         case Value("integer", int() as a), Value("integer", int() as b):
-            value = _number(_integers(node, operator, a, b), node.span)
+            value = _number(computed(node, a, b, LookupProblem), node.span)
             return Value("integer", value.value, complement=left.complement or right.complement)
         case Value("floating", float() as a), Value("floating", float() as b) if operator in "+-*/":
             if operator == "/" and b == 0:
@@ -157,29 +157,3 @@ def _binary(node: Binary, operator: str, left: Value, right: Value) -> Value:
             return _number({"+": float.__add__, "-": float.__sub__, "*": float.__mul__, "/": float.__truediv__}[operator](a, b), node.span)
         case _:
             raise LookupProblem(say.wrong_operand(node.span, operator, f"{_named(left)} and {_named(right)}"))
-
-
-def _integers(node: Binary, operator: str, a: int, b: int) -> int:
-    match operator:
-        case "/" | "%" if b == 0:
-            raise LookupProblem(say.division_by_zero(node.right.span))
-        case "/":
-            return abs(a) // abs(b) * (1 if (a < 0) == (b < 0) else -1)
-        case "%":
-            return abs(a) % abs(b) * (-1 if a < 0 else 1)
-        case "<<" | ">>" if not 0 <= b < 64:
-            raise LookupProblem(say.shift(node.right.span))
-        case _:
-            return _SIMPLE[operator](a, b)
-
-
-_SIMPLE: dict[str, Callable[[int, int], int]] = {
-    "|": int.__or__,
-    "^": int.__xor__,
-    "&": int.__and__,
-    "<<": int.__lshift__,
-    ">>": int.__rshift__,
-    "+": int.__add__,
-    "-": int.__sub__,
-    "*": int.__mul__,
-}

@@ -18,6 +18,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.omg.cursor import Cursor
     from rosetta_jit.frameworks.omg.lexer import Token
     from rosetta_jit.source import Span
@@ -127,3 +128,42 @@ def _unary(cursor: Cursor, language: Operators, depth: int) -> Expr:
 
 def _depth(node: Expr) -> int:
     return node.depth if isinstance(node, Unary | Binary) else 0
+
+
+def computed(node: Binary, left: int, right: int, problem: Callable[[Diagnostic], Exception]) -> int:
+    """The value of an operator between integers, which no type bounds here; quotients are cut towards zero, and comparisons give 0 or 1.
+
+    Raises
+    ------
+    Exception
+        That which ``problem`` makes, where there is no value.
+    """
+    match node.operator:
+        case "/" | "%" if right == 0:
+            raise problem(say.division_by_zero(node.right.span))
+        case "/":
+            return abs(left) // abs(right) * (1 if (left < 0) == (right < 0) else -1)
+        case "%":
+            return abs(left) % abs(right) * (-1 if left < 0 else 1)
+        case "<<" | ">>" if not 0 <= right < 64:
+            raise problem(say.shift(node.right.span))
+        case _:
+            return int(_SIMPLE[node.operator](left, right))
+
+
+_SIMPLE: dict[str, Callable[[int, int], int]] = {
+    "|": int.__or__,
+    "^": int.__xor__,
+    "&": int.__and__,
+    "==": int.__eq__,
+    "!=": int.__ne__,
+    "<": int.__lt__,
+    ">": int.__gt__,
+    "<=": int.__le__,
+    ">=": int.__ge__,
+    "<<": int.__lshift__,
+    ">>": int.__rshift__,
+    "+": int.__add__,
+    "-": int.__sub__,
+    "*": int.__mul__,
+}

@@ -8,13 +8,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.declare import declare
 from rosetta_jit.frameworks.omg.grammar import parse as definitions_of
 from rosetta_jit.frameworks.omg.limits import MAX_REPORTED
 from rosetta_jit.frameworks.omg.preprocessor import preprocess
 from rosetta_jit.model.types import Array, Map, NamedConstant, Optional, Ref, Schema, Struct, Union
+from rosetta_jit.parsing.idl import refuse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -45,24 +45,14 @@ def parse(source: Source, load: Load) -> Schema:
     """
     problems: list[Diagnostic] = []
     tokens, files = preprocess(source, load, problems)
-    _refuse(problems)
+    refuse(problems, MAX_REPORTED)
     definitions = definitions_of(tokens, problems)
-    _refuse(problems)
+    refuse(problems, MAX_REPORTED)
     declared = declare(definitions, problems)
-    _refuse(problems)
+    refuse(problems, MAX_REPORTED)
     types, left_out = usable(declared.types)
     types, constants = attach_constants(types, declared.constants)
     return Schema(types, files, constants, left_out)
-
-
-def _refuse(problems: list[Diagnostic]) -> None:
-    """Raise what was found, file by file and in the order of the text."""
-    if problems:
-        raise SchemaError(tuple(sorted(problems[:MAX_REPORTED], key=_place)))
-
-
-def _place(problem: Diagnostic) -> tuple[str, int]:
-    return ("", 0) if problem.span is None else (problem.span.source.name, problem.span.start)
 
 
 CONSTANTS = "_Constants"

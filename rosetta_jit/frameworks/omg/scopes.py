@@ -78,7 +78,7 @@ class Scope:
             raise LookupProblem(say.used_before(name.span, name.text, other.full, span))
 
     def find(self, name: ScopedName, *, free: bool = False) -> Entry:
-        """What a name means, seen from in here.
+        """The entry that a name means in this scope.
 
         Raises
         ------

@@ -147,7 +147,7 @@ def array(element: Type, length: int) -> Type:
 
 
 def shallow(type_: Type, span: Span) -> Type:
-    """The same type, which must not be too deep."""
+    """The type itself; raises LookupProblem where it is too deep."""
     depth, inner = 0, type_
     while isinstance(inner, Array | Map):
         inner = inner.element if isinstance(inner, Array) else inner.value

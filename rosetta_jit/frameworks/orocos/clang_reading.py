@@ -182,7 +182,7 @@ class Reading:
         )
 
     def measure_bases(self) -> None:
-        """Where inherited members lie. Only the compiler knows: the padding at the end of a base may hold members of what derives from it.
+        """The offsets of inherited members. Only the compiler knows them: padding at the end of a base may hold members of a derived class.
 
         It tells the offsets as values of an enum that is added to the header (Itanium C++ ABI, 2.4).
         """

@@ -90,7 +90,7 @@ def declarations(texts: Texts) -> dict[str, Any]:
 
 
 def _error(text: str, span: Span) -> Diagnostic:
-    """What the compiler says; files that it cannot open are missing for it."""
+    """The diagnostic for an error of the compiler. A file that it cannot open is reported as missing."""
     missing = _MISSING.fullmatch(text)
     if missing is None:
         return words.compile_error(span, text)

@@ -34,7 +34,7 @@ def no_libclang(span: Span) -> Diagnostic:
 
 
 def compile_error(span: Span, text: str) -> Diagnostic:
-    """What the compiler says."""
+    """An error of the C++ compiler."""
     return _error("c++", "this is no C++ that can be read", span, text[:200])
 
 
@@ -183,7 +183,7 @@ def not_plain_memory(span: Span | None, member: str) -> Diagnostic:
 
 
 def not_in_typelib(span: Span | None, member: str, what: str) -> Diagnostic:
-    """What typelib has no words for."""
+    """A type that typelib cannot describe."""
     return _error("typelib", f"typelib cannot write `{member}`", span, what, "Use the encoding `rtt-mqueue`.")
 
 

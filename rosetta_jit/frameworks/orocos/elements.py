@@ -42,7 +42,7 @@ class Element:
 
 @dataclass(slots=True)
 class _Reading:
-    """What expat tells while it reads."""
+    """The elements that expat has met while it reads."""
 
     source: Source
     parser: expat.XMLParserType

@@ -104,7 +104,7 @@ class _Objects:
                 assert_never(resolved)
 
     def count(self, field: Field, type_: Array | Bytes | String) -> Count:
-        """What is before elements: nothing if the type fixes their number."""
+        """The codec of the count before elements: nothing if the type fixes their number."""
         length = None if isinstance(type_, String) else type_.length
         if isinstance(length, int):
             return Count(None, value=length)

@@ -54,7 +54,7 @@ class Layouts:
     known: dict[str, Extent] = field(default_factory=dict[str, Extent])
 
     def places(self, struct: Struct) -> tuple[Place, ...]:
-        """Where each field lies."""
+        """The offset of each field."""
         places: list[Place] = []
         end = 0
         for each in struct.fields:

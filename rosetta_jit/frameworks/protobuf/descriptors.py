@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
+from rosetta_jit.frameworks.protobuf.limits import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.descriptor_reading import read_files
 from rosetta_jit.frameworks.protobuf.proto.file_set import file_set
 from rosetta_jit.frameworks.protobuf.proto.judge import schema_of
-from rosetta_jit.frameworks.protobuf.proto.problems import refuse
+from rosetta_jit.parsing.idl import refuse
 
 if TYPE_CHECKING:
     from google.protobuf.descriptor import FileDescriptor
@@ -63,7 +64,7 @@ def from_message_class(cls: type[Message]) -> Schema:
 def _schema(files: list[FileDescriptorProto]) -> Schema:
     problems: list[Diagnostic] = []
     found = file_set(read_files(files, problems), problems)
-    refuse(problems)
+    refuse(problems, MAX_REPORTED)
     return schema_of(found)
 
 

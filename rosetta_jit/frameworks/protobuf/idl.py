@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.frameworks.protobuf.limits import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.files import gather
 from rosetta_jit.frameworks.protobuf.proto.judge import schema_of
-from rosetta_jit.frameworks.protobuf.proto.problems import refuse
+from rosetta_jit.parsing.idl import refuse
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -35,5 +36,5 @@ def parse(source: Source, load: Load) -> Schema:
     """
     problems: list[Diagnostic] = []
     files = gather(source, load, problems)
-    refuse(problems)
+    refuse(problems, MAX_REPORTED)
     return schema_of(files)

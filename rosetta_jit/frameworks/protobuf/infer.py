@@ -59,11 +59,11 @@ def infer(messages: Iterable[bytes], *, name: str, encoding: str = "protobuf") -
     del encoding
     if not NAME.fullmatch(name):
         raise SchemaError((words.invalid_name(name),))
-    given = list(messages)
-    if not given:
+    captured = list(messages)
+    if not captured:
         raise SchemaError((words.no_messages(),))
     fields: dict[int, Seen] = {}
-    for number, message in enumerate(given, 1):
+    for number, message in enumerate(captured, 1):
         try:
             _look(message, fields)
         except _NoMessageError as error:
@@ -71,9 +71,9 @@ def infer(messages: Iterable[bytes], *, name: str, encoding: str = "protobuf") -
         except _UnlikeError as error:
             raise SchemaError((words.unlike(number, error.field, *error.wires),)) from None
     package, _, own = name.rpartition(".")
-    count = f"{len(given)} message{'' if len(given) == 1 else 's'}"
+    count = f"{len(captured)} message{'' if len(captured) == 1 else 's'}"
     lines = [f"// Drafted from {count}. Names are numbers, and types are guesses: comments say what was seen."]
-    lines += ['syntax = "proto2";', *([f"package {package};"] if package else []), "", *_declared(own, fields, len(given), 0)]
+    lines += ['syntax = "proto2";', *([f"package {package};"] if package else []), "", *_declared(own, fields, len(captured), 0)]
     return "\n".join(lines) + "\n"
 
 

@@ -157,15 +157,15 @@ class _Comparison:
         return self._of_fields(mine.fields, its.fields, path)
 
     def _of_fields(self, mine: Any, its: Any, path: str) -> str | None:
-        others = {each.name: each for each in its}
+        its_fields = {each.name: each for each in its}
         for each in mine:
-            other = others.pop(each.name, None)
+            other = its_fields.pop(each.name, None)
             if other is None or other.number != each.number or other.required != each.required:
                 return f"{path}.{each.name}"
             found = self.difference(each.type, other.type, f"{path}.{each.name}")
             if found is not None:
                 return found
-        return f"{path}.{next(iter(others))}" if others else None
+        return f"{path}.{next(iter(its_fields))}" if its_fields else None
 
 
 OBJECTS = Foreign(whole=whole)

@@ -121,7 +121,7 @@ def optional_nothing(span: Span) -> Diagnostic:
 
 
 def no_section_name(span: Span, kinds: Sequence[str]) -> Diagnostic:
-    """A line of `=` without the name of what follows."""
+    """A line of `=` that no line with the name of the next definition follows."""
     help_ = f"Write {', '.join(f'`{kind}: package/Name`' for kind in kinds[:-1])} or `{kinds[-1]}: package/Name`."
     return _error("section", "a definition does not say its name", span, "the line below this one must say it", help_)
 

@@ -30,7 +30,7 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class Interface:
-    """What files declare that are not of one message each: services, actions. ``{}`` in names and texts is the file's own name.
+    """The messages that a file of another kind declares: a service, an action. ``{}`` in names and texts is the file's own name.
 
     Attributes
     ----------

@@ -31,11 +31,11 @@ PROBES: dict[str, str | Probe] = {
 }
 
 
-def first_part(probes: Mapping[str, str | Probe], others: int, declares: str, added: Mapping[str, str]) -> dict[str, str | Probe]:
+def first_part(probes: Mapping[str, str | Probe], further_parts: int, declares: str, added: Mapping[str, str]) -> dict[str, str | Probe]:
     """The same in the first part of a service or an action, which has some others; ``added`` is what peers add needs."""
     whole = {feature: each if isinstance(each, Probe) else Probe(each) for feature, each in probes.items()}
     whole["service"] = Probe("int32 question")
     return {
-        feature: replace(each, text=each.text + "\n---\n" * others, files={**added, **each.files}, declares=declares)
+        feature: replace(each, text=each.text + "\n---\n" * further_parts, files={**added, **each.files}, declares=declares)
         for feature, each in whole.items()
     }

@@ -67,7 +67,7 @@ class _Gathering:
                 self.define([section])
 
     def define(self, found: list[Section]) -> None:
-        """What the text of one message, service or action defines."""
+        """The definitions in the text of one message, service or action."""
         for section in found:
             if section.local and self.problems:
                 return  # what peers add to a file that is wrong says nothing new

@@ -19,7 +19,7 @@ KINDS = ("srv", "action")
 
 @dataclass(frozen=True, slots=True)
 class Declared:
-    """What a file declares by its name: the package, which is empty if it is not told, the kind of interface, and the last part."""
+    """The name of a type, taken from that of its file: package (empty where it is missing), kind of interface, and last part."""
 
     package: str
     folder: str

@@ -88,7 +88,7 @@ class _Reader:
             self.comments.clear()
 
     def _annotated(self, clean: Word) -> Word:
-        """What stands behind an annotation."""
+        """The rest of a declaration behind its annotation, which is noted."""
         match = DECLARATION.fullmatch(clean.text)
         assert match is not None
         if not self.dialect.extended or match[1] != "@optional" or self.optional is not None:
@@ -193,7 +193,7 @@ LARGEST_LENGTH = (1 << 32) - 1
 
 
 def type_name(word: Word, section: Section, dialect: Dialect, problems: list[Diagnostic]) -> TypeName | None:
-    """What a word of a section means as a type; None, and a problem, if nothing."""
+    """The type that a word of a section names; None, and a problem, if it names none."""
     match = TYPE.fullmatch(word.text)
     if match is None or not _may_have_bounds(match, dialect):
         problems.append(say.not_a_type(word.span, word.text))

@@ -7,13 +7,13 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.ros.gather import gather
 from rosetta_jit.frameworks.ros.limits import MAX_PROBLEMS
 from rosetta_jit.frameworks.ros.names import declared_in
 from rosetta_jit.frameworks.ros.reading import read, unit_in
 from rosetta_jit.frameworks.ros.sections import sections
 from rosetta_jit.model.types import Array, Bytes, Field, NamedConstant, Optional, Ref, Schema, String, Struct
+from rosetta_jit.parsing.idl import refuse
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -33,7 +33,7 @@ def gathered(source: Source, load: Load, dialect: Dialect) -> Gathered:
     """The definitions of a source and of all that it needs; raises SchemaError with everything that is wrong in any of the texts."""
     problems: list[Diagnostic] = []
     found = gather(source, load, dialect, problems)
-    _refuse(problems)
+    refuse(problems, MAX_PROBLEMS)
     return found
 
 
@@ -42,13 +42,8 @@ def definition_of(source: Source, dialect: Dialect) -> tree.Definition:
     problems: list[Diagnostic] = []
     found = sections(source, declared_in(source.name, dialect), dialect, problems)
     definitions = [read(each, dialect, problems) for each in found[:1]]
-    _refuse(problems)
+    refuse(problems, MAX_PROBLEMS)
     return definitions[0]
-
-
-def _refuse(problems: list[Diagnostic]) -> None:
-    if problems:
-        raise SchemaError(tuple(sorted(problems[:MAX_PROBLEMS], key=_place)))
 
 
 def schema_of(
@@ -61,10 +56,6 @@ def schema_of(
     messages = {each.name: _struct(each, dialect, options(each)) for each in reversed(definitions)}
     sources = dict.fromkeys(each.source.name for each in reversed(definitions))
     return Schema(MappingProxyType(messages | structs), tuple(sources))
-
-
-def _place(problem: Diagnostic) -> tuple[str, int]:
-    return ("", 0) if problem.span is None else (problem.span.source.name, problem.span.start)
 
 
 def _struct(definition: tree.Definition, dialect: Dialect, options: Options) -> Struct:

@@ -37,7 +37,7 @@ def scalar_value(text: str, type_: Scalar, dialect: Dialect) -> Value | None:
 
 
 def wanted(type_: TypeName, element: Scalar, dialect: Dialect) -> str:
-    """What a value of a type would be, in words."""
+    """The values of a type, in words, for errors."""
     if type_.array:
         number = type_.length if type_.maximum is None else f"at most {type_.maximum}"
         return f"{'values' if number is None else f'{number} of them'} in brackets, each {_wanted(element, dialect)}"

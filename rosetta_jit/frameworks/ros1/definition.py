@@ -12,5 +12,5 @@ if TYPE_CHECKING:
 
 
 def definition(struct: Struct, schema: Schema) -> Definition:
-    """Its text, and those of the messages in it."""
+    """The text of a type, followed by the texts of the messages in it."""
     return Definition("ros1msg", full_text(struct, schema).encode())

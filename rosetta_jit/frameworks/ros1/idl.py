@@ -120,7 +120,7 @@ def service_sums(definitions: Iterable[Definition], sums: Mapping[str, str]) -> 
 
 
 def hashed_text(definition: Definition, sums: Mapping[str, str]) -> str:
-    """What is hashed of a message; an array of messages counts as one of them."""
+    """The text of a message that is hashed; an array of messages counts as one of them."""
     constants = (f"{each.type.written} {each.name.text}={each.text.text}" for each in definition.constants)
     return "\n".join([*constants, *(_declaration(each, sums) for each in definition.fields)])
 

@@ -100,12 +100,12 @@ class RosMessage(Holder):
         return self
 
     def serialize_numpy(self, buff: Buffer, numpy: object) -> None:
-        """The same as `serialize`."""
+        """Do the same as `serialize`."""
         del numpy
         self.serialize(buff)
 
     def deserialize_numpy(self, data: Any, numpy: object) -> Self:
-        """The same as `deserialize`."""
+        """Do the same as `deserialize`."""
         del numpy
         return self.deserialize(data)
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def announcement(struct: Struct, schema: Schema) -> dict[str, str]:
-    """Its name, and its hash, which types that ROS 2 cannot describe do not have."""
+    """The name of a type, and its hash; types that ROS 2 cannot describe have none."""
     identity = {"type": struct.name.replace("::", "/")}
     try:
         return {**identity, "hash": rihs01(struct, schema)}

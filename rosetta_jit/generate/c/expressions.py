@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 import numpy as np
 
 from rosetta_jit.generate.c.words import C_TYPES
+from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.arithmetic import FLOATS, SIGNED, to_bytes
 from rosetta_jit.kernel.terms import END, type_of
@@ -290,15 +291,3 @@ def _scaled(scope: Scope, row: ir.Expr, stride: int) -> str:
         return str(int(row.value) * stride)
     text = expression(scope, row)
     return bare(text) if stride == 1 else f"{text} * {stride}"
-
-
-def bare(text: str) -> str:
-    """A text without the parentheses around all of it."""
-    if not (text.startswith("(") and text.endswith(")")):
-        return text
-    depth = 0
-    for number, char in enumerate(text):
-        depth += (char == "(") - (char == ")")
-        if depth == 0 and number < len(text) - 1:
-            return text
-    return text[1:-1]

@@ -10,11 +10,12 @@ from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.base import Writer
-from rosetta_jit.generate.c.expressions import bare, expression, location, store, written
+from rosetta_jit.generate.c.expressions import expression, location, store, written
 from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.origins import origin_of
+from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.rewrite import ends, locals_in, with_blocks

@@ -17,7 +17,7 @@ import numpy as np
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.arithmetic import FLOATS, SIGNED, to_bytes
-from rosetta_jit.kernel.terms import END, type_of
+from rosetta_jit.kernel.terms import END, is_wider, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -199,14 +199,7 @@ def _convert(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
         return f"({target}-of-{source} {value})"
     if target in FLOATS:
         return f"({target}-of-{'u64' if source == 'u64' else 'i64'} {value})"
-    return value if _holds(target, source) else f"(wrap-{target} {value})"
-
-
-def _holds(target: ir.Scalar, source: ir.Scalar) -> bool:
-    """Whether all values of a type are ones of another."""
-    if target[0] == source[0]:
-        return ir.WIDTH[target] >= ir.WIDTH[source]
-    return target[0] == "i" and ir.WIDTH[target] > ir.WIDTH[source]
+    return value if is_wider(target, source) else f"(wrap-{target} {value})"
 
 
 def _bits(target: ir.Scalar, source: ir.Scalar, value: str) -> str:

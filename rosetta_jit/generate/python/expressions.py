@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
+from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import NUMPY
 from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.arithmetic import FLOATS
-from rosetta_jit.kernel.terms import END, type_of
+from rosetta_jit.kernel.terms import END, is_wider, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -317,13 +318,7 @@ def _convert(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
         return f"_saturated({bare(value)}, {least}, {most})"
     if source == "bool":
         return f"int({bare(value)})"
-    return value if _holds(target, source) else _wrapped(target, value)
-
-
-def _holds(target: ir.Scalar, source: ir.Scalar) -> bool:
-    if target[0] == source[0]:
-        return ir.WIDTH[target] >= ir.WIDTH[source]
-    return target[0] == "i" and ir.WIDTH[target] > ir.WIDTH[source]
+    return value if is_wider(target, source) else _wrapped(target, value)
 
 
 def _bits(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
@@ -352,15 +347,3 @@ def location(scope: Scope, address: ir.Address) -> tuple[str, str]:
             return scope.view(lane, ""), _scaled(expression(scope, row), scope.lanes.stride(lane), offset)
         case _:
             assert_never(address)
-
-
-def bare(text: str) -> str:
-    """A text without the parentheses around all of it."""
-    if not (text.startswith("(") and text.endswith(")")):
-        return text
-    depth = 0
-    for number, char in enumerate(text):
-        depth += (char == "(") - (char == ")")
-        if depth == 0 and number < len(text) - 1:
-            return text
-    return text[1:-1]

@@ -6,8 +6,9 @@ import struct
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.cleared import slots_of
+from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.direct import numbers_of
-from rosetta_jit.generate.python.expressions import CODES, bare, expression
+from rosetta_jit.generate.python.expressions import CODES, expression
 from rosetta_jit.generate.python.object_rows import Binder
 from rosetta_jit.generate.python.packed import ANY, Part, part_text, with_numbers
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum

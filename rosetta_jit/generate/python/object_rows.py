@@ -6,8 +6,9 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.cleared import slots_of
+from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import member_names
-from rosetta_jit.generate.python.expressions import Scope, bare, expression, within
+from rosetta_jit.generate.python.expressions import Scope, expression, within
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import WIDTH, Binary, Expr, Local, Place

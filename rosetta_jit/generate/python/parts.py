@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.python.expressions import bare, expression
+from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.joined_parts import Written
 from rosetta_jit.generate.python.packed import Part

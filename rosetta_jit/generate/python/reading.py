@@ -6,7 +6,8 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.cleared import slots_of
-from rosetta_jit.generate.python.expressions import CODES, bare, expression
+from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.python.expressions import CODES, expression
 from rosetta_jit.kernel.ir import Binary, Const, IsText, Wire
 from rosetta_jit.model.layout import Number
 

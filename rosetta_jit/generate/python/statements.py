@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.base import Writer
 from rosetta_jit.generate.origins import origin_of
-from rosetta_jit.generate.python.expressions import CODES, Scope, bare, expression, location, view_name
+from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.python.expressions import CODES, Scope, expression, location, view_name
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
 from rosetta_jit.generate.python.reading import numbers_read, takes_text
 from rosetta_jit.kernel import ir

@@ -42,7 +42,7 @@ ROOT = -1
 
 @dataclass(frozen=True, slots=True)
 class Close:
-    """The end of what has its size before it."""
+    """The end of a part of a message whose size stands before it."""
 
     delimited: Delimited
 

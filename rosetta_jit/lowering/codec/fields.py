@@ -32,11 +32,11 @@ OTHER_CASE = "another case is set than the discriminator says"
 
 
 class Fields(Protocol):
-    """Where the values of one message or element live."""
+    """The places at which the values of one message or element live."""
 
     @property
     def where(self) -> Where:
-        """Its place in the message, for errors."""
+        """The path of the value in the message, for errors."""
         ...
 
     def shown(self, path: Path) -> Where:
@@ -366,7 +366,7 @@ def negated(condition: ir.Expr) -> ir.Expr:
 
 
 def scalar_name(scalar: str) -> ir.Scalar:
-    """The same word, as the kernel's type."""
+    """The type of the scalar in a kernel."""
     match scalar:
         case "bool" | "i8" | "u8" | "i16" | "u16" | "i32" | "u32" | "i64" | "u64" | "f32" | "f64":
             return scalar

@@ -174,7 +174,7 @@ class _Walk:
         return block(body)
 
     def cases(self) -> Iterator[tuple[int, ir.Block]]:
-        """What each code announces."""
+        """Each code, and the statements for the values that it announces."""
         tree = self.tree
         for scalar in tree.scalars:
             kind = TEXT if scalar.size is None else SCALAR

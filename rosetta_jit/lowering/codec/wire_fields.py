@@ -28,7 +28,7 @@ EACH = "[]"
 
 
 class AssignedValues(Protocol):
-    """Where an encoding walk gets what the rules assign."""
+    """The values that rules assign, for a walk that encodes."""
 
     def number(self, path: Path) -> Expr:
         """The value of a number."""

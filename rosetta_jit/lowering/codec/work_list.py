@@ -51,7 +51,7 @@ def read_recursive(message: Message, entry: Entry, recursion: Recursion, where: 
 
 
 def _piece(message: Message, recursion: Recursion, where: Where) -> tuple[Expr, Expr]:
-    """Where a message begins and ends; the position is moved behind it, and behind the end tag of a group."""
+    """Begin and end of a message. The position moves behind it, and behind the end tag of a group."""
     writer = message.writer
     if recursion.group is None:
         size = read_length(writer, where, message.stop)

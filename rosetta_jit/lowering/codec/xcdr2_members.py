@@ -122,7 +122,7 @@ def _read(codec: Members, fields: Fields, writer: Writer, walk: Walk, stop: Expr
 
 
 def _extent(writer: Writer, order: Order, head: Expr, where: Where) -> tuple[Expr, Expr]:
-    """Where a member begins, and its size in bytes."""
+    """The begin of a member, and its size in bytes."""
     code = writer.let("code", Binary("and", Binary("shr", head, index(CODE_SHIFT)), index(7)))
     start, size = writer.var("start", writer.position), writer.var("size", index(8))
     for short in (0, 1, 2):

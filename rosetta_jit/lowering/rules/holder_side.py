@@ -103,7 +103,7 @@ class HolderSide:
         return self.array(place, values)[1]
 
     def address(self, place: typed.Place, values: Evaluation) -> Address:
-        """Where the bytes of a string or bytes field begin."""
+        """The address of the bytes of a string or bytes field."""
         elements, _ = self.array(place, values)
         return Place(elements.lane, elements.start)
 
@@ -210,12 +210,12 @@ class HolderSide:
         return fields, path, self.writer.let("case", Get("i64", _case_word(fields, path)))
 
     def expect_case(self, fields: HolderFields, path: Path, number: Expr, values: Evaluation) -> None:
-        """That a discriminator has chosen a case."""
+        """Check that a discriminator has chosen a case."""
         agrees = Compare("eq", Get("i64", _case_word(fields, path)), number)
         self.writer.expect(agrees, "union", fields.shown(path[:-1]), OTHER_CASE, line=values.line)
 
     def appear(self, place: typed.Place, values: Evaluation) -> None:
-        """What can be absent is there, with its initial value."""
+        """Mark a field that can be absent as there, and give it its initial value."""
         fields, path, _ = self.descend(place, values)
         if isinstance(place.type, Struct) and isinstance(fields.find(path).slot, Span):
             self.single(fields, path, values)
@@ -297,7 +297,7 @@ def _key(place: typed.Place) -> Key:
 
 
 def _case_word(fields: HolderFields, path: Path) -> Place:
-    """Where a union says which case it has."""
+    """The word in which a union says which case it has."""
     cell = fields.find(path)
     assert isinstance(cell.slot, Variant)
     return cell.place(cell.slot.offset)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def called(call: typed.HostCall, values: Evaluation) -> Expr:
-    """Where the function refuses, so does the mapping."""
+    """The result of a call of a user's function; if that raises an exception, the mapping rejects the message."""
     assert isinstance(call.type, Bool | Int | Float)
     writer = values.writer
     arguments = tuple(values.of(argument) for argument in call.arguments)

@@ -36,7 +36,7 @@ UNKNOWN = "the walk over the message leaves no place or number for it"
 def obstacle(
     encoding: Encoding, attempts: tuple[Codec, ...], rules: tuple[typed.Rule, ...], direction: Direction, schema: Schema
 ) -> Obstacle | None:
-    """What keeps the rules from working on messages in place, the first there is; None if nothing does."""
+    """The first obstacle to rules that work on messages in place; None if there is none."""
     if encoding.nested:
         return Obstacle((), "messages that contain themselves have no fixed number of places")
     if direction != "decode":

@@ -1,4 +1,4 @@
-"""What is the same in each round of a loop, and takes a loop of its own: it is computed once.
+"""Values that take a loop to compute, and are the same in each round of another loop: they are computed once, before it.
 
 What cannot fail is computed before the loop. A reduction that can fail is computed in the first round that asks for it, so that a loop
 without rounds, and a round that does not ask, fail as they would alone.

@@ -1,4 +1,4 @@
-"""What a walk asks for while it lays out a message that a mapping packs: the rules answer."""
+"""The values of a message that a mapping packs: the walk over its codec asks for them, and the rules answer."""
 
 from __future__ import annotations
 

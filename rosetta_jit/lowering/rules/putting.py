@@ -50,7 +50,7 @@ class Putting:
 
     @property
     def scalar(self) -> Scalar:
-        """What an element is."""
+        """The scalar type of an element."""
         return scalar_type(self.element.type)
 
     def __call__(self, number: Expr, value: Expr) -> Expr:

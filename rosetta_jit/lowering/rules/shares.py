@@ -67,8 +67,8 @@ def _leave(fields: HolderFields, names: Names) -> None:
     member = member_of(owner.slot, names[-1])
     if isinstance(owner.slot, Row) and member.presence is not None:
         place, mask = presence_bit(owner, owner.slot, member.presence)
-        others = Const("u64", (1 << 64) - 1 - int(mask.value))
-        fields.writer.emit(SetField(place, Binary("and", Get("u64", place), others)))
+        other_bits = Const("u64", (1 << 64) - 1 - int(mask.value))
+        fields.writer.emit(SetField(place, Binary("and", Get("u64", place), other_bits)))
 
 
 def _clear(fields: HolderFields, slot: Slot) -> None:

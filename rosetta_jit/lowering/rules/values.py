@@ -126,7 +126,7 @@ class Values:
                 assert_never(value)
 
     def answer(self, value: typed.Has | typed.Search | typed.Reduce) -> ir.Expr:
-        """What is asked of a place, or of the elements of arrays."""
+        """The value of a query about a place, or about the elements of arrays."""
         match value:
             case typed.Has(place):
                 return self.source.present(place, self)

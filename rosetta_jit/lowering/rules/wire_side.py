@@ -53,7 +53,7 @@ class WireSide:
         return self.root.size_of(key)
 
     def address(self, place: typed.Place, values: Evaluation) -> Address:
-        """Where the bytes of a string or bytes field begin."""
+        """The address of the bytes of a string or bytes field."""
         del values
         key = (*wire_key(place)[0], EACH)
         return Wire(self.root.found.regions[key].first)

@@ -213,8 +213,8 @@ def _days_of(year: Expr, month: Expr) -> Expr:
     four, hundred, cycle = (Compare("eq", Binary("rem", year, index(each)), index(0)) for each in (4, 100, CYCLE_YEARS))
     leap = Binary("or", Binary("and", four, Unary("not", hundred)), cycle)
     february = Select(leap, index(29), index(28))
-    others = add(Binary("and", Binary("xor", month, Binary("shr", month, index(3))), index(1)), 30)
-    return Select(Compare("eq", month, index(2)), february, others)
+    usual = add(Binary("and", Binary("xor", month, Binary("shr", month, index(3))), index(1)), 30)
+    return Select(Compare("eq", month, index(2)), february, usual)
 
 
 def _days(writer: Writer, year: Expr, month: Expr, day: Expr) -> Expr:

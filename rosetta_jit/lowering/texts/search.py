@@ -58,7 +58,7 @@ MOST_PARTS = index(1 << 62)
 
 
 def find(writer: Writer, lane: int | None, first: Expr, after: Expr, pattern: bytes) -> Local:
-    """Where a text is first met with, or the end."""
+    """The first position of a text, or the end."""
 
     def make(inner: Writer) -> Contract:
         first, after, known = parameters(inner, lane)
@@ -108,7 +108,7 @@ def stripped(writer: Writer, view: View, characters: bytes) -> View:
 
 
 def next_start(writer: Writer, found: Expr, after: Expr, pattern: bytes) -> Expr:
-    """Where to look on behind what was found; one beyond the end where nothing was."""
+    """The position at which to search on; one beyond the end where nothing was found."""
     behind = Binary("min", add(found, len(pattern)), after)
     return writer.let("behind", Select(Compare("lt", found, after), behind, add(after, 1)))
 

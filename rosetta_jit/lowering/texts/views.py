@@ -159,7 +159,7 @@ def parameters(
 
 
 def has_room(writer: Writer, target: ir.Expr, size: ir.Expr) -> tuple[ir.Expr, ir.Expr]:
-    """What a routine relies on that writes so many bytes to the hidden lane."""
+    """The precondition of a routine that writes so many bytes to the hidden lane: there is room for them."""
     return ir.Compare("ge", target, index(0)), ir.Compare("le", target, ir.Binary("sub", ir.Capacity(lane_of(writer)), size))
 
 
@@ -169,7 +169,7 @@ def between(value: ir.Expr, low: ir.Expr, high: ir.Expr) -> ir.Expr:
 
 
 def within(first: ir.Expr, *inside: ir.Expr, after: ir.Expr) -> tuple[ir.Expr, ...]:
-    """What a routine gives: places in order, from one end of a text to the other."""
+    """A routine's promise: the places that it gives are in order, from one end of a text to the other."""
     places = (first, *inside, after)
     return tuple(ir.Compare("le", before, behind) for before, behind in itertools.pairwise(places))
 

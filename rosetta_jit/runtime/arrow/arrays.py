@@ -50,7 +50,7 @@ NO_TEXT = (
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """What the arrays are to be like.
+    """The form of the arrays.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class Form:
 
     @classmethod
     def of(cls, octets: Octets, copies: bool, times: Iterable[str] | Mapping[str, Unit], handed: Handed | None = None) -> Form:
-        """As a user says it.
+        """The form that a user describes.
 
         Raises
         ------

@@ -91,13 +91,13 @@ def _cast(array: pa.Array, dtype: np.dtype[Any], path: str) -> NDArray[Any]:
 
 def _rounded(array: pa.Array, dtype: np.dtype[Any], path: str) -> NDArray[Any]:
     """Floats that are what they were."""
-    given = _numpy(array)
+    floats = _numpy(array)
     with np.errstate(over="ignore"):
-        values = given.astype(dtype)
-        same = values.astype(given.dtype) == given
+        values = floats.astype(dtype)
+        same = values.astype(floats.dtype) == floats
     wrong = np.flatnonzero(~same & ~np.isnan(values))
     if len(wrong):
-        raise ValuesError(path, f"value {wrong[0]}, {given[wrong[0]]}, is none of {dtype}; cast the column to round it")
+        raise ValuesError(path, f"value {wrong[0]}, {floats[wrong[0]]}, is none of {dtype}; cast the column to round it")
     return values
 
 
@@ -141,7 +141,7 @@ def text_of(type_: String, array: pa.Array, path: str) -> tuple[NDArray[Any], In
 
 
 def blob_of(array: pa.Array, path: str) -> tuple[NDArray[np.uint8], Indices]:
-    """The same of bytes."""
+    """The content of bytes fields, one behind the other, and how many bytes each has."""
     type_ = array.type
     if not (types.is_binary(type_) or types.is_large_binary(type_) or types.is_fixed_size_binary(type_)):
         raise refused("bytes", array, path)

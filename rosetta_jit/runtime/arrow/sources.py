@@ -163,5 +163,5 @@ def _nested(record: Record, columns: Mapping[str, pa.Array], path: str) -> dict[
 
 
 def _absent(columns: Mapping[str, pa.Array]) -> Flags:
-    """Where all columns are null."""
+    """The rows in which all columns are null."""
     return np.logical_and.reduce([each.is_null().to_numpy(zero_copy_only=False) for each in columns.values()])

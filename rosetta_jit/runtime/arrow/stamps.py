@@ -1,4 +1,4 @@
-"""What tables of logs need of Arrow: nanoseconds as timestamps, and tables put together."""
+"""Arrow for tables of logs: nanoseconds as timestamps, and tables put together."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def with_times(table: pa.Table, times_ns: Mapping[str, NDArray[np.int64]]) -> pa
 
 
 def _column(times_ns: NDArray[np.int64]) -> pa.Array:
-    """Times in memory of their own, for what they are given in is used again."""
+    """Times as timestamps. They are copied: the memory that they come in is used again."""
     return stamps_array(np.array(times_ns, np.int64), "ns")
 
 

@@ -105,7 +105,7 @@ class Accessors:
 
 
 def _name(group: Group) -> str:
-    """What names a group's code in the cache, whose names depend on our source files besides."""
+    """The kind under which the cache keeps a group's code; the name of the file depends on our sources, too."""
     return f"accessors: {group.name}"
 
 
@@ -140,7 +140,7 @@ def whole() -> Library:
 
 @cache
 def functions() -> Mapping[str, Callable[..., Any]]:
-    """Those of the library that Python calls, as built-in functions."""
+    """The functions of the library that Python calls, as built-in functions."""
     code = library()
     assert code is not None, "there are accessors"
     return {name: function_of(name, code[name]) for name in FUNCTIONS}

@@ -30,7 +30,7 @@ def is_kept(entry: Entry) -> bool:
 
 
 def take_slots(made: type, entries: Sequence[Entry]) -> KeptFields:
-    """Where a class's objects keep what shows each field. The slots are no attributes any more: only accessors use them."""
+    """The offsets of a class's slots, each of which keeps the view of a field. They stop being attributes: only accessors use them."""
     offsets: dict[str, int] = {}
     for slot in slots(entries):
         offsets[entries[int(slot.rpartition("_")[2])].name] = specs.slot_offset(made.__dict__[slot])
@@ -66,8 +66,8 @@ def describe(
     assert code is not None, "there are accessors"
     numbers = {name: number for number, name in enumerate(entries)}
     members = [name for name in shown if name in kept.members]
-    others = [name for name in shown if name not in kept.members]
-    slots, table = (specs.Member * len(members))(), (specs.GetSet * len(others))()
+    computed = [name for name in shown if name not in kept.members]
+    slots, table = (specs.Member * len(members))(), (specs.GetSet * len(computed))()
     for definition, name in zip(slots, members, strict=True):
         definition.name, definition.type, definition.offset, definition.flags = (
             _c_name(name),
@@ -75,15 +75,15 @@ def describe(
             kept.offsets[name],
             specs.READONLY,
         )
-    for definition, name in zip(table, others, strict=True):
+    for definition, name in zip(table, computed, strict=True):
         get, set_ = accessors(entries[name], plain_arrays=plain_arrays)
         definition.name, definition.get, definition.set = _c_name(name), code[get], code[set_]
         definition.closure = PLACE_BYTES * numbers[name]
-    names = Names({name: (each.get, each.set, each.closure or 0) for name, each in zip(others, table, strict=True)})
+    names = Names({name: (each.get, each.set, each.closure or 0) for name, each in zip(computed, table, strict=True)})
     made._attributes = slots, table, names  # noqa: SLF001 # pyright: ignore[reportAttributeAccessIssue] - the class is ours; they live as long as it
     for name, definition in zip(members, slots, strict=True):
         setattr(made, name, specs.member_of(made, definition))
-    for name, definition in zip(others, table, strict=True):
+    for name, definition in zip(computed, table, strict=True):
         setattr(made, name, specs.attribute_of(made, definition))
     names.give(made, reads=not kept.offsets and not has_methods)
 
@@ -99,7 +99,7 @@ def _c_name(name: str) -> bytes:
 
 
 def accessors(entry: Entry, *, plain_arrays: bool) -> tuple[str, str]:
-    """The symbols of what reads and writes a field."""
+    """The symbols of the getter and the setter of a field."""
     match entry.node:
         case Scalar(cell):
             scalar = SCALARS[cell.key & 15]

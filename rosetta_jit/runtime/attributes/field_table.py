@@ -1,4 +1,4 @@
-"""What compiled accessors must know of each field of a record, as a table of words.
+"""The table in which compiled accessors find each field of a record: some words a field.
 
 Before the table stand the address of a Python function that assigns to members, and that of a list of what messages of the record keep: how
 many they are, and of each its offset in the message, what it is (`Kept`), and the address of its place.
@@ -108,7 +108,7 @@ class KeptFields:
 
 
 class OfSequences(Protocol):
-    """What sequences need besides: two functions, and a class."""
+    """The two functions and the class that sequences need."""
 
     @property
     def length(self) -> Callable[[Any], int]: ...

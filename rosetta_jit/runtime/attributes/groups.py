@@ -55,26 +55,26 @@ def group_of(symbol: str) -> Group:
 
 def part_of(text: str, symbols: Sequence[str]) -> str:
     """Of an LLVM module the functions that some symbols need, and all that is no function."""
-    bodies, others = _functions(text)
+    bodies, declarations = _functions(text)
     needed, pending = dict[str, None](), list(symbols)
     while pending:
         name = pending.pop()
         if name in bodies and name not in needed:
             needed[name] = None
             pending += re.findall(r"@([\w.]+)", bodies[name])
-    return "\n".join([others, *(bodies[name] for name in bodies if name in needed)])
+    return "\n".join([declarations, *(bodies[name] for name in bodies if name in needed)])
 
 
 @cache
 def _functions(text: str) -> tuple[dict[str, str], str]:
     """The functions of a module by their names, and all else."""
-    others, *definitions = text.split("\ndefine ")
+    declarations, *definitions = text.split("\ndefine ")
     bodies = dict[str, str]()
     for each in definitions:
         body, end, behind = each.partition("\n}\n")
         bodies[body[body.index("@") + 1 : body.index("(")]] = f"define {body}{end}"
-        others += f"\n{behind}"
-    return bodies, others
+        declarations += f"\n{behind}"
+    return bodies, declarations
 
 
 def symbols() -> Iterator[str]:

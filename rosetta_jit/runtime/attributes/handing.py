@@ -55,7 +55,7 @@ def handing(
     slow: Callable[..., Any],
     in_c: InC | None = None,
 ) -> Callable[..., Any]:
-    """What hands over the objects of a class.
+    """The object that hands over the objects of a class.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ def _maker_class() -> type:
 
 
 def maker(holder_type: Any, plan: Plan) -> Any:
-    """What makes holders of a class, with the room of a plan, or of their family's if that is more."""
+    """A maker of holders of a class. They have the room of a plan, or that of their family's if it is more."""
     code = library()
     assert code is not None, "there are makers"
     maker_class: Any = _maker_class()

@@ -45,7 +45,7 @@ class _Method:
 
     @property
     def __wrapped__(self) -> Any:
-        """What says which arguments there are."""
+        """The function whose signature the method shows."""
         return MethodType(self.function, self.holder_type)
 
 

@@ -43,7 +43,7 @@ class Names:
         return name in self._names
 
     def give(self, holder_type: Any, *, reads: bool) -> None:
-        """Let a class, which lives no longer than they, use them: to write attributes, and to read them if that is asked for.
+        """Let a class, which must not outlive them, write its attributes through them; and read them, if ``reads`` is set.
 
         Where compiled code reads them, CPython takes a little longer to find methods, and members.
         """

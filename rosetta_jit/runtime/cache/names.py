@@ -25,7 +25,7 @@ ABI = 2
 
 
 def entry_name(kernel_text: str) -> str:
-    """The name of what this kernel compiles to, here."""
+    """The name of the entry with the code of a kernel, for this machine and these versions."""
     return _name("entry", kernel_text)
 
 
@@ -36,7 +36,7 @@ def request_name(request: Mapping[str, object]) -> str:
 
 @cache
 def surroundings() -> str:
-    """What compiled code depends on besides its kernel, as text; the same for the life of a process."""
+    """All that compiled code depends on besides its kernel, as text. It stays the same as long as a process lives."""
     import llvmlite
 
     facts: dict[str, object] = {

@@ -12,13 +12,13 @@ if TYPE_CHECKING:
 
 
 def known(text: str) -> bytes | None:
-    """What a text compiles to, if the cache has it."""
+    """The code of a text, if the cache has it."""
     entry = Cache.default().get(entry_name(text))
     return None if entry is None else entry.image
 
 
 def kept(kind: str, text: str, compiled: Callable[[], bytes]) -> bytes:
-    """What a text compiles to: from the cache, or made now and put there. ``kind`` says what it is to people who look at the cache."""
+    """The code of a text: from the cache, or compiled now and put there. ``kind`` says what it is to people who look at the cache."""
     cache, name = Cache.default(), entry_name(text)
     entry = cache.get(name)
     if entry is not None:

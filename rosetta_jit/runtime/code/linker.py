@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def link(image: bytes, symbols: Sequence[str]) -> tuple[dict[str, int], Callable[[], object]]:
-    """The addresses of what an object file defines, and what gives up its memory.
+    """The addresses of an object file's symbols, and the function that frees its memory.
 
     It gets a linker of its own, because one that is shared keeps something of every library that it ever had.
 

@@ -40,7 +40,7 @@ class _UnknownError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _Tables:
-    """Where the jumps and the slots lie, and in which order."""
+    """The places of the jumps and the slots, and their order."""
 
     wants: tuple[str, ...]
     jumps: int
@@ -78,9 +78,9 @@ def _laid_out(files: Sequence[ObjectFile], wanted: Container[str] | None) -> Pre
     sections = _in_memory(files)
     code, data = bytearray(), bytearray()
     places = _append(code, 0, {key: each for key, each in sections.items() if not each.flags & WRITABLE})
-    given = {each.name: (number, each) for number, file in enumerate(files) for each in file.symbols if _is_given(each)}
+    exported = {each.name: (number, each) for number, file in enumerate(files) for each in file.symbols if _is_exported(each)}
     relocations = [
-        ((number, each.section), each, *_definition(number, file.symbols[each.symbol], given))
+        ((number, each.section), each, *_definition(number, file.symbols[each.symbol], exported))
         for number, file in enumerate(files)
         for each in file.relocations
         if (number, each.section) in sections
@@ -92,18 +92,18 @@ def _laid_out(files: Sequence[ObjectFile], wanted: Container[str] | None) -> Pre
         if place >= len(code):
             raise _UnknownError  # an address among the data: it depends on where they lie
         struct.pack_into("<i", code, place, _target(relocation.kind, number, symbol, places, tables) + relocation.addend - place)
-    gives = {name: _place(number, symbol, places) for name, (number, symbol) in given.items() if wanted is None or name in wanted}
+    gives = {name: _place(number, symbol, places) for name, (number, symbol) in exported.items() if wanted is None or name in wanted}
     return Prelinked(bytes(code), bytes(data), tables.slots, tables.wants, gives)
 
 
-def _is_given(symbol: Symbol) -> bool:
+def _is_exported(symbol: Symbol) -> bool:
     """Whether other files may use what a file defines."""
     return symbol.is_global and symbol.section != UNDEFINED
 
 
-def _definition(file: int, symbol: Symbol, given: Mapping[str, tuple[int, Symbol]]) -> tuple[int, Symbol]:
+def _definition(file: int, symbol: Symbol, exported: Mapping[str, tuple[int, Symbol]]) -> tuple[int, Symbol]:
     """What a file means by a symbol: its own, another file's, or what the process must give; with the number of the file that has it."""
-    return given.get(symbol.name, (file, symbol)) if symbol.section == UNDEFINED else (file, symbol)
+    return exported.get(symbol.name, (file, symbol)) if symbol.section == UNDEFINED else (file, symbol)
 
 
 def _in_memory(files: Sequence[ObjectFile]) -> dict[_Key, Section]:
@@ -153,7 +153,7 @@ def _target(kind: int, file: int, symbol: Symbol, places: Mapping[_Key, int], ta
 
 
 def _place(file: int, symbol: Symbol, places: Mapping[_Key, int]) -> int:
-    """Where a symbol of a file lies."""
+    """The place of a file's symbol in memory."""
     if (file, symbol.section) not in places:
         raise _UnknownError  # a number and no place, or something that object files share
     return places[file, symbol.section] + symbol.value

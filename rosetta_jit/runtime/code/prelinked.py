@@ -71,12 +71,12 @@ def from_bytes(image: bytes) -> Prelinked:
 
 
 def data_offset(code: bytes | bytearray) -> int:
-    """Where the data lie that belong to code."""
+    """The offset of the data that belong to code."""
     return -(-len(code) // PAGE) * PAGE
 
 
 def place(image: bytes, symbols: Sequence[str]) -> tuple[dict[str, int], Callable[[], object]]:
-    """The addresses of what the code gives, and what gives up its memory.
+    """The addresses of the code's symbols, and the function that frees its memory.
 
     Raises
     ------

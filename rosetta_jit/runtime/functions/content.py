@@ -32,7 +32,7 @@ _ABSENT = object()
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """What a function can reach.
+    """All that a function can reach.
 
     Attributes
     ----------
@@ -52,11 +52,11 @@ class Content:
     objects: tuple[object, ...]
 
 
-def content_of(given: object, name: str) -> Content:
+def content_of(callee: object, name: str) -> Content:
     """The content of a function, or of what numba's `njit` made of it; ``name`` begins all paths."""
     walk = _Walk()
-    function = python_function(given)
-    walk.items(kinds.options(given), f"{name}: options of njit")
+    function = python_function(callee)
+    walk.items(kinds.options(callee), f"{name}: options of njit")
     walk.function(function, name)
     while walk.pending:
         walk.inside(*walk.pending.pop())
@@ -64,14 +64,14 @@ def content_of(given: object, name: str) -> Content:
     return Content(digest, tuple(walk.uncertain), tuple(walk.dispatchers), tuple(walk.objects))
 
 
-def python_function(given: object) -> FunctionType:
+def python_function(callee: object) -> FunctionType:
     """The function that Python runs: itself, or what numba's `njit` was put on; raises TypeError where it is neither.
 
     Another object that has a `py_func` is no such function: `functools.wraps` gives one to what it makes around a function of numba's.
     """
-    found = cast("Any", given).py_func if kinds.is_dispatcher(given) else given
+    found = cast("Any", callee).py_func if kinds.is_dispatcher(callee) else callee
     if not isinstance(found, FunctionType):
-        raise TypeError(f"a mapping calls Python functions, and those of numba's njit; {type(given).__name__} is neither")
+        raise TypeError(f"a mapping calls Python functions, and those of numba's njit; {type(callee).__name__} is neither")
     return found
 
 
@@ -179,15 +179,15 @@ class _Walk:
             self.value(each, path)
         self.depth -= 1
 
-    def dispatcher(self, given: Any, path: str) -> None:
+    def dispatcher(self, callee: Any, path: str) -> None:
         """A function of numba's that the code calls."""
-        if is_known_dispatcher(given):
-            self.parts.append(f"numba's {given.py_func.__module__}.{given.py_func.__qualname__}")
-        elif kinds.is_ordinary(given):
-            self.dispatchers.append((path, given))
+        if is_known_dispatcher(callee):
+            self.parts.append(f"numba's {callee.py_func.__module__}.{callee.py_func.__qualname__}")
+        elif kinds.is_ordinary(callee):
+            self.dispatchers.append((path, callee))
             self.parts.append("dispatcher")
-            self.items(kinds.options(given), f"{path}: options of njit")
-            self.function(python_function(given), path)
+            self.items(kinds.options(callee), f"{path}: options of njit")
+            self.function(python_function(callee), path)
         else:
             self.doubt(words.other_compiler(path))
 

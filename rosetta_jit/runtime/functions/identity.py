@@ -42,17 +42,17 @@ class Identity:
     content: str = ""
 
 
-def identify(given: object, name: str) -> Identity:
+def identify(callee: object, name: str) -> Identity:
     """Look at a function, before it is compiled; raises TypeError where it is neither a Python function nor one of numba's njit."""
-    content, around = content_of(given, name), _around()
+    content, around = content_of(callee, name), _around()
     before = tuple(words.compiled_before(path) for path, each in content.dispatchers if not _is_as_now(each, around))
     uncertain = tuple(dict.fromkeys((*content.uncertain, *before, *around.uncertain)))
     return Identity(None if uncertain else _digest(content, around), uncertain, content.objects, content.digest)
 
 
-def settle(identity: Identity, given: object, name: str) -> bool:
+def settle(identity: Identity, callee: object, name: str) -> bool:
     """Look at a function again, after it was compiled: whether it is identified, and still the same. What it calls is compiled now, too."""
-    content, around = content_of(given, name), _around()
+    content, around = content_of(callee, name), _around()
     if content.digest != identity.content:
         return False
     older = set(identity.uncertain)

@@ -41,9 +41,9 @@ def plain(value: object) -> str | None:
     return repr(value) if kind in (bool, str, bytes, type(None), type(...)) else None
 
 
-def set_of_plain(given: frozenset[object]) -> tuple[object, ...] | None:
+def set_of_plain(values: frozenset[object]) -> tuple[object, ...] | None:
     """A set of values without parts, which are known by their texts."""
-    texts = [(type(each).__name__, plain(each)) for each in given]
+    texts = [(type(each).__name__, plain(each)) for each in values]
     return None if any(text is None for _, text in texts) else ("set", *sorted(texts, key=repr))
 
 
@@ -67,7 +67,7 @@ def _has_manners(base: type) -> bool:
 
 
 def _member(member: enum.Enum) -> tuple[object, ...]:
-    """Its value, and the number or text that it is itself."""
+    """A member's value, and the number or text that the member is itself, if it is one."""
     number = int.__repr__(member) if isinstance(member, int) else None
     return vars(member).get("_value_"), number, str.__str__(member) if isinstance(member, str) else None
 
@@ -85,40 +85,40 @@ def named_tuple(cls: type) -> tuple[object, ...] | None:
     return "named tuple", cast("tuple[object, ...]", fields), cls.__new__.__defaults__
 
 
-def dtype(given: np.dtype[Any]) -> tuple[object, ...] | None:
+def dtype(number_type: np.dtype[Any]) -> tuple[object, ...] | None:
     """A dtype of numbers, texts, times, or records of these."""
-    if given.hasobject or given.kind not in PLAIN_DTYPES or given.type.__module__ not in ("numpy", "numpy.rec"):
+    if number_type.hasobject or number_type.kind not in PLAIN_DTYPES or number_type.type.__module__ not in ("numpy", "numpy.rec"):
         return None
-    return "dtype", repr(given), given.itemsize, given.isalignedstruct
+    return "dtype", repr(number_type), number_type.itemsize, number_type.isalignedstruct
 
 
-def array(given: np.ndarray[Any, Any]) -> tuple[object, ...] | None:
+def array(numbers: np.ndarray[Any, Any]) -> tuple[object, ...] | None:
     """An array that numba copies into the code."""
-    kind = dtype(given.dtype)
+    kind = dtype(numbers.dtype)
     if kind is None:
         return None
-    flags = given.flags
-    digest = sha256(given.tobytes()).hexdigest()
-    return "array", kind, given.shape, (flags.c_contiguous, flags.f_contiguous, flags.aligned, flags.writeable), digest
+    flags = numbers.flags
+    digest = sha256(numbers.tobytes()).hexdigest()
+    return "array", kind, numbers.shape, (flags.c_contiguous, flags.f_contiguous, flags.aligned, flags.writeable), digest
 
 
-def is_at_its_address(given: np.ndarray[Any, Any]) -> bool:
+def is_at_its_address(numbers: np.ndarray[Any, Any]) -> bool:
     """Whether numba compiles where the array lies, not what is in it."""
-    return given.nbytes > MAX_FROZEN_BYTES or not (given.flags.c_contiguous or given.flags.f_contiguous)
+    return numbers.nbytes > MAX_FROZEN_BYTES or not (numbers.flags.c_contiguous or numbers.flags.f_contiguous)
 
 
-def scalar(given: np.generic[Any]) -> tuple[object, ...] | None:
+def scalar(value: np.generic[Any]) -> tuple[object, ...] | None:
     """A scalar of numpy's."""
-    kind = dtype(given.dtype)
-    if kind is None or not (is_known(type(given)) or type(given) is np.record):
+    kind = dtype(value.dtype)
+    if kind is None or not (is_known(type(value)) or type(value) is np.record):
         return None
-    return "scalar", kind, given.tobytes()
+    return "scalar", kind, value.tobytes()
 
 
-def is_dispatcher(given: object) -> bool:
+def is_dispatcher(value: object) -> bool:
     """Whether numba's njit made it."""
     registry = sys.modules.get("numba.core.registry")
-    return registry is not None and type(given) is registry.CPUDispatcher
+    return registry is not None and type(value) is registry.CPUDispatcher
 
 
 def is_ordinary(dispatcher: Any) -> bool:
@@ -132,12 +132,12 @@ def is_ordinary(dispatcher: Any) -> bool:
     return usual and type(dispatcher._cache) is caching.NullCache and dispatcher._can_compile  # noqa: SLF001 - as above
 
 
-def options(given: Any) -> tuple[object, ...]:
+def options(callee: Any) -> tuple[object, ...]:
     """What `njit` was given beside the function: options, and types of locals. Functions that it was not put on have none."""
-    if not is_dispatcher(given):
+    if not is_dispatcher(callee):
         return (), ()
-    chosen: dict[str, Any] = given.targetoptions
-    types: dict[str, Any] = given.locals
+    chosen: dict[str, Any] = callee.targetoptions
+    types: dict[str, Any] = callee.locals
     return tuple((name, _ordered(value)) for name, value in sorted(chosen.items())), tuple(sorted(types.items()))
 
 

@@ -27,7 +27,7 @@ Read = Callable[[Message, "Lanes", int], Any]
 
 
 def getter(entry: Entry, family: Family) -> Getter:
-    """What reads a field of a message."""
+    """The function that reads a field of a message."""
     node = entry.node
     match node:
         case Items() if not node.shape:
@@ -123,7 +123,7 @@ def _numbers(entry: Entry, node: Numbers, family: Family) -> Read:
 
 
 def setter(entry: Entry, family: Family) -> Setter:
-    """What assigns to a field of a message."""
+    """The function that assigns to a field of a message."""
     node = entry.node
     match node:
         case Scalar() | Text() | Blob():
@@ -141,7 +141,7 @@ def setter(entry: Entry, family: Family) -> Setter:
 
 
 def assigner(entry: Entry) -> Setter:
-    """What assigns to a field, whether or not the manners let people do so."""
+    """The function that assigns to a field, also where the manners do not let people do so."""
     node = entry.node
     is_leaf = isinstance(node, Scalar | Text | Blob | Numbers) or (isinstance(node, Items) and bool(node.shape))
     return _leaf_setter(entry, cast("values.Leaf", node)) if is_leaf else _whole_setter(entry)

@@ -83,7 +83,7 @@ def _is_last(lanes: Lanes, text: Text, row: int, rows: int) -> bool:
 
 
 def _waste_of(lanes: Lanes, node: Node, row: int, rows: int) -> None:
-    """The same of what a node of each of these rows holds."""
+    """Note the same of the elements that a node of each of these rows refers to."""
     match node:
         case Scalar():
             pass

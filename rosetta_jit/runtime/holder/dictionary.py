@@ -49,7 +49,7 @@ class Dictionary(MutableMapping[Any, Any]):
         return self.index
 
     def _known(self) -> dict[Any, int]:
-        """The same, where another thread may change the map."""
+        """The number of the last pair of each key, where another thread may change the map meanwhile."""
         return self.message.lanes_.consistent(lambda dictionary: dictionary._keys(), self)  # noqa: SLF001 - it is this one
 
     def __len__(self) -> int:

@@ -109,7 +109,7 @@ class Family:
 
     @property
     def described(self) -> dict[str, Any]:
-        """What `help` says of the class."""
+        """The text that `help` shows of the class."""
         return {"__doc__": Described(self), "__signature__": Constructor()}
 
     def kept_of(self, struct: str) -> KeptFields | None:
@@ -121,7 +121,7 @@ class Family:
 
     @property
     def sequences(self) -> OfSequences:
-        """What compiled code asks of sequences."""
+        """The functions that compiled code calls for sequences."""
         return OF_SEQUENCES
 
     @property
@@ -191,7 +191,7 @@ class Family:
 
     @property
     def foreign(self) -> Foreign:
-        """What is particular about the objects of the framework's own package."""
+        """The peculiarities of objects of the framework's own package."""
         return self.manners.foreign
 
     @cached_property
@@ -201,14 +201,14 @@ class Family:
 
     @cached_property
     def takers(self) -> Takers:
-        """What takes objects of other classes into the holders."""
+        """The takers, which copy objects of other classes into the holders."""
         from rosetta_jit.runtime.holder.objects.taking import Takers
 
         return Takers(cast("HolderFamily", self))  # its properties are made once
 
     @cached_property
     def givers(self) -> Givers:
-        """What hands the holders on as objects of other classes."""
+        """The givers, which make objects of other classes from the holders."""
         from rosetta_jit.runtime.holder.objects.giving import Givers
 
         return Givers(cast("HolderFamily", self))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from rosetta_jit.runtime.holder.dictionary import Dictionary
 from rosetta_jit.runtime.holder.objects.foreign import ORDINARY, Foreign
 from rosetta_jit.runtime.holder.sequence import Sequence
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -82,5 +82,4 @@ PLAIN = Manners(
 
 def manners_at(place: str) -> Manners:
     """The manners at a place."""
-    module, _, name = place.partition(":")
-    return getattr(import_module(module), name)
+    return object_at(place)

@@ -153,7 +153,7 @@ class Access:
         return self._kin
 
     def place_of(self, name: str) -> int:
-        """Address of what they know of one field."""
+        """The address of the words about one field."""
         return self.table and self.table + PLACE_BYTES * self._numbers[name]
 
     def _read(self, name: str) -> Getter:
@@ -201,12 +201,12 @@ class _Made(dict[str, Any]):
 
 
 def read_field(name: str) -> Getter:
-    """What a property runs: the getter of the message's own record."""
+    """Read a field of a message, by the getter of the message's own record; properties call it."""
     return lambda message: message.access_.getters[name](message)
 
 
 def write_field(name: str) -> Setter:
-    """The same of the setter."""
+    """Assign to a field of a message, by the setter of its record."""
     return lambda message, value: message.access_.setters[name](message, value)
 
 
@@ -263,7 +263,7 @@ def element(view: _Message, parent: View, access: Access, entry: Entry, index: i
 
 
 def place(message: Message) -> tuple[Lanes, int]:
-    """Where a message is to be read.
+    """The lanes and the row at which a message is read.
 
     Raises
     ------

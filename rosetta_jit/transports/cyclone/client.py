@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import threading
-from functools import cache
 from importlib import import_module
 from time import time_ns
 from typing import TYPE_CHECKING, Any
@@ -12,6 +11,7 @@ from xml.sax.saxutils import quoteattr
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Message, Sink, Source
+from rosetta_jit.transports.processes import per_process
 from rosetta_jit.transports.ros2_names import mangled, plain, topic_of
 
 if TYPE_CHECKING:
@@ -65,14 +65,8 @@ class Domains:
             return self._open[number]
 
 
-def domains() -> Domains:
-    """Those of this process."""
-    return _domains_of(os.getpid())
-
-
-@cache
-def _domains_of(_: int) -> Domains:
-    return Domains()
+domains = per_process(Domains)
+"""Those of this process."""
 
 
 class Endpoint:
@@ -141,13 +135,8 @@ def _read(reader: Any, endpoint: Endpoint, channel: str, source: Source, options
     endpoint.participant = endpoint.topic = None
 
 
-def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
-    """Send samples to a topic; with `ros2-dds`, to a topic of ROS 2."""
-    return DdsSink(address, options, lost)
-
-
 class DdsSink(Sink):
-    """Writes samples, each with the four bytes in front that say how it is serialised."""
+    """Writes samples to a topic (with `ros2-dds`, of ROS 2), each with the four bytes in front that say how it is serialised."""
 
     def __init__(self, address: Address, options: Mapping[str, Any], lost: Lost | None) -> None:
         super().__init__(str(address), lost)

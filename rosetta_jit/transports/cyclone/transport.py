@@ -13,7 +13,7 @@ TRANSPORTS = (
         ("dds", "ros2-dds"),
         "ros2-dds:/chatter?type=std_msgs/msg/String",
         subscribe=f"{HERE}:subscribe",
-        publish=f"{HERE}:publish",
+        publish=f"{HERE}:DdsSink",
         extra=("cyclonedds", "cyclonedds"),
         types={"ros2-dds": "ros2"},
         asks=("type",),

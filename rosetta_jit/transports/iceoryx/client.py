@@ -72,11 +72,6 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
     source.read(run)
 
 
-def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
-    """Publish to a service."""
-    return IceoryxSink(address, options, lost)
-
-
 class IceoryxSink(Sink):
     """Copies each message into shared memory, once, and wakes who waits."""
 

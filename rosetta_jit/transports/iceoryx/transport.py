@@ -13,7 +13,7 @@ TRANSPORTS = (
         ("iceoryx",),
         "iceoryx:camera/left",
         subscribe=f"{HERE}:subscribe",
-        publish=f"{HERE}:publish",
+        publish=f"{HERE}:IceoryxSink",
         extra=("iceoryx", "iceoryx2"),
         options={
             "first": Option("size", 1 << 16, "room for a message of so many bytes at first; a larger one takes more"),

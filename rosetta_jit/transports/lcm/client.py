@@ -50,11 +50,6 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
     source.read(run)
 
 
-def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
-    """Send messages to a channel."""
-    return LcmSink(address, options, lost)
-
-
 class LcmSink(Sink):
     """Sends to a channel; nobody says whether it arrived."""
 

@@ -13,7 +13,7 @@ TRANSPORTS = (
         ("lcm",),
         "lcm:POSE",
         subscribe=f"{HERE}:subscribe",
-        publish=f"{HERE}:publish",
+        publish=f"{HERE}:LcmSink",
         extra=("lcm", "lcm"),
         options={
             "url": Option(

@@ -99,11 +99,6 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
     source.opened(client.close)
 
 
-def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
-    """Send messages to a topic."""
-    return MqttSink(address, options, lost)
-
-
 class MqttSink(Sink):
     """Sends to a topic. At most `queue` messages wait for a broker that is slow or gone."""
 

@@ -13,7 +13,7 @@ TRANSPORTS = (
         ("mqtt",),
         "mqtt:robot/arm/joints",
         subscribe=f"{HERE}:subscribe",
-        publish=f"{HERE}:publish",
+        publish=f"{HERE}:MqttSink",
         extra=("mqtt", "paho"),
         options={
             "host": Option("text", "127.0.0.1", "of the broker"),

@@ -27,20 +27,13 @@ if TYPE_CHECKING:
 WORKED, FAILED = b"\1", b"\0"
 
 
-def call(address: Address, options: Mapping[str, Any]) -> Caller:
-    """Ask a service."""
-    return RosCaller(address, options)
-
-
 class RosCaller(Caller):
     """Asks a service, one question after the other."""
 
     def __init__(self, address: Address, options: Mapping[str, Any]) -> None:
-        super().__init__(str(address))
+        super().__init__(address, options)
         self._service = graph_name(address)
         self._node = nodes().enter(options)
-        self._most: int = options["max_message"]
-        self._timeout: float = options["timeout"]
         self._wanted = {
             "callerid": self._node.name,
             "service": self._service,
@@ -54,12 +47,8 @@ class RosCaller(Caller):
         self._pending: Pending | None = None
         self._closed = False
 
-    def __call__(
-        self, data: bytes | bytearray | memoryview, *, timeout: float | None = None, attributes: Mapping[str, Any] | None = None
-    ) -> Message:
+    def ask(self, data: bytes | bytearray | memoryview, until: float, attributes: Mapping[str, Any]) -> Message:
         del attributes
-        until = monotonic() + (self._timeout if timeout is None else timeout)
-        self.check_size(len(data), self._most)
         with self._turn:
             pending = self._pending = Pending()
             stream = self._connected(until)
@@ -139,7 +128,7 @@ class RosCaller(Caller):
 
 
 def serve(address: Address, server: Server, options: Mapping[str, Any]) -> None:
-    """Answer the questions to a service; one whose answer fails is told the error's text."""
+    """Answer the calls of a service; a caller whose call fails gets the error's text."""
     node = nodes().enter(options)
     service = Service(node, graph_name(address), server, options)
     try:
@@ -157,7 +146,7 @@ def serve(address: Address, server: Server, options: Mapping[str, Any]) -> None:
 
 
 class Service:
-    """A service of a node, and who asks it now."""
+    """A service of a node, and the callers that are connected now."""
 
     kind = "service"
 

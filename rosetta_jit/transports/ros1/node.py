@@ -7,7 +7,6 @@ import re
 import threading
 from collections import deque
 from contextlib import suppress
-from functools import cache
 from itertools import count
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
@@ -15,6 +14,7 @@ from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.connecting import Listener, resolve
 from rosetta_jit.transports.feeding import ProtocolError
 from rosetta_jit.transports.limits import MAX_CONNECTIONS, MAX_TASKS
+from rosetta_jit.transports.processes import per_process
 from rosetta_jit.transports.ros1.tcpros import header, read_header
 from rosetta_jit.transports.ros1.xmlrpc import Answering, ask
 from rosetta_jit.transports.stream import Stream
@@ -73,7 +73,7 @@ class Node:
         self._thread.start()
 
     def ask(self, method: str, *arguments: object) -> Any:
-        """What the master answers; the node's name goes first."""
+        """Call a method of the master, with the node's name as the first argument, and return its answer."""
         return ask(self.master, method, self.name, *arguments)
 
     def add(self, part: Part, *, patient: bool) -> None:
@@ -176,7 +176,7 @@ class Node:
         return next((each for each in self._parts if (each.kind, each.name) == (kind, name)), None)
 
     def _methods(self) -> dict[str, Callable[..., object]]:
-        """What other nodes may ask."""
+        """The methods that other nodes may call, by name."""
 
         def of(kind: str) -> list[list[str]]:
             return [[each.name, each.type] for each in self._parts if each.kind == kind]
@@ -238,14 +238,8 @@ class Nodes:
             node.close()
 
 
-def nodes() -> Nodes:
-    """Those of this process."""
-    return _nodes_of(os.getpid())
-
-
-@cache
-def _nodes_of(_: int) -> Nodes:
-    return Nodes()
+nodes = per_process(Nodes)
+"""Those of this process."""
 
 
 def uris_in(value: object) -> list[str]:

@@ -48,11 +48,6 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
     source.opened(close)
 
 
-def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
-    """Send to all subscribers of a topic."""
-    return RosSink(address, options, lost)
-
-
 def topics(address: Address, options: Mapping[str, Any]) -> list[tuple[str, str | None]]:
     """The topics that the master knows, with their types."""
     node = nodes().enter(options)
@@ -99,7 +94,7 @@ class Subscription:
         raise refuse(stream, "a subscriber")
 
     def left(self, stream: Stream, why: str) -> None:
-        """Of connections that others made, there are none."""
+        """Nothing to do: others do not connect to a subscription."""
 
     def close(self) -> None:
         """End all connections."""

@@ -6,13 +6,13 @@ import http.client
 import socket
 import threading
 import xmlrpc.client
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any, cast
 from urllib.parse import urlsplit
 from xml.parsers.expat import ExpatError
 
 from rosetta_jit.errors import TransportError
-from rosetta_jit.transports.conversation import Conversation, conversation
+from rosetta_jit.transports.conversation import conversation
+from rosetta_jit.transports.http_server import Handler, QuestionServer
 from rosetta_jit.transports.limits import MAX_REQUESTS, MAX_XML_BYTES
 
 if TYPE_CHECKING:
@@ -59,41 +59,17 @@ def ask(uri: str, method: str, *arguments: Any) -> Any:
             raise TransportError("protocol", uri, f"{method} is not answered as ROS does")
 
 
-class _Server(ThreadingHTTPServer):
-    daemon_threads = True
+class _Server(QuestionServer):
     request_queue_size = 64
 
     def __init__(self, place: tuple[str, int], methods: Mapping[str, Callable[..., object]]) -> None:
         self.address_family = socket.AF_INET6 if ":" in place[0] else socket.AF_INET
         self.methods = methods
-        self.room = threading.BoundedSemaphore(MAX_REQUESTS)
-        super().__init__(place, _Handler)
-
-    def get_request(self) -> tuple[Any, Any]:
-        """The next connection, for one question."""
-        sock, place = super().get_request()
-        return Conversation.over(sock, TIMEOUT_S), place
-
-    def process_request(self, request: Any, client_address: Any) -> None:
-        if not self.room.acquire(blocking=False):
-            self.shutdown_request(request)
-            return
-        super().process_request(request, client_address)
-
-    def process_request_thread(self, request: Any, client_address: Any) -> None:
-        try:
-            super().process_request_thread(request, client_address)
-        finally:
-            self.room.release()
-
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        """A peer that went away is its own business."""
+        super().__init__(place, _Handler, MAX_REQUESTS)
 
 
-class _Handler(BaseHTTPRequestHandler):
-    timeout = TIMEOUT_S
-
-    def do_POST(self) -> None:
+class _Handler(Handler):
+    def do_POST(self) -> None:  # noqa: N802 - http.server's name
         size = self.headers.get("Content-Length", "")
         if not size.isdecimal() or int(size) > MAX_XML_BYTES:
             self.send_error(413)
@@ -103,15 +79,7 @@ class _Handler(BaseHTTPRequestHandler):
             answer: Any = cast("_Server", self.server).methods[method or ""](*arguments)
         except (*BAD_XML, ValueError, OSError) as error:
             answer = [-1, type(error).__name__, 0]
-        body = xmlrpc.client.dumps((answer,), methodresponse=True, allow_none=False).encode()
-        self.send_response(200)
-        self.send_header("Content-Type", "text/xml")
-        self.send_header("Content-Length", str(len(body)))
-        self.end_headers()
-        self.wfile.write(body)
-
-    def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - as the base class names it
-        """Say nothing."""
+        self.answer("text/xml", xmlrpc.client.dumps((answer,), methodresponse=True, allow_none=False).encode())
 
 
 class Answering:

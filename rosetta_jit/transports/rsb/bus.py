@@ -8,10 +8,8 @@ A frame is written at once: rsb-python closes a connection where the four bytes 
 
 from __future__ import annotations
 
-import os
 import struct
 import threading
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
@@ -19,6 +17,7 @@ from rosetta_jit.transports.connecting import Dialer, Listener, resolve
 from rosetta_jit.transports.feeding import Between, ProtocolError
 from rosetta_jit.transports.limits import MAX_CONNECTIONS
 from rosetta_jit.transports.loop import loop
+from rosetta_jit.transports.processes import per_process
 from rosetta_jit.transports.rsb.notification import Event, NoEventError, decode, encode, scope_in
 from rosetta_jit.transports.rsb.scopes import above, normal
 from rosetta_jit.transports.stream import Stream, finish_all
@@ -51,7 +50,7 @@ def frames(take: Callable[[memoryview], object], most: int, *, is_client: bool, 
 
 
 class Participant:
-    """Who listens on a scope: gets its events in the loop's thread, or in that of who sends them in this process."""
+    """A listener on a scope. It gets the events in the loop's thread; those that this process sends, in the sender's thread."""
 
     def __init__(self, scope: str, counts: End, take: Callable[[Event], object]) -> None:
         self.scope = scope
@@ -289,11 +288,5 @@ class Buses:
                 bus.close(linger)
 
 
-def buses() -> Buses:
-    """Those of this process."""
-    return _buses_of(os.getpid())
-
-
-@cache
-def _buses_of(_: int) -> Buses:
-    return Buses()
+buses = per_process(Buses)
+"""Those of this process."""

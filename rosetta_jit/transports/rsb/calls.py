@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
@@ -24,20 +23,13 @@ VOID = "void"
 TEXT = "utf-8-string"
 
 
-def call(address: Address, options: Mapping[str, Any]) -> Caller:
-    """Ask a method, whose scope is that of its server and its name."""
-    return RsbCaller(address, options)
-
-
 class RsbCaller(Caller):
     """Sends requests; any number may be on their way."""
 
     def __init__(self, address: Address, options: Mapping[str, Any]) -> None:
-        super().__init__(str(address))
+        super().__init__(address, options)
         scope = scope_of(address)
         self._informer = Informer(scope, options["type"] or VOID)
-        self._most: int = options["max_message"]
-        self._timeout: float = options["timeout"]
         self._pending: dict[EventId, Pending] = {}
         self._lock = threading.Lock()
         self._bus = buses().enter(options)
@@ -45,14 +37,10 @@ class RsbCaller(Caller):
         self._bus.join(self, self._participant)
         self._closed = False
 
-    def __call__(
-        self, data: bytes | bytearray | memoryview, *, timeout: float | None = None, attributes: Mapping[str, Any] | None = None
-    ) -> Message:
+    def ask(self, data: bytes | bytearray | memoryview, until: float, attributes: Mapping[str, Any]) -> Message:
         if self._closed:
             raise TransportError("closed", self.address, "this caller is closed")
-        self.check_size(len(data), self._most)
-        until = monotonic() + (self._timeout if timeout is None else timeout)
-        event = self._informer.event(data, None, {**(attributes or {}), "method": REQUEST}, self.address)
+        event = self._informer.event(data, None, {**attributes, "method": REQUEST}, self.address)
         pending = Pending()
         with self._lock:
             self._pending[event.id] = pending

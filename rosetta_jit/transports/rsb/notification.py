@@ -80,7 +80,7 @@ def encode(event: Event) -> tuple[bytes, bytes | bytearray | memoryview, bytes]:
 
 @lru_cache(maxsize=1024)
 def _before(scope: str, schema: str) -> bytes:
-    """What stands before the length of the payload."""
+    """The bytes of a notification before the length of its payload."""
     return _chunk(b"\x32", scope.encode()) + _chunk(b"\x3a", schema.encode()) + b"\x4a"
 
 

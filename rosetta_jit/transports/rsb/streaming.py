@@ -34,11 +34,6 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
     source.opened(close)
 
 
-def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
-    """Send events on a scope."""
-    return RsbSink(address, options, lost)
-
-
 def message_of(event: Event) -> Message:
     """An event as a message."""
     data = event.data if isinstance(event.data, bytes | memoryview) else memoryview(event.data)

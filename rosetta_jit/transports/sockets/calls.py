@@ -20,29 +20,19 @@ if TYPE_CHECKING:
     from rosetta_jit.transports.stream import Stream
 
 
-def call(address: Address, options: Mapping[str, Any]) -> Caller:
-    """Ask who listens at an address."""
-    return TcpCaller(address, options)
-
-
 class TcpCaller(Caller):
     """Sends questions over one connection; answers come in their order."""
 
     def __init__(self, address: Address, options: Mapping[str, Any]) -> None:
-        super().__init__(str(address))
+        super().__init__(address, options)
         self._channel = address.rest
         self._frame: str = options["frame"]
-        self._most: int = options["max_message"]
-        self._timeout: float = options["timeout"]
         self._pending: deque[Pending] = deque()
         self._order = threading.Lock()
         self._links = Links(address, self, self._machine, listen=options["listen"] == "yes", went=self._lost)
 
-    def __call__(
-        self, data: bytes | bytearray | memoryview, *, timeout: float | None = None, attributes: Mapping[str, Any] | None = None
-    ) -> Message:
+    def ask(self, data: bytes | bytearray | memoryview, until: float, attributes: Mapping[str, Any]) -> Message:
         del attributes
-        until = monotonic() + (self._timeout if timeout is None else timeout)
         parts = framed(self._frame, data, self._most, self.address)
         pending = Pending()
         with self._order:

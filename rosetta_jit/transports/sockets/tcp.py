@@ -116,11 +116,6 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
     source.opened(lambda: links.close(0))
 
 
-def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
-    """Send to all connections."""
-    return TcpSink(address, options, lost)
-
-
 class TcpSink(Sink):
     """Sends each message to every connection; where there is none yet, `send` waits for one."""
 
@@ -188,7 +183,7 @@ def waited(links: Links, seconds: float) -> tuple[Stream, ...]:
 
 
 def _ignore(_: Stream) -> Machine:
-    """What a receiver sends back is of no interest."""
+    """Read what a receiver sends back, and drop it."""
     from rosetta_jit.transports.feeding import Between
 
     while True:

@@ -40,11 +40,6 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
     source.opened(close)
 
 
-def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
-    """Send datagrams to an address or a group."""
-    return UdpSink(address, options, lost)
-
-
 class UdpSink(Sink):
     """Sends each message as one datagram; nobody says whether it arrived."""
 

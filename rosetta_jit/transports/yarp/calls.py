@@ -28,11 +28,6 @@ if TYPE_CHECKING:
 RETRY_S = 0.05
 
 
-def call(address: Address, options: Mapping[str, Any]) -> Caller:
-    """Ask a port."""
-    return YarpCaller(address, options)
-
-
 def serve(address: Address, server: Server, options: Mapping[str, Any]) -> None:
     """Open a port that answers; YARP has no errors: who asks gets an empty bottle where the answer fails."""
     port = Port(port_name(address), name_server(options, address), options, server, take=_not_asked, asked=server.asked)
@@ -47,27 +42,20 @@ class YarpCaller(Caller):
     """Asks one port, one question after the other; connects again when the connection is gone."""
 
     def __init__(self, address: Address, options: Mapping[str, Any]) -> None:
-        super().__init__(str(address))
+        super().__init__(address, options)
         self._target = port_name(address)
         self._names = name_server(options, address)
         self._name = options["name"] or own_name({"name": ""}, self._target).lstrip("/")  # without a slash: it is not registered
-        self._most: int = options["max_message"]
-        self._timeout: float = options["timeout"]
         self._turn = threading.Lock()
         self._stream: Stream | None = None
         self._pending: Pending | None = None
         self._closed = False
 
-    def __call__(
-        self, data: bytes | bytearray | memoryview, *, timeout: float | None = None, attributes: Mapping[str, Any] | None = None
-    ) -> Message:
-        until = monotonic() + (self._timeout if timeout is None else timeout)
-        self.check_size(len(data), self._most)
-        envelope = None if attributes is None else attributes.get("envelope")
+    def ask(self, data: bytes | bytearray | memoryview, until: float, attributes: Mapping[str, Any]) -> Message:
         with self._turn:
             stream = self._connected(until)
             pending = self._pending = Pending()
-            if not stream.send(head_of(len(data), reply=True, envelope=envelope), data):
+            if not stream.send(head_of(len(data), reply=True, envelope=attributes.get("envelope")), data):
                 raise TransportError("closed", self.address, "the connection is gone")
             self.passed(len(data))
             try:

@@ -134,7 +134,7 @@ def _reply_to(line: Line, ack: bytes) -> Reply:
 
 
 def _bottle_to(line: Line, ack: bytes, dialect: str) -> Callable[[str], object]:
-    """What answers a command that came as a bottle."""
+    """A function that answers a command which came as a bottle."""
 
     def answer(text: str) -> None:
         line.send(from_text(text, dialect) + ack)

@@ -1,4 +1,4 @@
-"""What writers send to a port by udp and mcast: TCP carries their hello and their goodbye, datagrams the messages."""
+"""Writers that send to a port by udp and mcast: their hello and goodbye come by TCP, their messages as datagrams."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class DatagramInput:
-    """What one writer sends, until it says goodbye; all in the loop's thread.
+    """The datagrams of one writer, until it says goodbye; all in the loop's thread.
 
     Parameters
     ----------

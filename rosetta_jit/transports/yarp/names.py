@@ -27,7 +27,7 @@ NAME = re.compile(r"/[!#-'*-~]{0,250}")
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """Where a port listens."""
+    """The place at which a port listens."""
 
     name: str
     host: str
@@ -36,7 +36,7 @@ class Contact:
 
 
 def contact_in(line: str) -> Contact | None:
-    """What a line of the name server says about a port, if it does."""
+    """The contact in a line of the name server's answer; None where the line has none."""
     match = REGISTRATION.fullmatch(line)
     if match is None or not match[3].isdecimal() or not 0 < int(match[3]) < 65536:
         return None
@@ -85,7 +85,7 @@ class NameServer:
         return next(filter(None, map(contact_in, lines)), None)
 
     def register_group(self, owner: str) -> Contact | None:
-        """A group for what a port sends by mcast, with a name of its own."""
+        """Register a multicast group for the messages that a port sends by mcast, under a name of its own."""
         found = next(filter(None, map(contact_in, self.ask("register ... mcast ... ..."))), None)
         if found is not None:
             with suppress(TransportError):  # as a bottle, whose answer has no end line
@@ -93,7 +93,7 @@ class NameServer:
         return found
 
     def query(self, name: str) -> Contact | None:
-        """Where a port of that name listens."""
+        """The contact of the port of that name; None where none is registered."""
         return next((each for each in map(contact_in, self.ask(f"query {name}")) if each), None)
 
     def unregister(self, name: str) -> None:

@@ -73,7 +73,7 @@ class Sender:
         return True
 
     def wait(self, seconds: float, *, empty: bool) -> bool:
-        """As of an `Output`."""
+        """See `Output.wait`."""
         most = 0 if empty else MAX_WAITING_BYTES // 2
         with self._changed:
             return self._changed.wait_for(lambda: self._is_closed or self._bytes <= most, seconds)
@@ -102,13 +102,13 @@ class Sender:
             loop().soon(loop().later, PAUSE_S, self._go_on)
 
     def _sent(self, parts: tuple[Bytes, ...]) -> bool:
-        """Whether the system has taken a datagram; also where nobody is there, which is told."""
+        """Whether the system has taken a datagram. True also where no reader is there any more; then the sender reports the failure."""
         try:
             self._socket.sendmsg(parts)
         except BlockingIOError:
             return False
         except OSError as error:
-            self._lost += 1 + isinstance(error, ConnectionRefusedError)  # told of the datagram before, and in place of sending this one
+            self._lost += 1 + isinstance(error, ConnectionRefusedError)  # of the datagram before, and this one, not sent
             self._is_closed = True
             loop().soon(self._failed)
         return True
@@ -167,7 +167,7 @@ class DatagramOutput:
         return self._sender.clear() if self.carrier == "mcast" else self._sender.close()
 
     def gone(self) -> int:
-        """As `close`."""
+        """Do the same as `close`."""
         return self.close()
 
 
@@ -183,11 +183,11 @@ class Group:
 
     @property
     def place(self) -> bytes:
-        """As it stands behind the hello."""
+        """Address and port of the group, as they are written behind the hello."""
         return ipaddress.ip_address(self.contact.host).packed + self.contact.port.to_bytes(2, "big")
 
 
-def told_udp(line: socket.socket, name: str, failed: Callable[[], object]) -> Sender:
+def greeted_by_udp(line: socket.socket, name: str, failed: Callable[[], object]) -> Sender:
     """Say hello by a connection, and get the place to send to.
 
     Raises
@@ -211,7 +211,7 @@ def told_udp(line: socket.socket, name: str, failed: Callable[[], object]) -> Se
     return Sender(sock, failed)
 
 
-def told_mcast(line: socket.socket, name: str, group: Group) -> None:
+def greeted_by_mcast(line: socket.socket, name: str, group: Group) -> None:
     """Say hello by a connection, and wait until the reader has joined the group: then it closes.
 
     Raises

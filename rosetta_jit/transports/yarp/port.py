@@ -21,7 +21,7 @@ from rosetta_jit.transports.yarp.incoming import incoming
 from rosetta_jit.transports.yarp.incoming_datagrams import DatagramInput, receiving
 from rosetta_jit.transports.yarp.names import NAME
 from rosetta_jit.transports.yarp.outgoing import Output
-from rosetta_jit.transports.yarp.outgoing_datagrams import DatagramOutput, Group, told_mcast, told_udp
+from rosetta_jit.transports.yarp.outgoing_datagrams import DatagramOutput, Group, greeted_by_mcast, greeted_by_udp
 from rosetta_jit.transports.yarp.wire import CARRIERS, CONNECTIONLESS
 
 if TYPE_CHECKING:
@@ -263,14 +263,14 @@ class Port:
 
         with sock:
             if carrier == "udp":
-                return DatagramOutput(contact, told_udp(sock, self.name, gone))
+                return DatagramOutput(contact, greeted_by_udp(sock, self.name, gone))
             here = sock.getsockname()[0]
             if here not in self._groups:
                 found = self._names.register_group(self.name)
                 if found is None:
                     raise ProtocolError("the name server gives no group")
                 self._groups[here] = Group(found, here)
-            told_mcast(sock, self.name, self._groups[here])
+            greeted_by_mcast(sock, self.name, self._groups[here])
             return DatagramOutput(contact, self._groups[here])
 
     def _knows(self, other: str) -> bool:

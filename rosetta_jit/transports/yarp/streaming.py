@@ -34,13 +34,11 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
     source.opened(lambda: port.close(options["linger"]))
 
 
-def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
-    """Open a port from which others read; or write to a port, as soon as there is one."""
-    return YarpSink(address, options, lost)
-
-
 class YarpSink(Sink):
-    """Writes to all readers of a port. The attribute `envelope` is sent as it is; a time makes a stamp."""
+    """Writes to all readers of a port of its own, or to a port of others as soon as there is one.
+
+    The attribute `envelope` is sent as it is; a time makes a stamp.
+    """
 
     def __init__(self, address: Address, options: Mapping[str, Any], lost: Lost | None) -> None:
         super().__init__(str(address), lost)

@@ -64,7 +64,7 @@ _GOODBYE = yarp_int(10) + b"\1\1" + b"\xff" * 8 + _SIZES.pack(10, 0, 2)[:8] + _C
 
 
 def hello(carrier: str, name: str) -> bytes:
-    """What a connection begins with."""
+    """The first bytes of a connection: the carrier and the sender's name."""
     text = name.encode() + b"\0"
     return yarp_int(FIRST_CARRIER + CARRIERS[carrier]) + _LENGTH.pack(len(text)) + text
 
@@ -144,5 +144,5 @@ def hello_rest() -> Generator[Any, memoryview, str]:
 
 
 def name_in(text: bytes) -> str:
-    """The name of a port in what it says of itself."""
+    """The name in the text by which a port introduces itself."""
     return text.split(b"\0", 1)[0].decode("utf-8", "replace").split(" (", 1)[0].strip()

@@ -18,27 +18,20 @@ if TYPE_CHECKING:
     from rosetta_jit.transports.address import Address
 
 
-def call(address: Address, options: Mapping[str, Any]) -> Caller:
-    """Ask who answers a key."""
-    return ZenohCaller(address, options)
-
-
 class ZenohCaller(Caller):
     """Asks; any number of questions may be on their way."""
 
     def __init__(self, address: Address, options: Mapping[str, Any]) -> None:
-        super().__init__(str(address))
+        super().__init__(address, options)
         self._key = key_of(address)
-        self._options, self._timeout = options, options["timeout"]
+        self._options = options
         self._session = sessions().enter(options, address)
         self._closed = False
 
-    def __call__(
-        self, data: bytes | bytearray | memoryview, *, timeout: float | None = None, attributes: Mapping[str, Any] | None = None
-    ) -> Message:
+    def ask(self, data: bytes | bytearray | memoryview, until: float, attributes: Mapping[str, Any]) -> Message:
         if self._closed:
             raise TransportError("closed", self.address, "this caller is closed")
-        seconds = self._timeout if timeout is None else timeout
+        seconds = max(until - monotonic(), 0.001)
         pending = Pending()
 
         def take(reply: zenoh.Reply) -> None:
@@ -51,11 +44,11 @@ class ZenohCaller(Caller):
         def ended() -> None:
             pending.fail(TransportError("unknown", self.address, "nobody answers this key"))
 
-        attachment = (attributes or {}).get("attachment")
+        attachment = attributes.get("attachment")
         handler = zenoh.handlers.Callback(take, ended, indirect=False)
         self._session.get(self._key, handler, payload=bytes(data), attachment=attachment, timeout=seconds)
         self.passed(len(data))
-        return pending.wait(monotonic() + seconds + 0.5, self.address)
+        return pending.wait(until + 0.5, self.address)
 
     def close(self) -> None:
         if not self._closed:

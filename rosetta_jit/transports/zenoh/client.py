@@ -56,11 +56,6 @@ def message_of(sample: zenoh.Sample, data: bytes) -> Message:
     return Message(data, str(sample.key_expr), None if encoding == DEFAULT_ENCODING else encoding, time_ns(), sent, attributes)
 
 
-def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
-    """Put messages to a key."""
-    return ZenohSink(address, options, lost)
-
-
 def put(sink: Sink, publisher: Any, data: bytes | bytearray | memoryview, **options: Any) -> bool:
     """Hand a message over to zenoh; counts whether it was taken."""
     try:

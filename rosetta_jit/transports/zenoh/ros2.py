@@ -39,7 +39,7 @@ _ENTITIES = count(10)
 
 
 def attachment_of(data: bytes) -> dict[str, Any]:
-    """What an attachment says; nothing where it is another one."""
+    """Sequence number, time and sender of a message, from its attachment; nothing where the attachment is not rmw_zenoh's."""
     first, second, third = _KEYS
     if data.startswith(first):  # the form with names
         at = len(first)
@@ -108,11 +108,6 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
         sessions().leave(options)
 
     source.opened(close)
-
-
-def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
-    """Send messages to a topic, as CDR."""
-    return Ros2Sink(address, options, lost)
 
 
 class Ros2Sink(Sink):

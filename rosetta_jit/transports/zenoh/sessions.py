@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
 import threading
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import zenoh
 
 from rosetta_jit.errors import TransportError
+from rosetta_jit.transports.processes import per_process
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -73,14 +72,8 @@ def _endpoints(text: str) -> list[str]:
     return [each.strip() for each in text.split(",") if each.strip()]
 
 
-def sessions() -> Sessions:
-    """Those of this process."""
-    return _sessions_of(os.getpid())
-
-
-@cache
-def _sessions_of(_: int) -> Sessions:
-    return Sessions()
+sessions = per_process(Sessions)
+"""Those of this process."""
 
 
 def key_of(address: Address) -> zenoh.KeyExpr:

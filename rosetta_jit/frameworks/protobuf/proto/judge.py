@@ -14,9 +14,9 @@ from rosetta_jit.frameworks.protobuf.proto.check_numbers import check_enums, che
 from rosetta_jit.frameworks.protobuf.proto.declarations import declarations
 from rosetta_jit.frameworks.protobuf.proto.names import absolute
 from rosetta_jit.frameworks.protobuf.proto.options import check_options
-from rosetta_jit.frameworks.protobuf.proto.problems import refuse
 from rosetta_jit.frameworks.protobuf.proto.schema import build
 from rosetta_jit.frameworks.protobuf.proto.symbols import declare
+from rosetta_jit.parsing.idl import refuse
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -31,7 +31,7 @@ def schema_of(files: FileSet) -> Schema:
     symbols = declare(files, problems)
     declared = declarations(absolute(file, symbols, problems) for file in files.files)
     problems += islice(check(declared), MAX_REPORTED)
-    refuse(problems)
+    refuse(problems, MAX_REPORTED)
     return build(declared)
 
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Literal, assert_never, get_args
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.limits import MAX_NAME, MAX_REPORTED
-from rosetta_jit.frameworks.protobuf.proto.problems import refuse
 from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Field, MapType, Message, Name, Oneof
+from rosetta_jit.parsing.idl import refuse
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def declare(files: FileSet, problems: list[Diagnostic]) -> Symbols:
     for file in files.files:
         for full, symbol in _symbols(file):
             if len(full) > MAX_NAME:
-                refuse([*problems, of_file.name_too_long(symbol.name.span, MAX_NAME)])
+                refuse([*problems, of_file.name_too_long(symbol.name.span, MAX_NAME)], MAX_REPORTED)
             old = table.get(full)
             if old is None:
                 table[full] = symbol

@@ -25,7 +25,7 @@ def is_message_like(value: object) -> bool:
 
 @lru_cache(maxsize=256)
 def has_messages(object_type: type[Any]) -> bool:
-    """The same of all objects of a class."""
+    """The same for all objects of a class."""
     kind: Any = object_type
     return not issubclass(kind, (*NO_MESSAGES, type)) and kind is not object and not hasattr(kind, "__array_interface__")
 

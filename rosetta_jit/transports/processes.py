@@ -1,0 +1,22 @@
+"""Objects that a process has one of: sockets and threads are of no use behind a fork, so a forked process makes its own."""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+from typing import TYPE_CHECKING, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+T = TypeVar("T")
+
+
+def per_process(make: Callable[[], T]) -> Callable[[], T]:
+    """A function that returns the one object of this process, and makes it at the first call."""
+
+    @cache
+    def of_process(_: int) -> T:
+        return make()
+
+    return lambda: of_process(os.getpid())
