@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -26,6 +27,7 @@ BOTH = ("decode", "encode")
 CMAKE = INCLUDE.parents[1] / "cmake"
 HERE = Path(__file__).parent
 MODELS = f"-I{HERE / 'models'}"
+NUMBERS = 'syntax = "proto2"; package rj; message Numbers { repeated double many = 1; optional double sometimes = 2; }'
 QUICK = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 OUTER = "=" * 80 + "\nMSG: evil/Inner\nfloat32 while\nstring memcpy\nuint8 holder\nint64[2] which\nstring codec\nbool[] std\n"
 
@@ -118,6 +120,25 @@ def test_no_compiler_complains_of_a_hostile_schema(tmp_path, compiler):
 def test_the_text_is_the_same_every_time(end):
     texts = generated(TORSO, "cpp", BOTH, "torso_state", Wishes(holder="protobuf"))
     check_golden(GOLDEN / "generate" / f"torso_state.{end}", texts[f"torso_state.{end}"])
+
+
+def test_numbers_are_set_where_the_object_has_them():
+    """No row keeps the numbers that every message has: neither of them is copied twice. A number that may be absent is."""
+    request = type_request("decode", "sensor_msgs/msg/Imu", {"encoding": "cdr"})
+    text = generated(request, "cpp", BOTH, "imu", Wishes(holder="ros2"))["imu.cpp"]
+    assert "    rosetta_jit::detail::set(target.orientation.x, load_f64_le(bytes, at_2));\n" in text
+    assert "row.orientation.x);" not in text
+    request = type_request("decode", "rj.Numbers", {"encoding": "protobuf", "schema": NUMBERS})
+    text = generated(request, "cpp", BOTH, "numbers", Wishes(holder="protobuf"))["numbers.cpp"]
+    assert "set_sometimes(rosetta_jit::detail::as<decltype(target.sometimes())>(row.sometimes));" in text
+
+
+@pytest.mark.parametrize("language", ["c", "cpp"])
+def test_positions_that_a_loop_proves_are_not_checked_again(language):
+    request = type_request("decode", "rj.Numbers", {"encoding": "protobuf", "schema": NUMBERS})
+    text = generated(request, language, BOTH, "numbers")[f"numbers.{language}"]
+    assert re.search(r"if \(end < next_2 \+ 8\) \{\n +failure->indices\[0\] = many_used - ", text)
+    assert re.search(r"if \(many_used >= holder->many.capacity\) \{", text)
 
 
 @cpp.needs_cpp

@@ -8,6 +8,7 @@ A `Lane` whose element is None has no fields that C knows: it is bytes.
 
 from __future__ import annotations
 
+from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.backends.base import Namespace
@@ -16,7 +17,7 @@ from rosetta_jit.generate.c.words import C_TYPES, RESERVED
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from rosetta_jit.generate.c.rows import Element
 
@@ -47,7 +48,8 @@ class Lanes:
     """Those of a kernel; ``prefix`` begins the names of the header, ``own`` are not hidden. Those of C++ make room for themselves.
 
     The rows of ``addressed`` lanes are bytes anywhere in memory, by their addresses; those of ``viewed`` lanes are made of an object's
-    elements when they are read. ``row``: the functions are given the message's row.
+    elements when they are read. ``row``: the functions are given the message's row. ``straight`` are the numbers of the message's row, by
+    offset, that no row keeps: each is a statement that sets it where an object has it, with `$value` for the number.
     """
 
     prefix: str
@@ -57,6 +59,7 @@ class Lanes:
     addressed: frozenset[int] = frozenset()
     viewed: frozenset[int] = frozenset()
     row: bool = False
+    straight: Mapping[int, str] = field(default_factory=dict[int, str])
 
     def stride(self, lane: int) -> int:
         """Bytes of a row."""
@@ -110,7 +113,8 @@ class Lanes:
 
     def words(self) -> frozenset[str]:
         """All that no local of a kernel may be called."""
-        return RESERVED | OWN_WORDS | {word for lane in self.all for word in (lane.identifier, lane.used)}
+        own = OWN_WORDS | {"target"} if self.straight else OWN_WORDS
+        return RESERVED | own | {word for lane in self.all for word in (lane.identifier, lane.used)}
 
 
 def row_type(prefix: str, element: Element | None) -> str:

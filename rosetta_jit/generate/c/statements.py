@@ -47,7 +47,8 @@ class Function:
 
     ``read`` are the locals whose values anything needs; ``finish`` are the lines before a return of success. ``is_routine``: it
     returns the numbers of its own sites. ``numbers`` are the rows of the file's table that sites of the kernel have got, ``origins`` what
-    rules of the mapping name. ``role`` is what its kernel is for.
+    rules of the mapping name. ``role`` is what its kernel is for. ``within`` are the variables known to be positions of the message, or its
+    end, at what is printed next: loops say so, and are proven to.
     """
 
     scope: Scope
@@ -59,6 +60,7 @@ class Function:
     numbers: dict[int, int] = field(default_factory=lambda: {0: 0})
     origins: Sequence[Origin] = ()
     role: Role = "decode"
+    within: frozenset[str] = frozenset()
     writer: Writer = field(default_factory=lambda: Writer(depth=1))
 
     def line(self, text: str) -> None:
@@ -119,16 +121,18 @@ def reached(block: ir.Block) -> ir.Block:
 
 
 def print_block(function: Function, block: ir.Block) -> None:
-    """The statements of a block."""
+    """The statements of a block; what they say of positions holds in there alone."""
+    within = function.within
     for stmt in block:
         _statement(function, stmt)
+    function.within = within
 
 
 def _statement(function: Function, stmt: ir.Stmt) -> None:
     scope = function.scope
     match stmt:
         case ir.Require(at, size, failure):
-            _fail_if(function, _lacks(scope, at, size), failure)
+            _fail_if(function, _lacks(function, at, size), failure)
         case ir.Expect(condition, failure):
             if condition == FALSE:
                 _fail(function, failure)
@@ -136,6 +140,7 @@ def _statement(function: Function, stmt: ir.Stmt) -> None:
                 _fail_if(function, expression(scope, folded(ir.Unary("not", condition))), failure)
         case ir.Let() | ir.Var() | ir.Assign():
             _bind(function, stmt)
+            function.within -= {stmt.name}
         case ir.Store() | ir.SetField() | ir.Copy() | ir.Fill():
             function.line(f"{_effect(scope, stmt)}{_origin(function, stmt)}")
         case ir.Reserve() | ir.Advance():
@@ -196,11 +201,14 @@ def _copy(scope: Scope, target: ir.Address, source: ir.Address, size: str) -> st
     return f"{scope.calls('copy_bytes')}({copied});"
 
 
-def _lacks(scope: Scope, at: ir.Expr, size: ir.Expr) -> str:
+def _lacks(function: Function, at: ir.Expr, size: ir.Expr) -> str:
     """Whether some of ``size`` bytes from ``at`` are missing."""
+    scope = function.scope
     match at, size:
         case ir.Const(_, start), ir.Const(_, length) if start >= 0 and length >= 0:
             return f"({expression(scope, END)} < {expression(scope, add(at, size))})"
+        case ir.Local(_, name), ir.Const(_, length) if name in function.within and length >= 0:
+            return f"({expression(scope, END)} < {bare(expression(scope, add(at, size)))})"
         case _:
             given = [bare(expression(scope, each)) for each in (at, size, END)]
             return f"{scope.calls('lacks')}({', '.join(given)})"
@@ -251,7 +259,8 @@ def _rows(function: Function, stmt: ir.Reserve | ir.Advance) -> None:
         return
     scope.takes("failure")
     free = f"{scope.capacity(stmt.lane)} - {used}"
-    with function.block(f"if ({count} > {free})"):
+    is_full = f"{used} >= {scope.capacity(stmt.lane)}" if count == "1" else f"{count} > {free}"
+    with function.block(f"if ({is_full})"):
         missing = f"{expression(scope, stmt.count)} - ({free})"
         if stmt.lane >= lanes.own:
             missing = f"{scope.calls('bytes_of')}({missing}, {lanes.stride(stmt.lane)})"
@@ -272,6 +281,30 @@ def moved(lanes: Lanes, lane: int) -> str:
 
 
 def _nested(function: Function, stmt: ir.For | ir.While | ir.If | ir.Switch) -> None:
+    """A statement with blocks: behind it and, in a loop, within it, what any of them changes is not known but for what a loop says."""
+    after = function.within - {each.name for each, _ in statements((stmt,)) if isinstance(each, ir.Assign)}
+    if isinstance(stmt, ir.For | ir.While):
+        after |= _positions(stmt.invariant) if isinstance(stmt, ir.While) else frozenset()
+        function.within = after
+    _print_nested(function, stmt)
+    function.within = after
+
+
+def _positions(invariant: Iterable[ir.Expr]) -> frozenset[str]:
+    """The variables that a loop says are positions of the message, or its end."""
+    low, high = set[str](), set[str]()
+    for each in invariant:
+        match each:
+            case ir.Compare("ge", ir.Local(_, name), ir.Const(_, bound)) if bound >= 0:
+                low.add(name)
+            case ir.Compare("le", ir.Local(_, name), bound) if bound == END:
+                high.add(name)
+            case _:
+                pass
+    return frozenset(low & high)
+
+
+def _print_nested(function: Function, stmt: ir.For | ir.While | ir.If | ir.Switch) -> None:
     scope = function.scope
     match stmt:
         case ir.For(variable, count, body):

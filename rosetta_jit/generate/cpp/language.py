@@ -11,9 +11,11 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.functions import print_kernel
 from rosetta_jit.generate.c.language import parts_of
 from rosetta_jit.generate.cleared import without_clearing
+from rosetta_jit.generate.cpp.filled import straight_numbers
 from rosetta_jit.generate.cpp.manners import MANNERS
 from rosetta_jit.generate.cpp.reading import addressed_in, viewed_in
 from rosetta_jit.generate.cpp.source import header, source
+from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import kind_of, wire_of
 
@@ -48,8 +50,11 @@ def files(unit: Unit) -> dict[str, str]:
 
 
 def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: Role) -> Printed:
-    """The functions of a kernel; those of encoders are given the message's row, and addresses."""
+    """The functions of a kernel; those of encoders are given the message's row, and addresses, those of decoders the object."""
     if kind_of(role) in ("encode", "size"):
         views = frozenset(each.direct.lane for each in viewed_in(unit, lanes, manners))
         kernel, lanes = undamaged_kernel(kernel), replace(lanes, addressed=addressed_in(unit, lanes, manners), viewed=views, row=True)
+    else:
+        numbers = straight_numbers(Walk(unit, lanes, manners, "decode"))
+        lanes = replace(lanes, straight={offset: statement for offset, (_, statement) in numbers.items()})
     return print_kernel(kernel, lanes, role, unit.origins.get(role, ()))

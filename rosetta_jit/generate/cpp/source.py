@@ -15,6 +15,7 @@ from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import C_TYPES, RESERVED
 from rosetta_jit.generate.cpp.classes import classes
+from rosetta_jit.generate.cpp.filled import straight_numbers
 from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
 from rosetta_jit.generate.cpp.reading import addressed_in, container_type, directs_of, encoder, source_struct, viewed_in, writes_apart
 from rosetta_jit.generate.cpp.straight import is_local
@@ -257,6 +258,7 @@ def _walks(unit: Unit, parts: Parts, walks: dict[str, Walk], directs: dict[str, 
         walk.direct = frozenset(each.lane for each in directs[name]) - walk.taken
         walk.addressed = addressed_in(unit, parts.lanes, walk.manners) if name == "encode" else frozenset()
         inner = [_walk(unit, parts, walk, lane, Ref(struct)) for lane, struct in unit.layout.recursive]
+        walk.straight = frozenset(row for row, _ in straight_numbers(walk).values())
         whole = [_walk(unit, parts, walk, 0, Ref(unit.type), role) for role in roles]
         texts += [*(f"{head};" for head, _ in inner), "", *(f"{head}\n{{\n{body}}}\n" for head, body in (*whole, *inner))]
     return "\n".join(texts)

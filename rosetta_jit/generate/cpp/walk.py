@@ -66,7 +66,7 @@ class Walk:
     """One of the functions being printed; ``in_rows`` is how many lists there are around a value, ``share`` what is set of it.
 
     ``takes``: an encoder copies rows, whose lanes have memory of their own. ``taken`` are the lists that a decoder has put into the object
-    already, where their elements lie in memory as rows do.
+    already, where their elements lie in memory as rows do; ``straight`` the numbers that it has, as the message's row would have them.
     """
 
     unit: Unit
@@ -76,6 +76,7 @@ class Walk:
     direct: frozenset[int] = frozenset()
     addressed: frozenset[int] = frozenset()
     taken: frozenset[int] = frozenset()
+    straight: frozenset[str] = frozenset()
     takes: bool = False
     writer: Writer = field(default_factory=Writer)
     depth: int = 0
@@ -124,7 +125,8 @@ class Walk:
         resolved = self.unit.schema.resolve(type_)
         match resolved, slot:
             case _, Number():
-                self.lines("number", spot, row=row)
+                if row not in self.straight:
+                    self.lines("number", spot, row=row)
             case Struct(), Row():
                 self.struct(resolved, slot, element, row, spot)
             case Union(), Variant():
@@ -369,6 +371,18 @@ class Walk:
                 yield found, member.slot.lane, at, inner
             elif isinstance(found, Struct):
                 yield from self.spans(found, member.slot, own.type, at, Spot(inner.at))
+
+    def numbers(self, type_: Type, slot: object, element: object, row: str, at: str) -> Iterator[tuple[int, str, Spot]]:
+        """The numbers that every message has: where each lies in its row, what it is called there, and the field of the class."""
+        resolved = self.unit.schema.resolve(type_)
+        if not isinstance(resolved, Struct) or not isinstance(slot, Row) or not isinstance(element, RowStruct):
+            return
+        for each, name, member, own in zip(resolved.fields, self.names(resolved), slot.members, members_of(element), strict=True):
+            inner, there = self.member_of(at, name), f"{row}.{own.identifier}"
+            if member.presence is None and isinstance(member.slot, Number):
+                yield member.slot.offset, there, inner
+            elif member.presence is None:
+                yield from self.numbers(each.type, member.slot, own.type, there, inner.at)
 
     def _is_plain(self, type_: String | Bytes | Array, lane: int) -> bool:
         """Whether a container has the very numbers that the lane has: enums are of another type, and bools may be bits."""
