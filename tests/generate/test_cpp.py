@@ -30,6 +30,7 @@ MODELS = f"-I{HERE / 'models'}"
 NUMBERS = 'syntax = "proto2"; package rj; message Numbers { repeated double many = 1; optional double sometimes = 2; }'
 QUICK = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 OUTER = "=" * 80 + "\nMSG: evil/Inner\nfloat32 while\nstring memcpy\nuint8 holder\nint64[2] which\nstring codec\nbool[] std\n"
+OUTER += "float64[] target\nint32 given_object\n"
 
 
 def same(found: list[str], decode, encode, messages: list[bytes]) -> None:
@@ -126,7 +127,7 @@ def test_numbers_are_set_where_the_object_has_them():
     """No row keeps the numbers that every message has: neither of them is copied twice. A number that may be absent is."""
     request = type_request("decode", "sensor_msgs/msg/Imu", {"encoding": "cdr"})
     text = generated(request, "cpp", BOTH, "imu", Wishes(holder="ros2"))["imu.cpp"]
-    assert "    rosetta_jit::detail::set(target.orientation.x, load_f64_le(bytes, at_2));\n" in text
+    assert "    rosetta_jit::detail::set(given_object.orientation.x, load_f64_le(bytes, at_2));\n" in text
     assert "row.orientation.x);" not in text
     request = type_request("decode", "rj.Numbers", {"encoding": "protobuf", "schema": NUMBERS})
     text = generated(request, "cpp", BOTH, "numbers", Wishes(holder="protobuf"))["numbers.cpp"]

@@ -257,7 +257,7 @@ def written(scope: Scope, place: ir.Place, value: ir.Expr) -> str:
     """A statement that sets a field of a row."""
     type_, text = type_of(value), expression(scope, value)
     if place.lane == 0 and place.offset in scope.lanes.straight:
-        scope.takes("target")
+        scope.takes("given_object")
         return scope.lanes.straight[place.offset].replace("$value", bare(text))
     named = _field(scope, place, type_)
     if named is None:

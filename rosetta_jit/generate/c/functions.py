@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.unit import Role
     from rosetta_jit.kernel.ir import Direction, Kernel, Routine
 
-SHARED = ("holder", "given_row", "target", "bytes", "end", "failure")
+SHARED = ("holder", "given_row", "given_object", "bytes", "end", "failure")
 """The parameters that all functions of a kernel may have, in order."""
 MOST_PLACES = 100
 """In how many places a compiler of C++ puts a routine in place of a call."""
@@ -168,7 +168,7 @@ def _declared(parameters: tuple[str, ...], direction: Direction, lanes: Lanes) -
     kinds = {
         "holder": f"{'const ' if reads and lanes.dialect == 'c' else ''}{lanes.prefix}{holder} *holder",
         "given_row": f"const {lanes.type(0)} &given_row",
-        "target": f"::{lanes.prefix}::holder &target",
+        "given_object": f"::{lanes.prefix}::holder &given_object",
         "bytes": f"{'' if direction == 'encode' else 'const '}unsigned char *restrict bytes",
         "end": "int64_t end",
         "failure": "struct failure *failure",

@@ -22,7 +22,22 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.c.rows import Element
 
 OWN_WORDS = frozenset(
-    {"message", "now", "number", "state", "scratch", "holder", "bytes", "end", "failure", "size", "error", "problem", "given_row"}
+    {
+        "message",
+        "now",
+        "number",
+        "state",
+        "scratch",
+        "holder",
+        "bytes",
+        "end",
+        "failure",
+        "size",
+        "error",
+        "problem",
+        "given_row",
+        "given_object",
+    }
 )
 """What the functions call their parameters, and the holder its other members."""
 
@@ -113,8 +128,7 @@ class Lanes:
 
     def words(self) -> frozenset[str]:
         """All that no local of a kernel may be called."""
-        own = OWN_WORDS | {"target"} if self.straight else OWN_WORDS
-        return RESERVED | own | {word for lane in self.all for word in (lane.identifier, lane.used)}
+        return RESERVED | OWN_WORDS | {word for lane in self.all for word in (lane.identifier, lane.used)}
 
 
 def row_type(prefix: str, element: Element | None) -> str:

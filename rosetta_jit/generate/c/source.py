@@ -171,7 +171,8 @@ def _call(unit: Unit, role: Role, printed: Mapping[Role, Printed]) -> str:
 
 def run(attempt: Attempt, failure: str) -> str:
     """The call of a printed function."""
-    given = (f"&{failure}" if each == "failure" else each for each in attempt.parameters)
+    names = {"failure": f"&{failure}", "given_object": "target"}
+    given = (names.get(each, each) for each in attempt.parameters)
     return f"{attempt.name}({', '.join(given)})"
 
 

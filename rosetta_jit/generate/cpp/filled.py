@@ -30,7 +30,7 @@ def straight_numbers(walk: Walk) -> dict[int, tuple[str, str]]:
     if walk.direction != "decode" or kernel is None or wires_of(unit):
         return {}
     offsets = _set_offsets(kernel)
-    numbers = walk.numbers(Ref(unit.type), unit.layout.root, walk.lanes.all[0].element, "row", "target")
+    numbers = walk.numbers(Ref(unit.type), unit.layout.root, walk.lanes.all[0].element, "row", "given_object")
     return {offset: (row, walk.text("number", spot, row=VALUE)) for offset, row, spot in numbers if offset in offsets}
 
 
