@@ -8,10 +8,10 @@ from types import ModuleType
 import pytest
 
 import rosetta_jit as rj
-from tests.api.test_objects import plain
+from tests.api.test_objects import SCHEMA, plain
 
 
-def test_rosbags(encode, decode):
+def test_rosbags():
     typesys = pytest.importorskip("rosbags.typesys")
     for store, framework, write, read in (
         (typesys.Stores.ROS1_NOETIC, "ros1", "serialize_ros1", "deserialize_ros1"),
@@ -56,13 +56,14 @@ def test_lcm(tmp_path):
         assert filled.encode() == empty.encode()
 
 
-def test_genpy_by_the_shape_of_its_classes(encode, decode, monkeypatch):
+def test_genpy_by_the_shape_of_its_classes(monkeypatch):
     """As genpy writes them: slots, a constructor without arguments, and a package's module where its classes are found."""
     module, times = ModuleType("p.msg"), ModuleType("genpy")
     exec(GENPY, vars(module))  # noqa: S102 - the text below
     times.Time = module.Time
     monkeypatch.setitem(sys.modules, "p.msg", module)
     monkeypatch.setitem(sys.modules, "genpy", times)
+    encode, decode = (each.of("p/Whole", schema=SCHEMA, encoding="ros1", imports=["p/Whole.msg"]) for each in (rj.Encoder, rj.Decoder))
     value = module.Whole()
     assert encode(value) == encode(encode.holder_type())
     decode.into(encode(plain(3)), value)

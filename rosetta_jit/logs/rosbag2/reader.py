@@ -144,14 +144,15 @@ class Rosbag2Reader:
         named = [each for each in cast("list[object]", listed) if isinstance(each, str)] if isinstance(listed, list) else []
         if named != listed:
             self._tell(words.bad_index(str(self._folder / "metadata.yaml"), "`relative_file_paths` is no list of names"))
+        own = [each for each in named if self._has(each)]
         for each in named:
-            if not self._has(each):
+            if each not in own:
                 self._tell(words.missing_file(str(self._folder), each))
         there = sorted(path.name for path in self._folder.iterdir() if path.name.endswith(SUFFIXES))
-        unnamed = [each for each in there if each not in {Path(one).name for one in named}]
+        unnamed = [each for each in there if each not in {Path(one).name for one in own}]
         for each in unnamed if named else ():
             self._tell(words.unnamed_file(str(self._folder), each))
-        return [each for each in named if self._has(each)] + unnamed
+        return own + unnamed
 
     def _has(self, name: str) -> bool:
         """Whether a name that the metadata gives is that of a file in the folder; the file system may not even have such names."""

@@ -84,7 +84,7 @@ def handing(
         _put(made, encode=encode)
     specs.write_word(id(made) + ENTRY, code[kind])
     if in_c is not None:
-        made.whose = in_c.object_type
+        _put(made, whose=in_c.object_type)
         functions = (in_c.write, 0) if kind == "hand_in" else (in_c.allocate, in_c.merge)
         for index, word in enumerate((*functions, id(NO_ARGUMENTS))):
             specs.write_word(id(made) + IN_C + 8 * index, word)
