@@ -109,10 +109,10 @@ def test_a_hostile_schema_stays_in_its_place(tmp_path):
     message = bytes(range(count)) + bytes([1, 2, 3]) + struct.pack("<I", 2) + bytes([4, 5]) + bytes([6, 7])
     inner = struct.pack("<If", 1, 2.5) + struct.pack("<I", 2) + b"ab" + bytes([7]) + struct.pack("<2q", -1, 1) + struct.pack("<I", 1) + b"x"
     outer = struct.pack("<id", 5, 0.5) + struct.pack("<I", 3) + b'*/"' + bytes([1, 0, 1, 1]) + struct.pack("<I", 2) + b"\0\1"
-    both = [(mine, [message]), (theirs, [outer + inner + bytes(4)])]
+    both = [(mine, [message]), (theirs, [outer + inner + bytes(12)])]
     (one,), (other,) = lisp.answers(tmp_path, both)
     assert one == f"ok {message.hex()} ({' '.join(map(str, range(count)))} (1 2 3 [(4) (5)]) [(6) (7)])"
-    assert other.startswith(f"ok {(outer + inner + bytes(4)).hex()} ")
+    assert other.startswith(f"ok {(outer + inner + bytes(12)).hex()} ")
 
 
 def test_classes_are_the_systems_own():

@@ -178,7 +178,7 @@ def test_a_hostile_schema_stays_in_its_place(module):
         + struct.pack("<2q", -1, 1)
         + struct.pack("<I", 1)
         + b"x"
-        + bytes(4)
+        + bytes(12)
     )
     message = struct.pack("<id", 5, 0.5) + struct.pack("<I", 3) + b'*/"' + bytes([1, 0, 1, 1]) + struct.pack("<I", 2) + b"\0\1" + rows
     assert answer(unit, message) == f"ok {message.hex()}"
