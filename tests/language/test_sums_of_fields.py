@@ -143,6 +143,13 @@ def test_what_sums_do_not_say_is_reported(first, second):
         )
 
 
+def test_a_misspelt_field_of_another_relation_is_the_cause():
+    rules = "rules:\n  .speed <-> (.right + .left) * 0.5\n  .turn <-> (.rigt - .left) / 0.4\n"
+    with pytest.raises(MappingError) as caught:
+        pair('("left" :double) ("right" :double)', "required double speed = 1; required double turn = 2;", rules)
+    assert [each.code for each in caught.value.diagnostics] == ["unknown-field"]
+
+
 def test_a_robot_with_a_wheel_at_each_side():
     name, given = "drives/differential.mapping", {"parameters": {"radius": 0.05, "track": 0.4}}
     decode, encode = rj.Decoder(name, **given), rj.Encoder(name, **given)

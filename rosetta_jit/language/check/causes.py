@@ -44,6 +44,9 @@ OF_TYPES = frozenset(("type-clash", "lossy-conversion"))
 DERIVED = frozenset(("not-comparable",))
 """Mistakes of the checks that relations of one field make of each other."""
 
+OF_OTHERS = frozenset(("several-fields",))
+"""Mistakes of packing that another relation would mend: one whose names are wrong may be the one that is missed."""
+
 OF_INVERSES = frozenset(("no-inverse", "several-fields"))
 """Mistakes of packing alone."""
 
@@ -66,6 +69,7 @@ def causes(problems: list[Diagnostic], relations: list[Span]) -> list[Diagnostic
     direction of a relation has it for the other.
     """
     named = {_relation(each, relations) for each in problems if each.code in OF_NAMES | OF_CALLS}
+    misread = {_relation(each, relations) for each in problems if each.code in OF_NAMES}
     clashes = unclear(problems, relations)
     undeclared = {_quoted(each) for each in problems if each.code in UNDECLARED}
     misnamed = {_written(each) for each in problems if each.code in OF_NAMES}
@@ -82,6 +86,8 @@ def causes(problems: list[Diagnostic], relations: list[Span]) -> list[Diagnostic
             if (each.code in OF_INVERSES and relation in named) or (each.code in OF_TYPES and relation in wrong):
                 continue
             if clashes and each.code in DERIVED and each.span == relations[relation]:
+                continue
+            if each.code in OF_OTHERS and any(other is not None for other in misread):
                 continue
             if each.code not in OF_INVERSES:
                 wrong.add(relation)
