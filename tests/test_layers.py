@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from rosetta_jit.runtime.cache.names import NO_CODE
+
 PACKAGE = Path(__file__).resolve().parent.parent / "rosetta_jit"
 
 REPORTS = {"source", "terminal", "diagnostics", "errors", "catalogue"}
@@ -221,6 +223,14 @@ def test_imports_point_one_way(layer):
         if room(target) not in MAY_IMPORT[layer] | {layer, "startup"} and not within(target, MAY_IMPORT[layer] - MAY_IMPORT.keys())
     ]
     assert not wrong, "\n".join(wrong)
+
+
+def test_what_makes_no_code_is_imported_by_nothing_that_does():
+    """Code in the cache is kept over changes of these packages."""
+    graph = {module: {target for target, _ in imported(path)} & modules().keys() for module, path in modules().items()}
+    makes_code = [module for module in modules() if within(module, {"api", "backends", "functions", "in_numba", "pipeline", "runtime"})]
+    wrong = {other for module in makes_code for other in reach(graph, module) if within(other, NO_CODE)}
+    assert not wrong
 
 
 def test_readers_of_logs_know_no_compiler():

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Self, Unpack
 
 from rosetta_jit.api.loading import answer, interpreted_kernel, is_as_before, library, sites_of
 from rosetta_jit.api.options import request_of, type_request
-from rosetta_jit.catalogue.pipeline import changed_since
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.base import manners_of
 from rosetta_jit.kernel.entries import SYMBOLS
@@ -146,6 +145,8 @@ class Decoder(_Made, DecoderBase):
         if is_as_before(self._request, on_demand.name, _build_compiled):
             other = _loaded(replace(self._request, byte_order=on_demand.byte_order))
         if other is None or other.holder_type is not self._loaded.holder_type:
+            from rosetta_jit.catalogue.pipeline import changed_since
+
             raise SchemaError((changed_since(on_demand.byte_order),))
         return other
 

@@ -11,7 +11,6 @@ from rosetta_jit.runtime import run
 from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.attributes.methods import turning
 from rosetta_jit.runtime.callable import FAILED, THREAD
-from rosetta_jit.runtime.filling import Filling
 from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.runtime.memory import LARGE
 from rosetta_jit.runtime.message_spans import laid_out, source_of
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.batch import Batch
-    from rosetta_jit.runtime.filling import OnError
+    from rosetta_jit.runtime.filling import Filling, OnError
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.holder.objects.giving import Givers
     from rosetta_jit.runtime.lanes import Lanes
@@ -203,6 +202,8 @@ class DecoderBase(Program):
             raise ValueError(f'on_error is "raise", "skip" or "mask", not {on_error!r}')
         batch = self._batch(count) if into is None else into
         self._lanes_of(batch)
+        from rosetta_jit.runtime.filling import Filling
+
         return Filling(self._loaded, batch, on_error, count, self._compiled_many, self._made_for)
 
     def _fill(self, filling: Filling, data: NDArray[np.uint8], spans: MessageSpans, count: int) -> None:

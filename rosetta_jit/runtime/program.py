@@ -17,7 +17,6 @@ from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.attributes.makers import give_room, maker
 from rosetta_jit.runtime.callable import MADE, Context, bind_call, builtin_of
 from rosetta_jit.runtime.holder.message import Message
-from rosetta_jit.runtime.holder.objects.shapes import is_message_like
 from rosetta_jit.runtime.limits import MAX_SPARES
 from rosetta_jit.runtime.registers import NOTHING_KEPT, Kept, address_of
 from rosetta_jit.startup.cached import cached_property
@@ -315,7 +314,11 @@ class Program(ProgramBase):
 
 def is_foreign(value: object) -> bool:
     """Whether a value may be a message that is no holder: an object of another class, or a dict."""
-    return not isinstance(value, Message) and is_message_like(value)
+    if isinstance(value, Message):
+        return False
+    from rosetta_jit.runtime.holder.objects.shapes import is_message_like
+
+    return is_message_like(value)
 
 
 def one_by_one(

@@ -44,6 +44,22 @@ def test_the_second_process_needs_no_llvm(tmp_path):
     assert start(tmp_path / "cache").stderr.split() == ["False"]
 
 
+DECODES = """
+import struct, sys
+import rosetta_jit as rj
+rj.Decoder("yarp/icub/torso_state.mapping", encoding="yarp3")(struct.pack("<ii3d", 266, 3, 180, 0, 0))
+late = ["batch", "columns", *(f"holder.{name}" for name in ("access", "arena", "coerce", "grid", "merge", "paths", "undo", "values"))]
+print(*[name for name in late if f"rosetta_jit.runtime.{name}" in sys.modules])
+"""
+
+
+def test_the_second_process_imports_nothing_that_compiled_code_replaces(tmp_path):
+    environment = {**os.environ, "ROSETTA_JIT_CACHE_DIR": str(tmp_path / "cache")}
+    start(tmp_path / "cache")
+    ran = subprocess.run([sys.executable, "-c", DECODES], env=environment, check=True, capture_output=True, text=True)
+    assert ran.stdout.split() == []
+
+
 MANNERS = """
 import sys
 import rosetta_jit.frameworks.corba.manners, rosetta_jit.frameworks.lcm.manners, rosetta_jit.frameworks.protobuf.manners

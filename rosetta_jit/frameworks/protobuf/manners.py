@@ -16,19 +16,20 @@ from rosetta_jit.frameworks.protobuf.objects import OBJECTS
 from rosetta_jit.frameworks.protobuf.presence import missing, requires, set_entries
 from rosetta_jit.frameworks.protobuf.repeated import MapField, NumberArray, repeated
 from rosetta_jit.model.types import Enum
-from rosetta_jit.runtime.holder import Holder, Manners, arena
-from rosetta_jit.runtime.holder.access import raw
+from rosetta_jit.runtime.holder import Holder, Manners
 from rosetta_jit.runtime.holder.classes import clear
-from rosetta_jit.runtime.holder.merge import fill, merge
 from rosetta_jit.runtime.holder.message import Message, View, make_present, place
 from rosetta_jit.runtime.holder.serialising import encoded, programs_of
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder import Family, access, arena, merge
     from rosetta_jit.runtime.holder.record import Entry, Record
     from rosetta_jit.runtime.holder.serialising import Kind, Programs
+else:
+    access, arena, merge = late("rosetta_jit.runtime.holder", "access", "arena", "merge")
 
 
 class ProtobufMessage(Holder):
@@ -51,7 +52,7 @@ class ProtobufMessage(Holder):
     def __init__(self, **fields: Any) -> None:
         super().__init__()
         if fields:
-            fill(self, {name: value for name, value in fields.items() if value is not None})
+            merge.fill(self, {name: value for name, value in fields.items() if value is not None})
 
     def HasField(self, name: str) -> bool:  # noqa: N802  as protobuf names it
         """Whether a field, or any field of a oneof, is set.
@@ -98,7 +99,7 @@ class ProtobufMessage(Holder):
     def ListFields(self) -> list[tuple[FieldDescriptor, Any]]:  # noqa: N802
         """Descriptors and values of the fields that are set, by number."""
         fields = self.DESCRIPTOR.fields_by_name
-        entries = set_entries(self.access_.record, raw(self))
+        entries = set_entries(self.access_.record, access.raw(self))
         return [(fields[entry.name], self.access_.getters[entry.name](self)) for entry, _ in entries]
 
     def SetInParent(self) -> None:  # noqa: N802
@@ -109,7 +110,7 @@ class ProtobufMessage(Holder):
         """Take over what another message of the type has: singular fields replace, repeated ones are appended, messages merge."""
         values = self._raw_of(other, "MergeFrom")
         make_present(self)
-        merge(self, values)
+        merge.merge(self, values)
 
     def CopyFrom(self, other: Any) -> None:  # noqa: N802
         """Become equal to another message of the type."""
@@ -117,7 +118,7 @@ class ProtobufMessage(Holder):
             values = self._raw_of(other, "CopyFrom")
             make_present(self)
             clear(self, None)
-            merge(self, values)
+            merge.merge(self, values)
 
     def IsInitialized(self) -> bool:  # noqa: N802
         """Whether all required fields are set."""
@@ -125,7 +126,7 @@ class ProtobufMessage(Holder):
 
     def FindInitializationErrors(self) -> list[str]:  # noqa: N802
         """Paths of the required fields that are not set."""
-        return list(missing(self.access_.record, raw(self)))
+        return list(missing(self.access_.record, access.raw(self)))
 
     def SerializeToString(self, *, deterministic: bool | None = None) -> bytes:  # noqa: N802, ARG002  always deterministic
         """The message's bytes. They are the same every time, whatever ``deterministic`` says.
@@ -177,7 +178,7 @@ class ProtobufMessage(Holder):
     def __str__(self) -> str:
         from rosetta_jit.frameworks.protobuf import text_format
 
-        return text_format.text(self.access_.record, raw(self))
+        return text_format.text(self.access_.record, access.raw(self))
 
     __repr__ = __str__
 
@@ -188,7 +189,7 @@ class ProtobufMessage(Holder):
 
     def set_fields_(self, fields: Mapping[str, Any]) -> None:
         """Set fields as the constructor does."""
-        fill(self, fields)
+        merge.fill(self, fields)
 
     @classmethod
     def _parsed(cls, data: Any) -> ProtobufMessage:
@@ -207,7 +208,7 @@ class ProtobufMessage(Holder):
         if not isinstance(other, Message) or other.access_.record.struct != record.struct:
             expected = f"expected {record.struct} got {type(other).__name__}"
             raise TypeError(f"Parameter to {method}() must be instance of same class: {expected}.")
-        return raw(other)
+        return access.raw(other)
 
 
 class _Nested:

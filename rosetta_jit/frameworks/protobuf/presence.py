@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.runtime.holder.merge import is_zero
 from rosetta_jit.runtime.holder.record import Child, Items, Pairs, Record
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from rosetta_jit.runtime.holder import merge
     from rosetta_jit.runtime.holder.record import Entry, Node
+else:
+    merge = Late("rosetta_jit.runtime.holder.merge")
 
 
 def set_entries(record: Record, values: Mapping[str, Any]) -> Iterator[tuple[Entry, Any]]:
     """The fields that protobuf regards as set, by number: those present, and of those without presence, what is not zero or empty."""
     for entry in sorted(record.entries.values(), key=lambda entry: entry.field.number or 0):
-        if entry.name in values and (entry.presence is not None or not is_zero(values[entry.name])):
+        if entry.name in values and (entry.presence is not None or not merge.is_zero(values[entry.name])):
             yield entry, values[entry.name]
 
 

@@ -12,17 +12,19 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 
-from rosetta_jit.runtime.holder import coerce, holder_class, values
+from rosetta_jit.runtime.holder import holder_class
 from rosetta_jit.runtime.holder.dictionary import Dictionary
-from rosetta_jit.runtime.holder.merge import append_numbers
 from rosetta_jit.runtime.holder.message import Message, View, place, writable
 from rosetta_jit.runtime.holder.record import Items, Numbers, Record
 from rosetta_jit.runtime.holder.sequence import Sequence
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder import Holder
+    from rosetta_jit.runtime.holder import Holder, coerce, merge, values
     from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.record import Entry
+else:
+    coerce, merge, values = late("rosetta_jit.runtime.holder", "coerce", "merge", "values")
 
 
 _Result = TypeVar("_Result")
@@ -66,7 +68,7 @@ class NumberArray(np.ndarray[Any, Any]):
 
     def extend(self, elements: Iterable[Any]) -> None:
         """Append all elements, or none if one is wrong."""
-        append_numbers(*self._field(), _iterable(elements))
+        merge.append_numbers(*self._field(), _iterable(elements))
 
     MergeFrom = extend
 

@@ -20,6 +20,9 @@ from rosetta_jit.startup.sha import sha256
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+NO_CODE = frozenset(("bridge", "cli", "demo", "draft", "explain", "generate", "logs", "transports"))
+"""Our packages that use compiled code and have no part in it: nothing that compiles or loads it imports them."""
+
 ABI = 2
 """Raise it when a kernel, the holder's state or the entry changes its meaning without a change of text."""
 
@@ -56,12 +59,13 @@ def _name(kind: str, text: str) -> str:
 
 def _package_digest() -> str:
     """Stands for our version: changes with each installation and, for us who work on the compiler, with each edit of a source file."""
-    folders, files = [str(Path(__file__).resolve().parents[2])], list[str]()
+    package = str(Path(__file__).resolve().parents[2])
+    folders, files, skipped = [package], list[str](), {f"{package}/{name}" for name in (*NO_CODE, "share")}
     for folder in folders:  # grows while it is gone through
         with os.scandir(folder) as entries:
             for entry in entries:
                 if entry.is_dir(follow_symlinks=False):
-                    folders += [entry.path] if entry.name not in ("__pycache__", "recordings", "share") else []
+                    folders += [entry.path] if entry.name != "__pycache__" and entry.path not in skipped else []
                 else:
                     status = entry.stat()
                     files.append(f"{entry.path} {status.st_size} {status.st_mtime_ns}\n")

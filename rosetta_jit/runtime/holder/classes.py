@@ -11,12 +11,10 @@ from rosetta_jit.kernel.state import CLEAN, VALID, WASTED
 from rosetta_jit.runtime.attributes.code import functions
 from rosetta_jit.runtime.attributes.makers import call_as_any, class_of_holder_classes, let_call
 from rosetta_jit.runtime.attributes.names import take_names
-from rosetta_jit.runtime.holder import arena, grid, values
-from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import Family, Message, View, in_row, place
-from rosetta_jit.runtime.holder.paths import entry_of
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Text
 from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -24,10 +22,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.model.layout import Layout
+    from rosetta_jit.runtime.holder import access, arena, grid, paths, values
     from rosetta_jit.runtime.holder.message import Access
     from rosetta_jit.runtime.holder.objects.foreign import Foreign, Wholes
     from rosetta_jit.runtime.holder.record import Entry, Record
     from rosetta_jit.runtime.plan import Plan
+else:
+    access, arena, grid, paths, values = late("rosetta_jit.runtime.holder", "access", "arena", "grid", "paths", "values")
 
 if TYPE_CHECKING:
 
@@ -148,7 +149,7 @@ class Holder(Message, metaclass=HolderClass):
         TypeError
             If its value is no array of numbers or bytes.
         """
-        return self.lanes_.consistent(lambda entry: _shown(self, entry), entry_of(self.access_.record, name))
+        return self.lanes_.consistent(lambda entry: _shown(self, entry), paths.entry_of(self.access_.record, name))
 
     def column(self, name: str) -> Any:
         """An array of messages as columns: one numpy view a field, or that of one field alone, ``points.x``; as `Batch.column` has it.
@@ -167,7 +168,7 @@ class Holder(Message, metaclass=HolderClass):
     def has(self, name: str) -> bool:
         """Whether a field is present: KeyError where there is none of that name."""
         lanes, row = place(self)
-        return arena.present(lanes, entry_of(self.access_.record, name).presence, row)
+        return arena.present(lanes, paths.entry_of(self.access_.record, name).presence, row)
 
     def clear(self, name: str | None = None) -> None:
         """Make a field absent or empty; without a name, all of them."""
@@ -207,7 +208,7 @@ class Holder(Message, metaclass=HolderClass):
             return NotImplemented
         can = mine.bind is not None and (mine is its or mine.kin is its.kin)
         answer = functions()["same"](self, other, mine.sameness, its.sameness) if can else None
-        return equal(raw(self), raw(other)) if answer is None else answer
+        return equal(access.raw(self), access.raw(other)) if answer is None else answer
 
     __hash__ = None  # pyright: ignore[reportAssignmentType]  as of every mutable object
 
@@ -237,7 +238,7 @@ class Holder(Message, metaclass=HolderClass):
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         if isinstance(self, View) or self.lanes_.source[0] is not None:
-            return filled(cast("type[Self]", self.family_.holder)(), raw(self))
+            return filled(cast("type[Self]", self.family_.holder)(), access.raw(self))
         holder_type = cast("type[Self]", self.family_.holder)
         holder = holder_type.__new__(holder_type)
         in_row(holder, self.lanes_.consistent(_copied, self), self.family_.root, 0)
@@ -261,7 +262,7 @@ def _listed(holder_type: type[Holder], names: Iterable[str]) -> list[str]:
 def clear(holder: Holder, name: str | None) -> None:
     """Make a field absent or empty, or all of them; a holder whose decode failed becomes valid so."""
     record = holder.access_.record
-    entries = record.entries.values() if name is None else [entry_of(record, name)]
+    entries = record.entries.values() if name is None else [paths.entry_of(record, name)]
     with holder.lanes_:
         if name is None and not isinstance(holder, View):
             holder.lanes_.reset()

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import ItemsView, Iterator, Mapping, MutableMapping, ValuesView
 from typing import TYPE_CHECKING, Any, cast
 
-from rosetta_jit.runtime.holder import arena, coerce, values
-from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import View, element, place, writable
 from rosetta_jit.runtime.holder.record import Blob, Numbers, Scalar, Text
 from rosetta_jit.runtime.holder.sequence import detached, store_row
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
+    from rosetta_jit.runtime.holder import access, arena, coerce, values
     from rosetta_jit.runtime.holder.record import Entry, Pairs
+else:
+    access, arena, coerce, values = late("rosetta_jit.runtime.holder", "access", "arena", "coerce", "values")
 
 
 class Pair(View):
@@ -113,7 +115,7 @@ class Dictionary(MutableMapping[Any, Any]):
         raise KeyError("the map is empty")
 
     def __setitem__(self, key: Any, value: Any) -> None:
-        plain = raw(value)
+        plain = access.raw(value)
         with self.message.lanes_:
             self._store(key, plain)
 
@@ -125,7 +127,7 @@ class Dictionary(MutableMapping[Any, Any]):
 
     def _add(self, key: Any, value: Any) -> None:
         """Put a key there, unless another thread has done so meanwhile."""
-        plain = raw(value)
+        plain = access.raw(value)
         with self.message.lanes_:
             if self.checked(key) not in self._keys():
                 self._store(key, plain)

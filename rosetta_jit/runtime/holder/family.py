@@ -18,7 +18,6 @@ from rosetta_jit.runtime.attributes import descriptors
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.makers import make_quickly, set_recipe
 from rosetta_jit.runtime.attributes.methods import put
-from rosetta_jit.runtime.holder.access import getter, setter
 from rosetta_jit.runtime.holder.classes import Holder, HolderClass
 from rosetta_jit.runtime.holder.manners import PLAIN, Manners, manners_at
 from rosetta_jit.runtime.holder.message import OWN_NAMES, Access, View, in_row, read_field, recipe, write_field
@@ -33,6 +32,7 @@ from rosetta_jit.runtime.looks.described import Constructor, Described
 from rosetta_jit.runtime.plan import plan
 from rosetta_jit.runtime.room import begun_as, initialised, roomier
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.late import Late
 from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
@@ -41,12 +41,15 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.runtime.attributes.field_table import KeptFields, OfSequences
     from rosetta_jit.runtime.attributes.sameness import Sameness
+    from rosetta_jit.runtime.holder import access
     from rosetta_jit.runtime.holder.classes import HolderFamily
     from rosetta_jit.runtime.holder.objects.foreign import Foreign
     from rosetta_jit.runtime.holder.objects.giving import Givers
     from rosetta_jit.runtime.holder.objects.taking import Takers
     from rosetta_jit.runtime.holder.record import Record
     from rosetta_jit.runtime.plan import Plan
+else:
+    access = Late("rosetta_jit.runtime.holder.access")
 
 
 _ONE_AT_A_TIME = shared_lock()
@@ -151,10 +154,10 @@ class Family:
 
     def access(self, record: Record) -> Access:
         """How the fields of a record are read and written."""
-        access = self._accesses.get(id(record))
-        if access is None:
-            access = self._accesses[id(record)] = Access(record, self, getter, setter)
-        return access
+        known = self._accesses.get(id(record))
+        if known is None:
+            known = self._accesses[id(record)] = Access(record, self, access)
+        return known
 
     def learn_room(self, lanes: Lanes) -> None:
         """Give new holders the room that assignments have taken, unless that is much; more to those that programs make."""

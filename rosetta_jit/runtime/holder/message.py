@@ -18,12 +18,12 @@ from rosetta_jit.kernel.state import ADDRESS, VALID, lane_word
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.field_table import PLACE_BYTES, FieldTable
 from rosetta_jit.runtime.callable import ALWAYS, NEVER, bind_state, message_base
-from rosetta_jit.runtime.holder import arena
 from rosetta_jit.runtime.holder.record import Child, Items, Pairs, Record
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_DEPTH, MAX_ENDED, MAX_ENDED_BYTES
 from rosetta_jit.runtime.memory import ALIGNMENT
 from rosetta_jit.runtime.specs import slot_offset
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
     import numpy as np
@@ -31,12 +31,14 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Schema, Struct
     from rosetta_jit.runtime.attributes.field_table import KeptFields, OfSequences
     from rosetta_jit.runtime.attributes.sameness import Sameness
+    from rosetta_jit.runtime.holder import arena
     from rosetta_jit.runtime.holder.record import Entry
     from rosetta_jit.runtime.holder.tree import Tree
     from rosetta_jit.runtime.plan import Plan
 
     Base = object
 else:
+    arena = Late("rosetta_jit.runtime.holder.arena")
     Base = message_base()
 
 _Message = TypeVar("_Message", bound="Message")
@@ -114,18 +116,23 @@ class Family(Protocol):
         ...
 
 
+class Ways(Protocol):
+    """What makes accessors; `rosetta_jit.runtime.holder.access` is it."""
+
+    def getter(self, entry: Entry, family: Family) -> Getter: ...
+    def setter(self, entry: Entry, family: Family) -> Setter: ...
+
+
 class Access:
     """How the fields of one record are read and written; each accessor is made when first used."""
 
     __slots__ = ("_kin", "_numbers", "_places", "_sameness", "bind", "family", "getters", "record", "setters", "table")
 
-    def __init__(
-        self, record: Record, family: Family, getter: Callable[[Entry, Family], Getter], setter: Callable[[Entry, Family], Setter]
-    ) -> None:
+    def __init__(self, record: Record, family: Family, ways: Ways) -> None:
         self.record = record
         self.family = family
-        self.getters = _Made(lambda name: getter(record.entries[name], family))
-        self.setters = _Made(lambda name: setter(record.entries[name], family))
+        self.getters = _Made(lambda name: ways.getter(record.entries[name], family))
+        self.setters = _Made(lambda name: ways.setter(record.entries[name], family))
         kept = family.kept_of(record.struct)
         self._places = None if kept is None else FieldTable(record, self._read, write_field, kept, family.sequences)
         self._numbers = {name: number for number, name in enumerate(record.entries)}

@@ -12,14 +12,16 @@ import numpy as np
 
 from rosetta_jit.runtime.attributes.sequences import bind_place, compiled, extend_texts, iterator_class, sequence_base
 from rosetta_jit.runtime.callable import sealed
-from rosetta_jit.runtime.holder import arena, coerce, values
-from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import Message, View, element, place, writable
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Record, Scalar, Text
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
+    from rosetta_jit.runtime.holder import access, arena, coerce, values
     from rosetta_jit.runtime.holder.record import Entry, Node
     from rosetta_jit.runtime.lanes import Lanes
+else:
+    access, arena, coerce, values = late("rosetta_jit.runtime.holder", "access", "arena", "coerce", "values")
 
 
 def _element(message: View, entry: Entry, record: Record, index: int) -> View:
@@ -119,7 +121,7 @@ class Sequence(MutableSequence[Any], Base):
             elements[index] = value
             self._replace(elements, epoch)
             return
-        plain = raw(value)
+        plain = access.raw(value)
         with self.message.lanes_:
             count = len(self)
             at = _checked(index, count)
@@ -131,7 +133,7 @@ class Sequence(MutableSequence[Any], Base):
             self._remove(index)
 
     def insert(self, index: int, value: Any) -> None:
-        plain = raw(value)
+        plain = access.raw(value)
         with self.message.lanes_:
             count = len(self)
             self._allow(count + 1)
@@ -145,7 +147,7 @@ class Sequence(MutableSequence[Any], Base):
     def extend(self, values: Iterable[Any]) -> None:
         if self.message.access_.table and extend_texts(self, values):
             return
-        plain = [raw(each) for each in values]
+        plain = [access.raw(each) for each in values]
         with self.message.lanes_:
             self._allow(len(self) + len(plain))
             self._append(plain)
@@ -213,7 +215,7 @@ class Sequence(MutableSequence[Any], Base):
     def _replace(self, elements: list[Any], epoch: int) -> None:
         """Make these the elements, unless the message has changed since an epoch."""
         self._allow(len(elements))
-        plain = [raw(each) for each in elements]
+        plain = [access.raw(each) for each in elements]
         with self.message.lanes_ as lanes:
             lanes.check_unchanged(epoch)
             count = len(self)
