@@ -44,60 +44,56 @@ class Choices:
     lenient: frozenset[str] = frozenset()
 
 
-class Encoder(Protocol):
-    """A function from a struct to its bytes' description."""
+if TYPE_CHECKING:
 
-    def __call__(self, struct: Struct, schema: Schema, name: str, choices: Choices) -> Encoding:
-        """The encoding of that name of a struct."""
-        ...
+    class Encoder(Protocol):
+        """A function from a struct to its bytes' description."""
 
+        def __call__(self, struct: Struct, schema: Schema, name: str, choices: Choices) -> Encoding:
+            """The encoding of that name of a struct."""
+            ...
 
-class Successors(Protocol):
-    """A function from a struct of an older framework and the one that followed it to what became of its fields."""
+    class Successors(Protocol):
+        """A function from a struct of an older framework and the one that followed it to what became of its fields."""
 
-    def __call__(self, older: Struct, newer: Struct, shown: str) -> Partners:
-        """The newer name of each older field, None of what was dropped; and what was added, zero or empty where the older one comes."""
-        ...
+        def __call__(self, older: Struct, newer: Struct, shown: str) -> Partners:
+            """The newer name of each older field, None of what was dropped; and what was added, zero or empty where the older one comes."""
+            ...
 
+    class TreeOf(Protocol):
+        """A function from two encodings to what messages of one become in the other."""
 
-class TreeOf(Protocol):
-    """A function from two encodings to what messages of one become in the other."""
+        def __call__(self, source: str, target: str) -> Tree | None:
+            """The tree, or None."""
+            ...
 
-    def __call__(self, source: str, target: str) -> Tree | None:
-        """The tree, or None."""
-        ...
+    class Define(Protocol):
+        """A function from a struct to its definition."""
 
+        def __call__(self, struct: Struct, schema: Schema) -> Definition | None:
+            """The definition of a struct."""
+            ...
 
-class Define(Protocol):
-    """A function from a struct to its definition."""
+    class Announce(Protocol):
+        """A function from a struct to what others are told of it where it is published."""
 
-    def __call__(self, struct: Struct, schema: Schema) -> Definition | None:
-        """The definition of a struct."""
-        ...
+        def __call__(self, struct: Struct, schema: Schema) -> dict[str, str]:
+            """By the names that options of transports have: ``type``, and ``md5``, ``definition`` or ``hash``."""
+            ...
 
+    class Infer(Protocol):
+        """A function from captured messages to a schema that describes them."""
 
-class Announce(Protocol):
-    """A function from a struct to what others are told of it where it is published."""
+        def __call__(self, messages: Iterable[bytes], *, name: str, encoding: str) -> str:
+            """The schema of a type of that name, as text."""
+            ...
 
-    def __call__(self, struct: Struct, schema: Schema) -> dict[str, str]:
-        """By the names that options of transports have: ``type``, and ``md5``, ``definition`` or ``hash``."""
-        ...
+    class FileOf(Protocol):
+        """A function from a text to the name of the file that it would be."""
 
-
-class Infer(Protocol):
-    """A function from captured messages to a schema that describes them."""
-
-    def __call__(self, messages: Iterable[bytes], *, name: str, encoding: str) -> str:
-        """The schema of a type of that name, as text."""
-        ...
-
-
-class FileOf(Protocol):
-    """A function from a text to the name of the file that it would be."""
-
-    def __call__(self, framework: Framework, type_: str, text: str) -> str:
-        """The name of the file of a type."""
-        ...
+        def __call__(self, framework: Framework, type_: str, text: str) -> str:
+            """The name of the file of a type."""
+            ...
 
 
 @dataclass(frozen=True, slots=True)
