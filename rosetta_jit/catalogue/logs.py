@@ -182,7 +182,10 @@ def several_types(name: str, topic: str, types: Iterable[str]) -> Diagnostic:
     """A topic with messages of several types."""
     found = ", ".join(f"`{each}`" for each in types)
     return Diagnostic(
-        "error", "log-types", f"{name}: `{topic}` has messages of several types: {found}", help=f'name one: log["{topic}", type], or --type'
+        "error",
+        "log-types",
+        f"{name}: `{topic}` has messages of several types: {found}",
+        help=f'name one: log["{topic}", type], or --type; into a folder, `rosetta-jit convert` writes tables of each',
     )
 
 
