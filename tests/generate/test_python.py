@@ -184,6 +184,18 @@ def test_a_hostile_schema_stays_in_its_place(module):
     assert answer(unit, message) == f"ok {message.hex()}"
 
 
+@pytest.mark.parametrize(
+    "name", ["data", "end", "most", "sites", "indices", "self", "parts", "target", "np", "Struct", "field", "told_end"]
+)
+def test_types_are_called_as_the_module_calls_its_own(module, name):
+    """A class of that name would be hidden by a parameter or a variable, or hide what the module needs."""
+    schema = f"{name} one\n{name}[] more\n===\nMSG: evil/{name}\nint16 x\nstring y\n"
+    unit = module(type_request("decode", "evil/Outer", {"encoding": "ros1", "schema": schema}))
+    element = struct.pack("<hI2s", 7, 2, b"ab")
+    message = element + struct.pack("<I", 2) + element + element
+    assert answer(unit, message) == f"ok {message.hex()}"
+
+
 def test_docs_of_a_schema_are_docs():
     """What ends a string, or begins a line, in a schema does neither in the module."""
     schema = 'int32 x # """ + exit() #\\\nint32 y # \\"""\nstring s="""x\n'

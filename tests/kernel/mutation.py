@@ -85,6 +85,7 @@ class Expected:
         yield from probes.refusals()
         if not self.refusals:
             yield from probes.theorems()
+            yield from probes.products()
             yield from probes.owed({**kernels.ALL, **{f"safe twin of {name}": kernel for name, kernel in ACCEPTED.items()}})
             yield from probes.less()
             yield from probes.orders()

@@ -19,9 +19,10 @@ from rosetta_jit.kernel.ir import If, Return
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.passes.drop import drop, without
 from rosetta_jit.kernel.printer import to_text
+from rosetta_jit.kernel.proof import symbolic
 from rosetta_jit.kernel.proof.formula import All, Any, negated
 from rosetta_jit.kernel.proof.less import is_less
-from rosetta_jit.kernel.proof.linear import Linear, plus, times
+from rosetta_jit.kernel.proof.linear import Linear, plus, shifted, times
 from rosetta_jit.kernel.proof.prove import Facts
 from rosetta_jit.kernel.proof.record import Record
 from rosetta_jit.kernel.proof.verify import VerificationError, settled, verify
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Kernel
     from rosetta_jit.kernel.proof.record import Premise
 
-THEOREMS, ATOMS, LEAST, MOST = 200, 3, -3, 3
+THEOREMS, PRODUCTS, ATOMS, LEAST, MOST = 200, 60, 3, -3, 3
 Probe = tuple[str, str]
 
 
@@ -96,6 +97,37 @@ def theorems() -> Iterator[Probe]:
         yield f"theorem {seed}", " ".join((*said, str(bounds), "impossible" if facts.impossible else ""))
 
 
+def products() -> Iterator[Probe]:
+    """Which bounds are proven of a product of sums, of which more is known than of their parts; those that are proven must be true."""
+    values = np.array(list(product(range(LEAST, MOST + 1), repeat=ATOMS)), dtype=np.int64)
+    for seed in range(PRODUCTS):
+        random, facts = Random(f"product {seed}"), Facts()
+        atoms = [facts.fresh(LEAST, MOST) for _ in range(ATOMS)]
+        left, right = (_sum(random, random.sample(atoms, count)) for count in (random.randint(2, 3), random.randint(1, 3)))
+        least = random.randint(-4, 2)
+        known = All((shifted(left, -least), shifted(times(left, -1), least + random.randint(0, 3))))
+        facts.assume(known)
+        made = symbolic._product(facts, "i8", left, right)
+        there = (_value(left, values) * _value(right, values))[_truth(known, values)]
+        said = []
+        for bound in range(-30, 31, 3):
+            above, below = facts.proves_thoroughly(shifted(made, -bound)), facts.proves_thoroughly(shifted(times(made, -1), bound))
+            wrong = (above and (there < bound).any()) or (below and (there > bound).any())
+            said.append("unsound" if wrong else f"{above:d}{below:d}")
+        yield f"product {seed}", " ".join(said)
+
+
+def _sum(random, atoms):
+    total = Linear(random.randint(-2, 2))
+    for atom in atoms:
+        total = plus(total, times(atom, random.choice((-2, -1, -1, 1, 1, 2))))
+    return total
+
+
+def _value(total, values):
+    return total.constant + sum((c * values[:, a] for a, c in total.terms), np.zeros(len(values), np.int64))
+
+
 def _formula(random, atoms, depth):
     kind = random.choice(("sum", "sum", "sum", "all", "any", "not")) if depth else "sum"
     if kind == "sum":
@@ -109,8 +141,8 @@ def _formula(random, atoms, depth):
 
 def _truth(formula, values):
     match formula:
-        case Linear(constant, terms):
-            return constant + sum((c * values[:, a] for a, c in terms), np.zeros(len(values), np.int64)) >= 0
+        case Linear():
+            return _value(formula, values) >= 0
         case All(parts):
             return np.all([_truth(part, values) for part in parts], axis=0)
         case Any(parts):
@@ -262,4 +294,4 @@ def corpus(pickled: bytes) -> Iterator[Probe]:
 
 def golden_text() -> str:
     """The probes of which a golden file holds the results."""
-    return "".join(f"{name}: {result}\n" for name, result in (*theorems(), *owed(kernels.ALL), *texts()))
+    return "".join(f"{name}: {result}\n" for name, result in (*theorems(), *products(), *owed(kernels.ALL), *texts()))

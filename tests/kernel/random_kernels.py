@@ -139,6 +139,9 @@ PASSED = {
     "a check whose last index is none of the loop": each_round(
         need(THERE, 8, 4, i64("i"), index(3)), SetField(Place(1, ELEMENT), Load("i64", THERE))
     ),
+    "reads of which each begins within the one before": each_round(
+        need(THERE, 16, 4, i64("i")), SetField(Place(1, ELEMENT), Load("i64", add(THERE, 8)))
+    ),
     "two lanes that are no one place": each_round(
         need(WIDE, 16, 4, i64("i")),
         SetField(Place(1, i64("i")), Load("i64", WIDE)),

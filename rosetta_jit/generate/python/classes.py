@@ -17,9 +17,31 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.unit import Unit
     from rosetta_jit.model.types import Type
 
-OWN = """array dataclass field Struct Any Callable math c_float now functions decode encode size reset
-Refused MessageError DecodeError EncodeError np npt copy"""
-TAKEN = frozenset((*keyword.kwlist, *dir(builtins), *OWN.split()))
+WORDS = frozenset(
+    (
+        *keyword.kwlist,
+        *dir(builtins),
+        "data",
+        "end",
+        "most",
+        "sites",
+        "indices",
+        "math",
+        "array",
+        "self",
+        "target",
+        "parts",
+        "functions",
+        "now",
+        "copy",
+        "np",
+    )
+) | {f"told_{what}" for what in ("now", "number", "registers", "end", "copy", "into")}
+"""What no class and no variable may be called: what functions are given, and what they need."""
+
+OWN = """dataclass field Struct Any Callable c_float decode encode size reset Refused MessageError DecodeError EncodeError npt"""
+TAKEN = WORDS.union(OWN.split())
+"""What no class may be called: what the module defines and imports besides."""
 MEMBERS = frozenset((*keyword.kwlist, "unknown_fields", "field"))
 MAX_DOC = 200
 

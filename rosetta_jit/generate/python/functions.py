@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import builtins
-import keyword
 from collections import Counter
 from typing import TYPE_CHECKING
 
@@ -11,6 +9,7 @@ from rosetta_jit.backends.base import Namespace, Writer
 from rosetta_jit.generate.c.statements import reached, read_names
 from rosetta_jit.generate.cleared import settled
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.python.classes import WORDS
 from rosetta_jit.generate.python.direct import FEW, direct
 from rosetta_jit.generate.python.expressions import CODES, Scope, expression, flat_name, view_name
 from rosetta_jit.generate.python.groups import not_negative
@@ -28,27 +27,6 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.origins import Origin
     from rosetta_jit.generate.python.statements import Objects
     from rosetta_jit.generate.unit import Role
-
-WORDS = frozenset(
-    (
-        *keyword.kwlist,
-        *dir(builtins),
-        "data",
-        "end",
-        "most",
-        "sites",
-        "indices",
-        "math",
-        "array",
-        "self",
-        "target",
-        "parts",
-        "functions",
-        "now",
-        "copy",
-        "np",
-    )
-) | {f"told_{what}" for what in ("now", "number", "registers", "end", "copy", "into")}
 
 
 def is_flat(kernel: ir.Kernel, lanes: Lanes) -> bool:

@@ -11,10 +11,10 @@ from rosetta_jit.backends.base import Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.language import named_parts
-from rosetta_jit.generate.python.classes import classes, names_of
+from rosetta_jit.generate.python.classes import WORDS, classes, names_of
 from rosetta_jit.generate.python.encoder import encoder_in_parts
 from rosetta_jit.generate.python.expressions import CODES, Scope, view_name
-from rosetta_jit.generate.python.functions import WORDS, is_flat, print_kernel
+from rosetta_jit.generate.python.functions import is_flat, print_kernel
 from rosetta_jit.generate.python.objects import Collect, Make, arrays_of
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.python.statements import Objects
