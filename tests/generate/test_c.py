@@ -179,6 +179,24 @@ def test_a_hostile_schema_stays_in_its_place(tmp_path):
     assert answers(program, [message]) == [f"ok {message.hex()}"]
 
 
+OWN_NAMES = "int64_t load_i16_le store_i16_le HAS_ORDER TEXT evil_Inner EVIL_H codec most i i_5 Inner ROSETTA_JIT_COLD linux restrict"
+"""Names of the runtime, of its macros, of what the unit itself defines; and one that another becomes where it is numbered."""
+
+
+def named(kind):
+    """A schema whose fields have such names."""
+    fields = "\n".join(f"{kind} {name}" for name in OWN_NAMES.split())
+    inner = "=" * 80 + "\nMSG: evil/Inner\nint16 x\nstring y\n"
+    return type_request("decode", "evil/Outer", {"encoding": "ros1", "schema": f"{fields}\n{inner}"})
+
+
+@needs_gcc
+@pytest.mark.parametrize("kind", ["int32", "string", "Inner", "Inner[]", "string[]", "float32[2]"])
+def test_fields_are_called_as_the_unit_calls_its_own(tmp_path, kind):
+    name = write(tmp_path, generated(named(kind), "c", BOTH, "evil"))
+    subprocess.run(["gcc", *STRICT, "-fsyntax-only", tmp_path / f"{name}.c"], check=True)
+
+
 def test_texts_end_neither_literals_nor_comments():
     from rosetta_jit.generate.c.texts import comment, literal
 

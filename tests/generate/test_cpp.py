@@ -20,7 +20,7 @@ from rosetta_jit.generate.cpp.language import INCLUDE, SHARED
 from tests.generate import cpp, native
 from tests.generate.corpora import corpora
 from tests.generate.driver import answers, expected, harmed
-from tests.generate.test_c import HOSTILE, SUBJECTS, TORSO
+from tests.generate.test_c import HOSTILE, SUBJECTS, TORSO, named
 from tests.golden import GOLDEN, check_golden
 
 BOTH = ("decode", "encode")
@@ -115,6 +115,23 @@ def test_no_compiler_complains_of_a_hostile_schema(tmp_path, compiler):
     request = type_request("decode", "evil/Outer", {"encoding": "ros1", "schema": HOSTILE + OUTER})
     name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "evil"))
     subprocess.run([compiler, *cpp.STRICT, "-fsyntax-only", f"-I{tmp_path}", tmp_path / f"{name}.cpp"], check=True)
+
+
+@cpp.needs_cpp
+@pytest.mark.parametrize("kind", ["int32", "string", "Inner", "Inner[]", "string[]", "float32[2]"])
+def test_fields_are_called_as_the_unit_calls_its_own(tmp_path, kind):
+    name = cpp.write(tmp_path, generated(named(kind), "cpp", BOTH, "evil"))
+    subprocess.run(["g++", *cpp.STRICT, "-fsyntax-only", f"-I{tmp_path}", tmp_path / f"{name}.cpp"], check=True)
+
+
+@cpp.needs_cpp
+def test_types_are_called_as_the_unit_calls_its_own(tmp_path):
+    names = ["fill", "gather", "source", "report", "decode_message", "borrow_sites", "ROSETTA_JIT_INLINE", "EVIL_HPP", "written"]
+    fields = "\n".join(f"{name} one_{name}\n{name}[] more_{name}" for name in names)
+    inner = "".join(f"===\nMSG: evil/{name}\nint16 x\nstring y\n" for name in names)
+    request = type_request("decode", "evil/Outer", {"encoding": "ros1", "schema": f"{fields}\n{inner}"})
+    name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "evil"))
+    subprocess.run(["g++", *cpp.STRICT, "-fsyntax-only", f"-I{tmp_path}", tmp_path / f"{name}.cpp"], check=True)
 
 
 @pytest.mark.parametrize("end", ["hpp", "cpp"])

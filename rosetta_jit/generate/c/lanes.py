@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.c.rows import SpanType, Struct, path_to
-from rosetta_jit.generate.c.words import C_TYPES, RESERVED
+from rosetta_jit.generate.c.support import function_names
+from rosetta_jit.generate.c.words import C_TYPES, RESERVED, of_unit
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -30,6 +31,8 @@ OWN_WORDS = frozenset(
         "scratch",
         "holder",
         "bytes",
+        "codec",
+        "most",
         "end",
         "failure",
         "size",
@@ -144,9 +147,9 @@ def row_type(prefix: str, element: Element | None) -> str:
             return element.identifier
 
 
-def named_lanes(names: Sequence[str]) -> list[tuple[str, str]]:
-    """For each lane the identifiers of its pointer and of its count."""
-    scope = Namespace(RESERVED | OWN_WORDS)
+def named_lanes(names: Sequence[str], unit: str) -> list[tuple[str, str]]:
+    """For each lane the identifiers of its pointer and of its count: variables, which hide no type of the unit's and no function."""
+    scope = Namespace(RESERVED | OWN_WORDS | function_names() | of_unit(unit, names))
     pointers = ["message" if number == 0 else scope.identifier(_unique(names, number)) for number in range(len(names))]
     return [(pointer, scope.identifier(f"{pointer}\0used")) for pointer in pointers]
 
@@ -159,4 +162,4 @@ def hidden_lanes(strides: Iterable[int]) -> list[Lane]:
 def _unique(names: Sequence[str], number: int) -> str:
     """The name of a lane; those that share one, as the rows of recursive structs may, are numbered."""
     name = names[number] or "rows"
-    return name if names.count(names[number]) == 1 else f"{name}_{number}"
+    return name if names.count(names[number]) == 1 else f"{name}\0{number}"

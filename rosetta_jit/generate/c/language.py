@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
 
 def _own_lanes(unit: Unit) -> tuple[Structs, list[Lane]]:
-    structs = Structs(unit.name, Namespace(RESERVED | words_of(unit)), {})
-    named = named_lanes([lane.name.replace(UNKNOWN, "unknown") for lane in unit.layout.lanes])
+    structs = Structs(unit.name, Namespace(RESERVED | words_of(unit) | {f"{unit.name}_source"}), {})
+    named = named_lanes([lane.name.replace(UNKNOWN, "unknown") for lane in unit.layout.lanes], unit.name)
     elements = elements_of(unit.layout, structs, tuple(name for name, _ in named))
     return structs, [Lane(*names, lane.stride, element) for names, lane, element in zip(named, unit.layout.lanes, elements, strict=True)]
 

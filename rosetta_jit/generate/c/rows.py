@@ -13,13 +13,13 @@ from itertools import count
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.base import Namespace
-from rosetta_jit.generate.c.words import RESERVED
+from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.kernel.ir import WIDTH
 from rosetta_jit.model.layout import LINK_WORDS, SPAN_BYTES, Number, Row, Span, Variant
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.layout import Lane, Layout, Slot
+    from rosetta_jit.model.layout import Lane, Layout, Members, Slot
 
 OWN_WORDS = frozenset({"presence", "which", "unknown", "links", "nothing", "value"})
 PADDING = re.compile(r"padding_?\d*")
@@ -104,7 +104,7 @@ class Structs:
                 assert_never(slot)
 
     def _row(self, row: Row, path: str) -> Struct:
-        names = Namespace(RESERVED | OWN_WORDS)
+        names = self._scope(row.members)
         members: list[Member] = []
         if row.presence_words:
             members.append(Member("presence", 0, "u64", row.presence_words, "a bit for each field that may be absent"))
@@ -120,7 +120,7 @@ class Structs:
         return self._struct(simple or path, row.struct, members, None)
 
     def _variant(self, variant: Variant, path: str) -> Struct:
-        names = Namespace(RESERVED | OWN_WORDS)
+        names = self._scope(variant.members)
         members = [Member("which", 0, "i64", comment="0, or 1 + the number of the case")]
         members += [
             self._member(_own(names.identifier(each.name)), each.slot, variant.offset, f"{path}_{each.name}", None)
@@ -128,6 +128,10 @@ class Structs:
         ]
         cases = tuple(member.identifier for member in members[1:])
         return self._struct(f"{path}_union", f"one of the cases of {path}", members, None, cases)
+
+    def _scope(self, fields: Members) -> Namespace:
+        """Where a struct's members get their names."""
+        return Namespace(RESERVED | OWN_WORDS | of_unit(self.prefix, (each.name for each in fields)))
 
     def _member(self, identifier: str, slot: Slot, base: int, path: str, presence: int | None) -> Member:
         lane = slot.lane if isinstance(slot, Span) else None

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
 C_TYPES: dict[str, str] = {
     "bool": "bool",
     **{f"{kind[0]}{bits}": f"{kind}{bits}_t" for kind in ("int", "uint") for bits in (8, 16, 32, 64)},
@@ -31,5 +36,17 @@ _LIMITS = [
 ]
 _OTHERS = ["SIZE_MAX", "INTPTR_MIN", "INTPTR_MAX", "UINTPTR_MAX", "INTMAX_MIN", "INTMAX_MAX", "UINTMAX_MAX", "PTRDIFF_MIN", "PTRDIFF_MAX"]
 _FLOATS = [f"{kind}_{what}" for kind in ("FLT", "DBL") for what in ("MAX", "MIN", "EPSILON", "DIG", "MANT_DIG", "MAX_EXP", "MIN_EXP")]
+_FLOATS += ["FLT_EVAL_METHOD", "FLT_RADIX"]
 
-RESERVED = frozenset((*_LANGUAGE.split(), *_MACROS.split(), *_LIMITS, *_OTHERS, *_FLOATS, "FLT_EVAL_METHOD", "FLT_RADIX"))
+_OF_FILES = ("HAS_ORDER", "IN_ORDER_le", "IN_ORDER_be", "TEXT")
+"""Macros of the files themselves, besides those that begin with the unit's name."""
+_TYPES = {*C_TYPES.values(), "size_t", "ptrdiff_t", "intptr_t", "uintptr_t", "intmax_t", "uintmax_t"}
+
+RESERVED = frozenset(
+    (*_LANGUAGE.split(), *_TYPES, *_OF_FILES, *_MACROS.split(), *_LIMITS, *_OTHERS, *_FLOATS, "FLT_EVAL_METHOD", "FLT_RADIX")
+)
+
+
+def of_unit(unit: str, names: Iterable[str]) -> frozenset[str]:
+    """Names that look like those of the types, functions and macros of a unit, or of the header that all units in C++ share."""
+    return frozenset(name for name in names if name.startswith((f"{unit}_", f"{unit.upper()}_", "ROSETTA_JIT_")))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.c.texts import comment
-from rosetta_jit.generate.c.words import RESERVED
+from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
@@ -17,16 +17,19 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.unit import Unit
     from rosetta_jit.model.types import Type
 
-NOT_CLASSES = frozenset({"codec", "holder", "std", "rosetta_jit", "memory"})
+OF_SOURCES = frozenset({"failure", "fill", "gather", "measured", "reach", "report", "source", "state", "written"})
+OF_SOURCES |= {f"{role}_{what}" for role in ("decode", "encode", "size", "borrow") for what in ("message", "sites")}
+NOT_CLASSES = OF_SOURCES | {"codec", "holder", "std", "rosetta_jit", "memory"}
+"""What no class may be called: what the header has besides, and the source, whose names stand in the same namespace."""
 
 
 def names_of(unit: Unit) -> dict[str, str]:
     """The classes and enums of a unit by their names in the schema."""
-    scope = Namespace(RESERVED | NOT_CLASSES | {unit.name})
+    parts = {name: re.split(r"[./:]+", name) for name in reached_types(unit)}
+    scope = Namespace(RESERVED | NOT_CLASSES | {unit.name} | of_unit(unit.name, (each[-1] for each in parts.values())))
     found: dict[str, str] = {}
-    for name in reached_types(unit):
-        simple = re.split(r"[./:]+", name)[-1]
-        whole = "_".join(re.split(r"[./:]+", name))
+    for name, (*_, simple) in parts.items():
+        whole = "_".join(parts[name])
         found[name] = scope.identifier(simple if simple not in scope.identifiers else whole)
     return found
 
@@ -74,21 +77,24 @@ def classes(unit: Unit) -> str:
     texts: list[str] = ["\n".join(ahead) + "\n"] if ahead else []
     for name, identifier in names.items():
         declared = unit.schema.types[name]
-        texts.append(_enum(identifier, declared) if isinstance(declared, Enum) else _class(identifier, declared, names, recursive))
+        if isinstance(declared, Enum):
+            texts.append(_enum(identifier, declared, unit.name))
+        else:
+            texts.append(_class(identifier, declared, names, recursive, unit.name))
     return "\n".join(texts)
 
 
-def _enum(identifier: str, enum: Enum) -> str:
-    scope = Namespace(RESERVED)
+def _enum(identifier: str, enum: Enum, unit: str) -> str:
+    scope = Namespace(RESERVED | of_unit(unit, (name for name, _ in enum.values)))
     values = [f"    {scope.identifier(name)} = {value if value > -(2**31) else 'INT32_MIN'}," for name, value in enum.values]
     return "\n".join([comment(enum.name), f"enum class {identifier} : std::int32_t {{", *values, "};", ""])
 
 
-def _class(identifier: str, struct: Struct, names: dict[str, str], recursive: frozenset[str]) -> str:
+def _class(identifier: str, struct: Struct, names: dict[str, str], recursive: frozenset[str], unit: str) -> str:
     from rosetta_jit.generate.cpp.names import member_names
 
     lines = [comment(struct.name), f"struct {identifier} {{"]
-    for field, member in zip(struct.fields, member_names(struct), strict=True):
+    for field, member in zip(struct.fields, member_names(struct, unit, names.values()), strict=True):
         kind = _type(field.type, names, recursive)
         is_bare = isinstance(field.type, Bool | Int | Float | Ref) or kind.startswith("std::array")
         zero = "{}" if is_bare and not kind.startswith("std::unique") else ""

@@ -5,15 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace
-from rosetta_jit.generate.c.words import RESERVED
+from rosetta_jit.generate.c.words import RESERVED, of_unit
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rosetta_jit.model.types import Struct
 
 OWN_WORDS = frozenset({"unknown_fields", "std", "rosetta_jit"})
 
 
-def member_names(struct: Struct) -> tuple[str, ...]:
-    """Those of a struct's fields, in order: each another, none a word of C++."""
-    scope = Namespace(RESERVED | OWN_WORDS)
+def member_names(struct: Struct, unit: str, classes: Iterable[str]) -> tuple[str, ...]:
+    """Those of a struct's fields, in order: each another, none a word of C++ or one of the unit's classes."""
+    scope = Namespace(RESERVED | OWN_WORDS | of_unit(unit, (each.name for each in struct.fields)).union(classes))
     return tuple(scope.identifier(each.name) for each in struct.fields)

@@ -22,6 +22,7 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.rows import PADDING
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.words import RESERVED
+from rosetta_jit.generate.cpp.classes import names_of
 from rosetta_jit.generate.cpp.names import member_names
 from rosetta_jit.generate.shares import WHOLE, Ways, within
 from rosetta_jit.model.layout import Number, Row, Span, Variant, map_entry
@@ -104,7 +105,7 @@ class Walk:
     def names(self, struct: Struct) -> tuple[str, ...]:
         """The names of a struct's fields as the class has them."""
         if self.manners.type is None:
-            return member_names(struct)
+            return member_names(struct, self.unit.name, names_of(self.unit).values())
         return tuple(self.named(each.name, struct.name) for each in struct.fields)
 
     def named(self, name: str, struct: str = "") -> str:
