@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import sys
 from pathlib import Path
 
@@ -30,6 +32,19 @@ def test_arrays_of_structs_of_one_message():
     assert holder.column("part")["values"].tolist() == []
     with pytest.raises(KeyError):
         holder.column("parts.nothing")
+
+
+def test_columns_of_nested_messages_are_attributes():
+    batch = Batch.new(flat(), 3)
+    batch[2].parts, batch[1].part.x = [{"x": 5}], 3
+    assert batch.part.x.tolist() == [0, 3, 0]
+    assert batch.parts.values.x.tolist() == [5]
+    assert batch.part["values"].to_list() == [[], [], []]  # `values` is what dictionaries have, too
+    assert {"x", "name", "keys"} <= set(dir(batch.part))
+    assert pickle.loads(pickle.dumps(batch.part)).x.tolist() == [0, 3, 0]  # noqa: S301 - our own bytes
+    assert copy.deepcopy(batch.part).x.tolist() == [0, 3, 0]
+    with pytest.raises(AttributeError, match="no column 'nothing' among x, name, values"):
+        _ = batch.part.nothing
 
 
 def test_columns_of_views():
