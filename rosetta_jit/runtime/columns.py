@@ -22,6 +22,8 @@ from rosetta_jit.runtime.rows import elements
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.holder.message import Message
@@ -74,6 +76,9 @@ class Ragged:
 
     def __len__(self) -> int:
         return len(self.starts)
+
+    def __iter__(self) -> Iterator[Any]:
+        return map(self.__getitem__, range(len(self)))
 
     def __repr__(self) -> str:
         from rosetta_jit.runtime.looks.brief import brief

@@ -60,6 +60,17 @@ def test_columns_of_views():
         holder.column("children")
 
 
+def test_columns_of_texts_and_arrays_become_columns_of_pandas():
+    pandas = pytest.importorskip("pandas")
+    batch = Batch.new(flat(), 3)
+    batch[1].parts, batch[2].part.name = [{"x": 5}], "n"
+    frame = pandas.DataFrame({"name": batch.part.name, "values": batch.part["values"], "x": batch.parts})
+    assert frame["name"].tolist() == ["", "", "n"]
+    assert [each.tolist() for each in frame["values"]] == [[], [], []]
+    assert frame["x"][1].x.tolist() == [5]
+    assert list(batch.part.name) == ["", "", "n"]
+
+
 def test_arrays_in_arrays_are_one_array():
     batch = Batch.new(all_kinds(), 3)
     batch[1].grid[:] = [[1, 2], [3, 4], [5, 6]]
