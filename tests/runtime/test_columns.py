@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import gc
 import pickle
 import sys
 from pathlib import Path
@@ -92,6 +93,22 @@ def test_dlpack():
         assert pa.Tensor.from_dlpack(column).to_numpy().tolist() == shown.tolist()
     assert np.from_dlpack(batch.fixed).tolist() == [[0, 0, 0], [4, 5, 6], [0, 0, 0]]
     assert batch.fixed.__dlpack_device__() == (1, 0)
+
+
+def test_tensors_of_pytorch_and_jax():
+    """They keep the memory that they show, also when the batch grows or is gone."""
+    torch, jax = pytest.importorskip("torch"), pytest.importorskip("jax")
+    batch = Batch.new(flat(), 3)
+    batch[1].fixed, batch[2].small = [4, 5, 6], 7
+    shown, numbers = torch.from_dlpack(batch.fixed), torch.from_dlpack(batch.small)
+    assert jax.numpy.from_dlpack(batch.fixed).tolist() == shown.tolist()
+    assert jax.numpy.from_dlpack(np.ascontiguousarray(batch.small)).tolist() == numbers.tolist() == [0, 0, 7]
+    shown[0, 0] = 1
+    assert batch[0].fixed[0] == 1
+    batch.reset(1000)
+    del batch
+    gc.collect()
+    assert shown[1].tolist() == [4, 5, 6]
 
 
 def test_names_of_columns():
