@@ -17,6 +17,7 @@ from rosetta_jit.in_numba.c_call import call_c
 from rosetta_jit.in_numba.reading import Reader
 from rosetta_jit.in_numba.taking import BrokenMessage, Program, entries
 from rosetta_jit.in_numba.types import MessageType
+from rosetta_jit.kernel.shape import is_short
 from rosetta_jit.kernel.state import CLEAN, VALID
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ OUTSIDE = "begin and end of the message fall, or leave the buffer"
 
 
 def callable_kernel(kernel: Kernel, family: HolderFamily, program: Program) -> Dispatcher:
-    """A kernel as ``kernel(message, holder, begin=0, end=None)`` for compiled code.
+    """A kernel as ``kernel(message, holder, begin=0, end=None)`` for compiled code, of which a short one becomes a part.
 
     Raises
     ------
@@ -61,7 +62,7 @@ def callable_kernel(kernel: Kernel, family: HolderFamily, program: Program) -> D
                 raise BrokenMessage
         filled(holder)
 
-    return njit(nogil=True, error_model="numpy")(decode)
+    return njit(nogil=True, error_model="numpy", forceinline=is_short(kernel))(decode)
 
 
 @intrinsic

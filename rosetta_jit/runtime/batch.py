@@ -212,8 +212,8 @@ class Batch:
             Shape (n,), of a number; not copied. Zero where the field is absent (see `mask`).
         Ragged
             Of an array, string, bytes or map.
-        dict
-            Of a message: its columns by name.
+        Columns
+            Of a message: its columns by name, a dict that has them as attributes, too.
 
         Raises
         ------
@@ -340,9 +340,21 @@ class Batch:
 
         return self._record_batch(None, Form()).__arrow_c_array__(requested_schema)
 
-    def __array__(self, *_: object, **__: object) -> NDArray[Any]:
-        """Refused: else `numpy.asarray` and pandas' constructor would make one column of objects, a message each."""
-        raise TypeError("a batch is no array: take a column of it, or `to_pandas()`, `to_arrow()`")
+    def __array__(self, dtype: object = None, copy: bool | None = None) -> NDArray[np.object_]:
+        """The rows of ``to_arrow(flatten=True)``, a record of Python's own values each: what `pandas.DataFrame(batch)` takes.
+
+        Raises
+        ------
+        TypeError
+            If another type than ``object`` is asked for.
+        """
+        from rosetta_jit.runtime.arrow.records import records
+
+        if dtype is not None and np.dtype(cast("Any", dtype)) != np.object_:
+            raise TypeError("a batch is no array of numbers: take a column of it, or `to_pandas()`, `to_arrow()`")
+        if copy is False:
+            raise ValueError("records of messages are made: there is nothing to show without a copy")
+        return records(self.to_arrow(flatten=True))
 
     def _check(self) -> None:
         if not self.lanes.words[VALID]:

@@ -22,6 +22,8 @@ from rosetta_jit.runtime.rows import elements
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.holder.message import Message
@@ -32,13 +34,31 @@ if TYPE_CHECKING:
 _OCTETS, _CODE_UNITS = String("octets"), String("utf-16")
 
 
+class Columns(dict[str, Any]):
+    """The columns of a message, by the names of its fields: ``batch.header.stamp.secs``, or ``batch.header["stamp"]["secs"]``.
+
+    A field that is named as something that dictionaries have, ``values``, is there by its name in brackets alone.
+    """
+
+    __slots__ = ()
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"there is no column {name!r} among {', '.join(self)}", name=name, obj=self) from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Ragged:
     """An array of arrays of different lengths, none of them copied.
 
     Attributes
     ----------
-    values : ndarray, Ragged or dict
+    values : ndarray, Ragged or Columns
         All elements of the lane, those of other rows included.
     starts, counts : ndarray of int64, shape (n,)
         Where the elements of each row begin, and how many they are.
@@ -56,6 +76,9 @@ class Ragged:
 
     def __len__(self) -> int:
         return len(self.starts)
+
+    def __iter__(self) -> Iterator[Any]:
+        return map(self.__getitem__, range(len(self)))
 
     def __repr__(self) -> str:
         from rosetta_jit.runtime.looks.brief import brief
@@ -156,7 +179,7 @@ def _part(values: Any, start: int, count: int) -> Any:
                 values.values, values.starts[start : start + count], values.counts[start : start + count], values.kind, values.source
             )
         case dict():
-            return {name: _part(each, start, count) for name, each in values.items()}  # pyright: ignore[reportUnknownVariableType]
+            return Columns((name, _part(each, start, count)) for name, each in cast("dict[str, Any]", values).items())
         case _:
             return values[start : start + count]
 
@@ -206,14 +229,14 @@ def column(node: Node, lanes: Lanes, rows: int, path: list[str]) -> Any:
             return Ragged(column(element, lanes, lanes.used(lane), path), *_spans(lanes, span, rows))
         case Pairs(span, lane, _, key, value):
             used = lanes.used(lane)
-            pairs = {"key": column(key, lanes, used, []), "value": column(value.node, lanes, used, path)}
+            pairs = Columns(key=column(key, lanes, used, []), value=column(value.node, lanes, used, path))
             return Ragged(pairs, *_spans(lanes, span, rows))
         case Record():
             if lanes.plan.layout.lanes[node.lane].links is not None and node.lane:
                 raise TypeError(f"messages of {node.struct} contain each other: read them one by one")
             if path:
                 return column(node.entries[path[0]].node, lanes, rows, path[1:])
-            return {name: column(entry.node, lanes, rows, []) for name, entry in node.entries.items()}
+            return Columns((name, column(entry.node, lanes, rows, [])) for name, entry in node.entries.items())
         case Child():
             raise TypeError(f"messages of {node.record.struct} contain each other: read them one by one")
         case _:
@@ -231,7 +254,7 @@ def column_of(message: Message, path: str) -> Any:
 def _at(found: Any, row: int) -> Any:
     match found:
         case dict():
-            return {name: _at(each, row) for name, each in found.items()}  # pyright: ignore[reportUnknownVariableType]
+            return Columns((name, _at(each, row)) for name, each in cast("dict[str, Any]", found).items())
         case _:
             return found[row]
 

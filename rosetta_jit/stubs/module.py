@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from rosetta_jit.model.words import escaped
@@ -22,15 +23,10 @@ HEAD = """\
 #     import rosetta_jit
 #
 #     {names} = {made}
-
-import builtins
-import collections.abc
-import typing
-
-import numpy
-import rosetta_jit
-import typing_extensions
 """
+
+STANDARD, OTHERS = ("builtins", "collections.abc", "typing"), ("numpy", "rosetta_jit", "typing_extensions")
+"""What may be imported, besides the modules of the classes that the text names."""
 
 PROGRAMS = """\
 class Decoder(rosetta_jit.Decoder):
@@ -108,11 +104,20 @@ def stub(family: HolderFamily, what: str, options: Mapping[str, object], *, is_m
     families = [family.of_struct(struct).family_ for struct in structs]
     classes = "\n".join(line for each in families for line in class_text(each, shapes))
     made = ("Decoder", "Encoder") if wires is None else ("Decoders", "Encoders")
-    parts = [_head(what, options, made, is_mapping=is_mapping, modules=_modules(families, shapes)), *_containers(shapes), classes]
     name = shapes.classes[family.struct.name]
     programs = PROGRAMS.format(name=name) + (OF_ONE if wires is None else _of_wires(name, wires))
     aliases = [f"{alias}: typing.TypeAlias = {name}" for name, alias in sorted(shapes.aliases.items())]
-    return "\n".join((*parts, programs, *aliases)).rstrip("\n") + "\n"
+    body = "\n".join((*_containers(shapes), classes, programs, *aliases)).rstrip("\n") + "\n"
+    head = _head(what, options, made, is_mapping=is_mapping)
+    return "\n".join((head, *_imports(body, STANDARD), *_imports(body, (*OTHERS, *sorted(_modules(families, shapes)))), body))
+
+
+def _imports(body: str, modules: Iterable[str]) -> Iterator[str]:
+    """A paragraph that imports those of the modules that the text names: what checkers have to say of the others is not for users."""
+    code = "\n".join(line.partition("  #")[0] for line in body.splitlines())
+    lines = [f"import {module}\n" for module in modules if re.search(rf"(?<![\w.]){re.escape(module)}\.", code)]
+    if lines:
+        yield "".join(lines)
 
 
 def _of_wires(name: str, wires: Sequence[str]) -> str:
@@ -121,12 +126,11 @@ def _of_wires(name: str, wires: Sequence[str]) -> str:
     return OF_WIRES.format(name=name, decoders=decoders, encoders=encoders)
 
 
-def _head(what: str, options: Mapping[str, object], made: tuple[str, str], *, is_mapping: bool, modules: Iterable[str]) -> str:
+def _head(what: str, options: Mapping[str, object], made: tuple[str, str], *, is_mapping: bool) -> str:
     make = "rosetta_jit.{0}({1})" if is_mapping else "rosetta_jit.{0}.of({1})"
     given = escaped(", ".join((repr(what), *(f"{name}={value!r}" for name, value in options.items() if value))))
     names, programs = ", ".join(map(str.lower, made)), ", ".join(make.format(program, given) for program in made)
-    head = HEAD.format(what=escaped(what), names=names, made=programs)
-    return head + "".join(f"import {module}\n" for module in sorted(modules))
+    return HEAD.format(what=escaped(what), names=names, made=programs)
 
 
 def _modules(families: Iterable[HolderFamily], shapes: Shapes) -> set[str]:

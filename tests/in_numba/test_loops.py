@@ -315,3 +315,18 @@ def test_messages_are_numbered_as_outside():
     with pytest.raises(rj.DecodeError):
         second(message[:-1], counting.new())
     assert counting(message).value == 103
+
+
+def test_a_short_kernel_is_part_of_the_loop():
+    """A call with all that numba knows of a holder and a message takes as long as such a kernel."""
+    short = rj.Decoder.of("t.S", schema={"s.proto": 'syntax = "proto3"; package t; message S { fixed64 a = 1; }'})
+    kernel = short.kernel
+
+    @njit(nogil=True)
+    def run(message, holder):
+        kernel(message, holder)
+        return holder.a
+
+    assert run(b"\x09" + bytes([7] + [0] * 7), short.new()) == 7
+    (text,) = run.inspect_llvm().values()
+    assert not [line for line in text.splitlines() if " call " in line and "callable_kernel" in line]

@@ -349,8 +349,18 @@ def test_pandas():
     assert {"part.at.x", "part.at.label", "nine"} <= set(flat.columns)
     assert flat["part.at.label"].dropna().tolist() == [message.part.at.label for message in batch if message.has("part")]
     assert batch.to_pandas(["u64"], types_mapper=pandas.ArrowDtype)["u64"].dtype == "uint64[pyarrow]"
+
+
+def test_pandas_constructor():
+    pandas = pytest.importorskip("pandas")
+    batch = filled(20, 3)
+    frame, wanted = pandas.DataFrame(batch), batch.to_pandas(flatten=True)
+    assert list(frame.columns) == list(wanted.columns)
+    for name in wanted.columns:
+        assert repr(frame[name].tolist()) == repr(wanted[name].tolist()), name
+    assert len(pandas.DataFrame(Batch.new(all_kinds(), 0))) == 0
     with pytest.raises(TypeError, match="to_pandas"):
-        pandas.DataFrame(batch)
+        np.asarray(batch, np.float64)
 
 
 WITHOUT_PANDAS = r"""

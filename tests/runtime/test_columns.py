@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import gc
+import pickle
 import sys
 from pathlib import Path
 
@@ -32,6 +35,19 @@ def test_arrays_of_structs_of_one_message():
         holder.column("parts.nothing")
 
 
+def test_columns_of_nested_messages_are_attributes():
+    batch = Batch.new(flat(), 3)
+    batch[2].parts, batch[1].part.x = [{"x": 5}], 3
+    assert batch.part.x.tolist() == [0, 3, 0]
+    assert batch.parts.values.x.tolist() == [5]
+    assert batch.part["values"].to_list() == [[], [], []]  # `values` is what dictionaries have, too
+    assert {"x", "name", "keys"} <= set(dir(batch.part))
+    assert pickle.loads(pickle.dumps(batch.part)).x.tolist() == [0, 3, 0]  # noqa: S301 - our own bytes
+    assert copy.deepcopy(batch.part).x.tolist() == [0, 3, 0]
+    with pytest.raises(AttributeError, match="no column 'nothing' among x, name, values"):
+        _ = batch.part.nothing
+
+
 def test_columns_of_views():
     """A row of a batch, a struct in a list, and a struct that is not there."""
     batch = Batch.new(flat(), 3)
@@ -43,6 +59,17 @@ def test_columns_of_views():
     assert holder.child.column("parts.x").tolist() == []
     with pytest.raises(TypeError, match="contain each other"):
         holder.column("children")
+
+
+def test_columns_of_texts_and_arrays_become_columns_of_pandas():
+    pandas = pytest.importorskip("pandas")
+    batch = Batch.new(flat(), 3)
+    batch[1].parts, batch[2].part.name = [{"x": 5}], "n"
+    frame = pandas.DataFrame({"name": batch.part.name, "values": batch.part["values"], "x": batch.parts})
+    assert frame["name"].tolist() == ["", "", "n"]
+    assert [each.tolist() for each in frame["values"]] == [[], [], []]
+    assert frame["x"][1].x.tolist() == [5]
+    assert list(batch.part.name) == ["", "", "n"]
 
 
 def test_arrays_in_arrays_are_one_array():
@@ -66,6 +93,22 @@ def test_dlpack():
         assert pa.Tensor.from_dlpack(column).to_numpy().tolist() == shown.tolist()
     assert np.from_dlpack(batch.fixed).tolist() == [[0, 0, 0], [4, 5, 6], [0, 0, 0]]
     assert batch.fixed.__dlpack_device__() == (1, 0)
+
+
+def test_tensors_of_pytorch_and_jax():
+    """They keep the memory that they show, also when the batch grows or is gone."""
+    torch, jax = pytest.importorskip("torch"), pytest.importorskip("jax")
+    batch = Batch.new(flat(), 3)
+    batch[1].fixed, batch[2].small = [4, 5, 6], 7
+    shown, numbers = torch.from_dlpack(batch.fixed), torch.from_dlpack(batch.small)
+    assert jax.numpy.from_dlpack(batch.fixed).tolist() == shown.tolist()
+    assert jax.numpy.from_dlpack(np.ascontiguousarray(batch.small)).tolist() == numbers.tolist() == [0, 0, 7]
+    shown[0, 0] = 1
+    assert batch[0].fixed[0] == 1
+    batch.reset(1000)
+    del batch
+    gc.collect()
+    assert shown[1].tolist() == [4, 5, 6]
 
 
 def test_names_of_columns():

@@ -117,6 +117,24 @@ def test_arrays_are_summed_up_in_notebooks():
     assert "1 not finite" in scan._repr_html_()
 
 
+def test_what_is_not_shown_in_notebooks_is_counted(decoder):
+    status = rj.Decoder.of("diagnostic_msgs/DiagnosticArray", encoding="ros1", backend="python").new()
+    status.status = [{"name": "one", "values": [{"key": "k"}]}] * 5
+    assert "<summary>5 messages</summary>" in status._repr_html_()
+    assert "… 2 messages more" in status._repr_html_()
+    assert "<summary>1 message</summary>" in status._repr_html_()
+    message = rj.Encoder.of("sensor_msgs/Imu", encoding="ros1")(decoder.new())
+    assert "… 1 message more" in decoder.many([message] * 6)._repr_html_()
+    assert "more" not in decoder.many([message] * 5)._repr_html_()
+
+
+def test_numbers_are_shown_with_the_digits_that_they_have():
+    angles = rj.Decoder("yarp/icub/torso_state.mapping", backend="python").new()
+    angles.angles.append(0.1)
+    assert repr(angles) == "angles: 0.1\n"
+    assert "[0.1]" in angles._repr_html_()
+
+
 def test_a_holder_that_cannot_be_read_says_so(decoder):
     holder = decoder.new()
     with pytest.raises(rj.DecodeError):

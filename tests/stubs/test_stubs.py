@@ -105,6 +105,17 @@ def test_a_mapping_gives_the_types_of_its_holder(written, capsys):
     assert text == written("torso.pyi", "yarp/icub/torso_state.mapping")
 
 
+@pytest.mark.parametrize("what", ["yarp/icub/torso_state.mapping", "std_msgs/Empty", "sensor_msgs/Imu", "diagnostic_msgs/DiagnosticArray"])
+def test_what_is_imported_is_used(what, capsys):
+    """Strict checkers report the rest."""
+    options = [] if what.endswith(".mapping") else ["--encoding", "ros1"]
+    assert main(["stubs", what, *options]) == 0
+    tree = ast.parse(capsys.readouterr().out)
+    imported = {alias.name for node in tree.body if isinstance(node, ast.Import) for alias in node.names}
+    names = {ast.unparse(node) for node in ast.walk(tree) if isinstance(node, ast.Attribute | ast.Name)}
+    assert imported <= names
+
+
 HOSTILE = [
     "x: int\nimport os",
     "a; import os #",

@@ -69,7 +69,7 @@ def brief(value: Any, depth: int = 0) -> str:
         case Message():
             return brief_message(value, depth)
         case np.ndarray():
-            array = cast("np.ndarray[Any, Any]", value)
+            array = cast("np.ndarray[Any, Any]", value).view(np.ndarray)  # whose float32 are shown with as many digits as they have
             return _listed(map(str, array.reshape(-1)[:MAX_TEXT_NUMBERS]), array.size, MAX_TEXT_NUMBERS)
         case Name():
             return repr(value)

@@ -36,6 +36,7 @@ class Rows(Protocol):
     """Messages of one type: a batch."""
 
     def __iter__(self) -> Iterator[Message]: ...
+    def __len__(self) -> int: ...
 
 
 CURVE_POINTS, CURVE_WIDTH, CURVE_HEIGHT = 100, 160, 24
@@ -61,7 +62,8 @@ def batch_page(batch: Rows, fields: Sequence[str]) -> str:
         for message in islice(batch, MAX_PAGE_ROWS)
     ]
     lines = "".join(f"<tr>{row}</tr>" for row in rows)
-    return f'<div style="overflow-x:auto"><b>{escape(repr(batch))}</b><table><tr>{head}</tr>{lines}</table></div>'
+    rest = "".join(_rest(len(batch), MAX_PAGE_ROWS))
+    return f'<div style="overflow-x:auto"><b>{escape(repr(batch))}</b><table><tr>{head}</tr>{lines}</table>{rest}</div>'
 
 
 def failed_page(batch: Rows) -> str:
@@ -105,12 +107,21 @@ class _Page:
             case Sequence():
                 items = cast("Sequence[Any]", value)
                 if items and isinstance(items[0], Message) and depth < MAX_PAGE_DEPTH:
-                    return _folded(
-                        f"{len(items)} messages", chain.from_iterable(self.message(each, depth + 1) for each in items[:MAX_PAGE_MESSAGES])
-                    )
+                    shown = chain.from_iterable(self.message(each, depth + 1) for each in items[:MAX_PAGE_MESSAGES])
+                    return _folded(_messages(len(items)), chain(shown, _rest(len(items), MAX_PAGE_MESSAGES)))
                 return escape(brief(items))
             case _:
                 return escape(brief(value))
+
+
+def _messages(count: int) -> str:
+    return "1 message" if count == 1 else f"{count} messages"
+
+
+def _rest(count: int, most: int) -> Iterator[str]:
+    """How many messages are not shown."""
+    if count > most:
+        yield f'<div style="{CELL}">… {_messages(count - most)} more</div>'
 
 
 def _folded(summary: str, parts: Iterable[str]) -> str:
