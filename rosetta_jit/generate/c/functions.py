@@ -15,10 +15,11 @@ from rosetta_jit.backends.base import Namespace, Writer, counted_lanes
 from rosetta_jit.generate.c.expressions import constant, expression
 from rosetta_jit.generate.c.scope import Scope, register_name
 from rosetta_jit.generate.c.state import register_word
-from rosetta_jit.generate.c.statements import Callable, Function, leaves, moved, print_block, reached, read_names
+from rosetta_jit.generate.c.statements import Callable, Function, moved, print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.reached import leaves, reached, read_names
 from rosetta_jit.kernel.ir import Advance, Call, For, While
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.startup.dataclass import dataclass

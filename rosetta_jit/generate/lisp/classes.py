@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.generate.cpp.classes import reached_types
+from rosetta_jit.generate.inner_types import reached_types
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.texts import doc
 from rosetta_jit.generate.lisp.words import LISP_TYPES, Names, constants, hyphenated, runtime_names, symbols

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.generate.c.language import named_parts
+from rosetta_jit.generate.c.unit_lanes import named_lanes
 from rosetta_jit.generate.lisp.classes import classes_of, definitions, function_symbols, wire_symbols
 from rosetta_jit.generate.lisp.functions import About, computes_with_floats, print_kernel
 from rosetta_jit.generate.lisp.lanes import lanes_of
@@ -69,7 +69,7 @@ class _Source:
         self.shares: dict[Role, str] = {}
         self.functions = function_symbols(self.classes, [each.name for each in unit.functions])
         longest = max(unit.kernels.values(), key=lambda each: len(each.strides))
-        c = named_parts(unit, frozenset())(longest.strides)
+        c = named_lanes(unit, frozenset())(longest.strides)
         self.lanes = lanes_of(c.all, c.own)
         self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.printed: dict[Role, Printed] = {role: self._kernel(role, kernel) for role, kernel in unit.kernels.items()}

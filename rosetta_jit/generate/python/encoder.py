@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer
-from rosetta_jit.generate.c.statements import reached, read_names
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.functions import words_of
 from rosetta_jit.generate.python.object_rows import ObjectScope
@@ -13,6 +12,7 @@ from rosetta_jit.generate.python.parts import Parts
 from rosetta_jit.generate.python.positions import NotInParts, Sum, without_places, without_positions
 from rosetta_jit.generate.python.presence import without_lengths
 from rosetta_jit.generate.python.statements import Function, Objects
+from rosetta_jit.generate.reached import reached, read_names
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.kernel.ir import Expect
 from rosetta_jit.kernel.shape import statements

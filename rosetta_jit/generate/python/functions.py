@@ -8,13 +8,13 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer
-from rosetta_jit.generate.c.statements import reached, read_names
 from rosetta_jit.generate.cleared import settled
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.direct import FEW, direct
 from rosetta_jit.generate.python.expressions import CODES, Scope, expression, flat_name, view_name
 from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.statements import Attempt, Function, print_block
+from rosetta_jit.generate.reached import reached, read_names
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import kind_of
 from rosetta_jit.kernel import ir

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.backends.base import Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.generate.c.language import named_parts
+from rosetta_jit.generate.c.unit_lanes import named_lanes
 from rosetta_jit.generate.python.classes import classes, names_of
 from rosetta_jit.generate.python.encoder import encoder_in_parts
 from rosetta_jit.generate.python.expressions import CODES, Scope, view_name
@@ -53,7 +53,7 @@ class _Module:
 
     def __init__(self, unit: Unit) -> None:
         self.unit, self.names = unit, names_of(unit)
-        self.lanes = named_parts(unit, WORDS | frozenset(self.names.values()))
+        self.lanes = named_lanes(unit, WORDS | frozenset(self.names.values()))
         self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.loads, self.structs = set[str](), dict[str, str]()
         self.root, self.guesses = self.names[unit.type], False
