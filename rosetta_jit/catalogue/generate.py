@@ -10,7 +10,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
 
 
 def unknown_language(name: str, known: Sequence[str]) -> Diagnostic:
@@ -70,9 +69,9 @@ not_of_wires = Mistake(
 )
 
 
-def wires_around(holder: str, span: Span | None = None) -> Diagnostic:
+def wires_around(holder: str) -> Diagnostic:
     text = f"a class for `--holder {holder}` reads messages of one type, and the mapping has several wires"
-    return error("not-generated", text, span, help_="choose another `--holder`, as own")
+    return error("not-generated", text, help_="choose another `--holder`, as own")
 
 
 def one_way_around(holder: str, lacking: str) -> Diagnostic:

@@ -159,8 +159,8 @@ class Channel:
             when = shown(int(rows.log_ns[int(number)]))
             raise DecodeError(error.kind, path, f"{error.detail} (a message of {self.topic}, logged {when})", error.offset) from None
 
-    def _blocks(self, start: Moment | None = None, end: Moment | None = None, pieces: range | None = None) -> Iterator[Block]:
-        return self._log.blocks(self._wanted(start, end, pieces))
+    def _blocks(self) -> Iterator[Block]:
+        return self._log.blocks(self._wanted(None, None, None))
 
     def _wanted(self, start: Moment | None, end: Moment | None, pieces: range | None) -> Wanted:
         return Wanted(self.numbers, nanoseconds(start), nanoseconds(end), pieces)

@@ -47,9 +47,9 @@ class Classes:
         wanted = f"{wanted}-field" if wanted in constants() else wanted
         return self.names.symbol(f"{struct.name}\0{field}", f"{name}-{{}}", wanted=wanted)
 
-    def accessor(self, struct: Struct, field: str, at: str = "object") -> str:
+    def accessor(self, struct: Struct, field: str) -> str:
         """The place of a field of an object."""
-        return f"({self.types[struct.name]}-{self.slot(struct, field)} {at})"
+        return f"({self.types[struct.name]}-{self.slot(struct, field)} object)"
 
     def case(self, union: Union, name: str) -> str:
         """The keyword of a case."""
