@@ -1,4 +1,4 @@
-"""The part of a kernel that does something: compilers and people look at the other statements, too."""
+"""The statements of a kernel that can run, and the locals that are read. Generated source leaves out the others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is left of a proven kernel when checks go that cannot fail: it does the same, so that it needs no proof of its own."""
+"""A proven kernel without the checks that cannot fail: it does the same, so it needs no proof of its own."""
 
 from __future__ import annotations
 
