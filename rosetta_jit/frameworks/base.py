@@ -35,6 +35,14 @@ if TYPE_CHECKING:
     FileOf = Callable[["Framework", str, str], str]
     """From a type and a text that declares it to the name of the file that it would be."""
 
+    class Infer(Protocol):
+        """A function from captured messages to a schema that describes them."""
+
+        def __call__(self, messages: Iterable[bytes], *, name: str, encoding: str) -> str:
+            """The schema of a type of that name, as text."""
+            ...
+
+
 ByteOrder = Literal["little", "big"]
 
 ANY_BYTE = "every byte but 0 is true"
@@ -55,14 +63,6 @@ class Choices:
 
     byte_order: ByteOrder | None = None
     lenient: frozenset[str] = frozenset()
-
-
-class Infer(Protocol):
-    """A function from captured messages to a schema that describes them."""
-
-    def __call__(self, messages: Iterable[bytes], *, name: str, encoding: str) -> str:
-        """The schema of a type of that name, as text."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)

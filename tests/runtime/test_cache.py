@@ -11,8 +11,10 @@ import warnings
 from hashlib import sha256
 
 import pytest
+from platformdirs import user_cache_path
 
 from rosetta_jit.errors import CacheWarning
+from rosetta_jit.runtime.cache import kernels
 from rosetta_jit.runtime.cache.kernels import ENTRY, MANIFEST, Cache
 from rosetta_jit.runtime.cache.sealed import MAGIC, DamagedError, seal, unseal
 from rosetta_jit.runtime.cache.stores import MemoryStore
@@ -171,6 +173,19 @@ def test_the_environment_names_or_disables_the_default(tmp_path, monkeypatch):
     cache.put(NAME, HEADER, IMAGE)
     assert cache.get(NAME) is None
     assert not (tmp_path / "mine").exists()
+
+
+@pytest.mark.parametrize("named", [None, "", "/somewhere/else"])
+def test_the_default_folder_is_where_users_have_caches(monkeypatch, named):
+    """Where platformdirs says; an import that a warm start on Linux does without."""
+    monkeypatch.delenv("ROSETTA_JIT_CACHE_DIR", raising=False)
+    monkeypatch.delenv("ROSETTA_JIT_CACHE", raising=False)
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    if named is not None:
+        monkeypatch.setenv("XDG_CACHE_HOME", named)
+    kernels._default.cache_clear()
+    assert Cache.default().folder == user_cache_path("rosetta_jit", appauthor=False)
+    kernels._default.cache_clear()
 
 
 def test_a_header_keeps_its_order():

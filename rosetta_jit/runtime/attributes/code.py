@@ -6,7 +6,6 @@ import ctypes
 import sys
 import warnings
 from functools import cache, partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.runtime.attributes.groups import BEGINNING, END, GROUPS, group_of, part_of, symbols
@@ -198,4 +197,6 @@ def _conversions(name: str) -> dict[str, str]:
 
 
 def _read(file: str) -> str:
+    from pathlib import Path  # slow to import
+
     return (Path(__file__).parent / file).read_text("utf-8")

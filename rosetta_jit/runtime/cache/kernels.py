@@ -15,7 +15,6 @@ import sys
 import warnings
 from contextlib import suppress
 from functools import lru_cache
-from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.errors import CacheWarning
@@ -26,6 +25,7 @@ from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
+    from pathlib import Path
 
     from rosetta_jit.diagnostics import Diagnostic
 
@@ -68,18 +68,18 @@ class Cache:
 
     Parameters
     ----------
-    folder : Path or None
+    folder : path or None
         Created when first written to, with mode 0700. It must belong to the user, must not be a symbolic link, and nobody else may be
         able to write to it. None keeps everything in memory.
     max_bytes : int
         When exceeded, the files that were not used for the longest time are removed, until an eighth is free. 0 keeps nothing.
     """
 
-    def __init__(self, folder: Path | None, *, max_bytes: int = DEFAULT_MAX_BYTES) -> None:
-        self.folder = folder
+    def __init__(self, folder: str | os.PathLike[str] | None, *, max_bytes: int = DEFAULT_MAX_BYTES) -> None:
+        self._folder = None if folder is None else os.fspath(folder)
         self.max_bytes = max_bytes
         self._memory = MemoryStore()
-        self._store: Store = self._memory if folder is None else FolderStore(folder)
+        self._store: Store = self._memory if self._folder is None else FolderStore(self._folder)
         self._warned: set[str] = set()
 
     @staticmethod
@@ -88,9 +88,16 @@ class Cache:
         return _default(os.environ.get("ROSETTA_JIT_CACHE_DIR", ""), os.environ.get("ROSETTA_JIT_CACHE", ""))
 
     @property
+    def folder(self) -> Path | None:
+        """Where the files lie; None where everything is kept in memory."""
+        from pathlib import Path
+
+        return None if self._folder is None else Path(self._folder)
+
+    @property
     def is_kept(self) -> bool:
         """Whether later processes find what this one has put here: there is a folder, and writing to it has not failed."""
-        return self.folder is not None and "folder" not in self._warned
+        return self._folder is not None and "folder" not in self._warned
 
     def get(self, name: str) -> Entry | None:
         """The program of that name, or None."""
@@ -222,7 +229,7 @@ class Cache:
         from rosetta_jit.catalogue.cache import full_folder, unusable_folder
 
         is_full = isinstance(error, OSError) and error.errno in {errno.ENOSPC, errno.EDQUOT}
-        self._warn("folder", (full_folder if is_full else unusable_folder)(str(self.folder), str(error)))
+        self._warn("folder", (full_folder if is_full else unusable_folder)(str(self._folder), str(error)))
 
     def _warn(self, subject: str, diagnostic: Diagnostic) -> None:
         if subject in self._warned:
@@ -237,17 +244,23 @@ class Cache:
 def _default(folder: str, switch: str) -> Cache:
     if switch.lower() in {"off", "0", "no", "false"}:
         return Cache(None, max_bytes=0)
-    if folder:
-        return Cache(Path(folder))
-    from platformdirs import user_cache_path
+    return Cache(folder or _users_folder())
 
-    return Cache(user_cache_path("rosetta_jit", appauthor=False))
+
+def _users_folder() -> str:
+    """What platformdirs says, which is asked where it is more than two words: its import takes a tenth of a warm start."""
+    if sys.platform == "linux":
+        named = os.environ.get("XDG_CACHE_HOME", "").strip()
+        return os.path.join(named if os.path.isabs(named) else os.path.expanduser("~/.cache"), "rosetta_jit")
+    from platformdirs import user_cache_dir
+
+    return user_cache_dir("rosetta_jit", appauthor=False)
 
 
 def digest_file(path: str) -> str | None:
     """SHA-256 of a file's content, or None where there is no file to read."""
     try:
-        with open(path, "rb", buffering=0) as file:  # noqa: PTH123 - a thousand of them, where fifty programs are loaded
+        with open(path, "rb", buffering=0) as file:
             return sha256(file.read()).hexdigest()
     except OSError:
         return None

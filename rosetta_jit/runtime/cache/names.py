@@ -11,7 +11,6 @@ import os
 import sys
 from functools import cache
 from importlib.util import find_spec
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosetta_jit.runtime.code.processor import processor
@@ -59,7 +58,7 @@ def _name(kind: str, text: str) -> str:
 
 def _package_digest() -> str:
     """Stands for our version: changes with each installation and, for us who work on the compiler, with each edit of a source file."""
-    package = str(Path(__file__).resolve().parents[2])
+    package = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
     folders, files, skipped = [package], list[str](), {f"{package}/{name}" for name in (*NO_CODE, "share")}
     for folder in folders:  # grows while it is gone through
         with os.scandir(folder) as entries:
@@ -79,5 +78,5 @@ def numba_version() -> str:
     spec = find_spec("numba")
     if spec is None or spec.origin is None:
         return ""
-    beside = os.listdir(Path(spec.origin).parent.parent)  # noqa: PTH208 - a pattern of pathlib's is a regular expression to compile
+    beside = os.listdir(os.path.dirname(os.path.dirname(spec.origin)))
     return ", ".join(sorted(name for name in beside if name.startswith("numba-") and name.endswith(".dist-info")))

@@ -19,7 +19,6 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
     from io import FileIO
-    from pathlib import Path
 
 STALE_S = 3600.0
 """A temporary file that is older belongs to a writer that was killed."""
@@ -92,7 +91,7 @@ class MemoryStore:
 class FolderStore:
     """Files in a folder of the user's."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: str) -> None:
         self.folder = folder
 
     def read(self, name: str) -> bytes | None:
@@ -104,7 +103,7 @@ class FolderStore:
         return None
 
     def write(self, name: str, data: bytes) -> None:
-        self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        os.makedirs(self.folder, mode=0o700, exist_ok=True)
         with self._opened() as folder:
             temporary = f"{name}.{os.getpid()}.{time.monotonic_ns()}{_TEMPORARY}"
             try:
@@ -133,7 +132,7 @@ class FolderStore:
     def stored(self) -> list[Stored]:
         """All whole files; temporary ones of writers that were killed are removed on the way."""
         with contextlib.suppress(FileNotFoundError), self._opened() as folder:
-            found = [_stored(name, folder) for name in os.listdir(folder)]  # noqa: PTH208 - a descriptor, not a path
+            found = [_stored(name, folder) for name in os.listdir(folder)]
             return [file for file in found if file is not None]
         return []
 
@@ -141,7 +140,7 @@ class FolderStore:
     def _opened(self) -> Generator[int]:
         if os.open not in os.supports_dir_fd:
             raise UntrustedError(f"{sys.platform} cannot tell who may write to it")
-        if self.folder.is_symlink():
+        if os.path.islink(self.folder):
             raise UntrustedError("it is a symbolic link")
         folder = os.open(self.folder, _OPEN_FOLDER)
         try:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosetta_jit.runtime.code import native
@@ -31,7 +30,8 @@ def is_supported() -> bool:
 
 def stubs_text(names: Sequence[str]) -> str:
     """Stubs of functions as an LLVM module."""
-    from string import Template  # slow to import
+    from pathlib import Path
+    from string import Template  # both are slow to import
 
     stubs = "\n".join(STUB.format(name=name, offset=8 * number, number=number) for number, name in enumerate(names))
     template = Template(Path(__file__).with_name("lazy_x86_64.s").read_text("utf-8"))
