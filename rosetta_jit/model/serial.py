@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import repeat
-from typing import Any, cast
+from typing import Any, cast, get_args
 
 from rosetta_jit.model import types
 from rosetta_jit.model.limits import MAX_SERIAL_DEPTH
@@ -21,6 +21,7 @@ Plain = dict[str, Any]
 
 LEFT_OUT = ("doc", "span")
 NO_VALUE = object()
+TYPES = {each.__name__: each for each in (*get_args(types.Type), types.Field, types.NamedConstant)}
 
 
 def to_plain(type_: types.Type, schema: types.Schema) -> Plain:
@@ -109,9 +110,8 @@ def _attributes(node: Any) -> tuple[tuple[str, object], ...]:
 @cache
 def _class(word: str) -> Any:
     """The class of the model with that name. Few types have expressions: who reads none does not import them."""
-    found = vars(types).get(word)
-    if getattr(found, "__module__", "") == types.__name__:
-        return found
+    if word in TYPES:
+        return TYPES[word]
     from rosetta_jit.model import expr
 
     found = vars(expr)[word]

@@ -18,7 +18,7 @@ from rosetta_jit.language.parameters.several_places import one_by_one, spread
 from rosetta_jit.language.parameters.values import SCALARS, accepted, written
 from rosetta_jit.model.expr import Call, Choice, Given, Item, List, Literal, Name
 from rosetta_jit.model.mapping import For, Several, When
-from rosetta_jit.model.types import Array, Int
+from rosetta_jit.model.types import Int
 from rosetta_jit.model.walk import parts, rebuilt, with_expressions
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -69,7 +69,7 @@ def _values(mapping: Mapping, given: Dictionary[str, object] | None, problems: l
 def _value(parameter: Parameter, given: Dictionary[str, object] | None, problems: list[Diagnostic]) -> Expr:
     """The value of a parameter, or what stands for it where it has none."""
     type_ = SCALARS[parameter.type]
-    unknown = Given(parameter.name, (), Array(type_) if parameter.is_list else type_, parameter.span)
+    unknown = Given(parameter.name, (), type_, parameter.span, is_list=parameter.is_list)
     default = None if parameter.default is None else folded(parameter.default)
     if given is not None and parameter.name in given:
         value, span = given[parameter.name], parameter.span
@@ -127,7 +127,7 @@ class _Binder:
                 return _placed(self.values[name], expr.span)
             case Call("len", (List(items),)):
                 return Literal(len(items), bound.span)
-            case Call("len", (Given(name, (), Array()),)):
+            case Call("len", (Given(name, is_list=True),)):
                 return Given(f"len({name})", (), Int(64), bound.span)
             case Item(items, index):
                 return self.item(items, index, bound)
@@ -145,7 +145,7 @@ class _Binder:
                 return values[number]
             case List(values), Literal(int(number)):
                 self.problems.append(words.no_such_item(index.span, number, len(values)))
-            case Given(name, (), Array(element)), _:
+            case Given(name, _, element, is_list=True), _:
                 return Given(name, (index,), element, item.span)
             case List(values), _:
                 return self.chosen(item, len(values))

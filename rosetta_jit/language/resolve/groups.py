@@ -128,7 +128,7 @@ def components_of(value: model.Expr, group: Group, scope: Scope, type_index: Typ
             return [component(value, number) for number in range(len(group.components))]
         case model.List(items):
             return _of_count([*items], len(items), group, value.span, scope)
-        case model.Given(name, (), Array(element)):
+        case model.Given(name, _, element, is_list=True):
             count = len(group.components)
             return [model.Given(name, (model.Literal(number, value.span),), element, value.span) for number in range(count)]
         case model.Path():
