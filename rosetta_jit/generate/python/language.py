@@ -12,10 +12,11 @@ from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.unit_lanes import named_lanes
 from rosetta_jit.generate.python.classes import classes, names_of
+from rosetta_jit.generate.python.collecting import Collect
 from rosetta_jit.generate.python.encoder import encoder_in_parts
 from rosetta_jit.generate.python.expressions import CODES, Scope, view_name
 from rosetta_jit.generate.python.functions import WORDS, is_flat, print_kernel
-from rosetta_jit.generate.python.objects import Collect, Make, arrays_of
+from rosetta_jit.generate.python.making import Make, arrays_of
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.python.statements import Objects
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of

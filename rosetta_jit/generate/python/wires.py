@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.python.objects import Make
+    from rosetta_jit.generate.python.making import Make
     from rosetta_jit.generate.python.statements import Attempt
     from rosetta_jit.generate.shares import Ways
     from rosetta_jit.generate.unit import Role, Unit
