@@ -131,10 +131,10 @@ def _routine(writer: Writer, role: str, direction: Direction, routine: Routine, 
     if fails:
         function.line("return 0;")
     shared = tuple(each for each in SHARED if each in scope.parameters)
-    given = [f"{C_TYPES[each.type]} {own[each.name]}" for each in routine.parameters]
+    parameters = [f"{C_TYPES[each.type]} {own[each.name]}" for each in routine.parameters]
     found = [f"{C_TYPES[each.type]} *found_{scope.locals.identifier(each.name)}" for each in routine.results]
     name = f"{role}_{routine.name}"
-    declared = ", ".join((*_declared(shared, direction, scope.lanes), *given, *found)) or "void"
+    declared = ", ".join((*_declared(shared, direction, scope.lanes), *parameters, *found)) or "void"
     _head(writer, f"{inline}static {'int64_t' if fails else 'void'} {name}({declared})", scope, direction)
     writer.lines += [f"    (void){identifier};" for parameter, identifier in own.items() if parameter not in function.read]
     writer.lines += [*function.writer.lines, "}"]

@@ -168,8 +168,8 @@ def _lacks(function: Function, at: ir.Expr, size: ir.Expr) -> str:
         case ir.Local(_, name), ir.Const(_, length) if name in function.within and length >= 0:
             return f"({expression(scope, END)} < {bare(expression(scope, add(at, size)))})"
         case _:
-            given = [bare(expression(scope, each)) for each in (at, size, END)]
-            return f"{scope.calls('lacks')}({', '.join(given)})"
+            arguments = [bare(expression(scope, each)) for each in (at, size, END)]
+            return f"{scope.calls('lacks')}({', '.join(arguments)})"
 
 
 def _fail_if(function: Function, condition: str, failure: ir.Failure) -> None:
@@ -309,13 +309,13 @@ def _call(function: Function, call: ir.Call) -> None:
     found = (f"&{scope.locals.identifier(result.name)}" for result in call.results)
     for each in routine.shared:
         scope.takes(each)
-    given = ", ".join((*routine.shared, *(bare(expression(scope, each)) for each in call.arguments), *found))
+    arguments = ", ".join((*routine.shared, *(bare(expression(scope, each)) for each in call.arguments), *found))
     if not routine.fails:
-        function.line(f"{routine.name}({given});")
+        function.line(f"{routine.name}({arguments});")
         return
     name = call.results[0].name if call.results else call.routine
     problem = scope.locals.identifier(f"{name} problem")
-    function.line(f"const int64_t {problem} = {routine.name}({given});")
+    function.line(f"const int64_t {problem} = {routine.name}({arguments});")
     with function.block(f"if ({problem} != 0)"):
         _failed(function, _site(problem, tuple(map(function.site, call.sites))), "failure->offset", call.indices, None)
 
@@ -333,6 +333,6 @@ def _host_call(function: Function, call: ir.HostCall) -> None:
     scope = function.scope
     result = scope.locals.identifier(call.result.name)
     function.line(f"{C_TYPES[call.result.type]} {result} = 0;")
-    given = ", ".join((*(bare(expression(scope, each)) for each in call.arguments), f"&{result}"))
-    with function.block(f"if (!{scope.lanes.prefix}_{call.function}({given}))"):
+    arguments = ", ".join((*(bare(expression(scope, each)) for each in call.arguments), f"&{result}"))
+    with function.block(f"if (!{scope.lanes.prefix}_{call.function}({arguments}))"):
         _fail(function, call.failure)

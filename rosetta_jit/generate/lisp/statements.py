@@ -316,7 +316,7 @@ def _host_call(function: Function, call: ir.HostCall) -> None:
     scope, site = function.scope, function.site(call.failure.site)
     indices = "".join(f" {function.form(each)}" for each in call.failure.indices)
     refused = function.leave(f"(fail codec {site} {function.form(call.failure.at)}{indices})")
-    given = "".join(f" {function.form(each)}" for each in call.arguments)
+    arguments = "".join(f" {function.form(each)}" for each in call.arguments)
     name = function.functions.get(call.function, hyphenated(call.function))
-    found = f"(call-function ({name} {LISP_TYPES[call.result.type]}) {refused}{given})"
+    found = f"(call-function ({name} {LISP_TYPES[call.result.type]}) {refused}{arguments})"
     function.line(f"(setf {scope.locals.symbol(call.result.name)} {found})")

@@ -171,23 +171,23 @@ class _Module:
         objects = Objects(lambda _, __: "filled()", inner=inner, numpy=self.unit.numpy, classes=frozenset(self.names.values()))
         origins, lanes = self.unit.origins.get(role, ()), self._lanes(kernel)
         text, attempts = print_kernel(kernel, lanes, role, self.loads, origins, objects, self.paths, flat=False)
-        told = Writer()
-        self._told(told, {each for attempt in attempts for each in attempt.needs}, "decode")
-        called = decoder(self.root, wire, attempts, told.lines, self.unit.arrivals[wire])
+        lines = Writer()
+        self._from_call(lines, {each for attempt in attempts for each in attempt.needs}, "decode")
+        called = decoder(self.root, wire, attempts, lines.lines, self.unit.arrivals[wire])
         return "\n\n".join([self._sites(role), f"\n{text.rstrip()}", f"\n{called}"])
 
     def _decode(self, attempts: tuple[Attempt, ...]) -> str:
         writer = Writer()
-        copies = any("told_copy" in attempt.needs for attempt in attempts)
-        given = ", *, copy: bool = True" if copies else ""
-        writer.line(f"def decode(data: bytes | bytearray | memoryview{given}) -> {self.root}:")
+        copies = any("call_copy" in attempt.needs for attempt in attempts)
+        option = ", *, copy: bool = True" if copies else ""
+        writer.line(f"def decode(data: bytes | bytearray | memoryview{option}) -> {self.root}:")
         writer.depth = 1
         said = "; without ``copy`` arrays are views of it, where they can be, which nothing writes to. Raises" if copies else "; raises"
         writer.line(f'"""Read a message{said} `DecodeError`."""')
         writer.line("data = bytes(data)")
         writer.line("end = len(data)")
         writer.line("most = 1048576 + 64 * end")
-        self._told(writer, {each for attempt in attempts for each in attempt.needs}, "decode")
+        self._from_call(writer, {each for attempt in attempts for each in attempt.needs}, "decode")
         for number, attempt in enumerate(attempts):
             writer.line("try:")
             writer.line(f"    return {attempt.name}({', '.join(['data', 'end', 'most', *attempt.needs])})")
@@ -200,15 +200,15 @@ class _Module:
         writer.line("raise _error(_BORROW_SITES, farthest, end)")
         return writer.text()
 
-    def _told(self, writer: Writer, needs: set[str], direction: Direction) -> None:
-        if "told_registers" in needs:
-            writer.line(f"told_registers = {REGISTERS[direction]}")
-        if "told_copy" in needs:
-            writer.line("told_copy = copy")
-        if "told_now" in needs:
-            writer.line("told_now = now()")
-        if "told_number" in needs:
-            writer.line("told_number = next(_numbers)")
+    def _from_call(self, writer: Writer, needs: set[str], direction: Direction) -> None:
+        if "call_registers" in needs:
+            writer.line(f"call_registers = {REGISTERS[direction]}")
+        if "call_copy" in needs:
+            writer.line("call_copy = copy")
+        if "call_now" in needs:
+            writer.line("call_now = now()")
+        if "call_number" in needs:
+            writer.line("call_number = next(_numbers)")
 
     # --- encoding --------------------------------------------------------------------------------------------------------------------
 
@@ -221,7 +221,7 @@ class _Module:
         writer.line('    """The message; raises `EncodeError`."""')
         writer.line("    try:")
         writer.depth = 2
-        self._told(writer, {f"told_{what}" for what in made.told}, "encode")
+        self._from_call(writer, {f"call_{what}" for what in made.from_call}, "encode")
         writer.lines += made.lines
         writer.depth = 1
         fails = any("raise _Failed(" in line for line in made.lines)
@@ -248,8 +248,8 @@ class _Module:
             def result(scope: Scope, position: str, role: str = role, lanes: Lanes = lanes) -> str:
                 if role == "encode":
                     return position
-                given = [f"{scope.view(lane, '')}, {scope.room(lane)}" for lane in range(lanes.own, len(lanes.all))]
-                return ", ".join([position, *given]) + ("," if not given else "")
+                rooms = [f"{scope.view(lane, '')}, {scope.room(lane)}" for lane in range(lanes.own, len(lanes.all))]
+                return ", ".join([position, *rooms]) + ("," if not rooms else "")
 
             text, (attempts[role], *_) = print_kernel(
                 kernel, lanes, role, self.loads, self.unit.origins.get(role, ()), Objects(result), self.paths, flat=flat
@@ -286,7 +286,7 @@ class _Module:
                     writer.line(f'{name}_{code} = memoryview({name}).cast("{code}")')
             if lane and f"{name}_used" in needs | {each.replace("_room", "_used") for each in needs}:
                 writer.line(f"{name}_used = {name}_room = len({name}){f' // {stride}' if stride > 1 else ''}")
-        self._told(writer, needs, "encode")
+        self._from_call(writer, needs, "encode")
         writer.lines = [line for line in writer.lines if line not in collect.replaced]
         self.loads |= collect.wholes
         measured = [f"{lanes.rows(lanes.own + number)}{end}" for number in range(hidden) for end in ("", "_room")]

@@ -57,10 +57,10 @@ class Make:
         return self.scope.field(lane, row, slot.offset + 8, "i64")
 
     def struct(self, struct: Struct, slot: Row, lane: int, row: str) -> str:
-        given = [self.member(each, member, slot, lane, row) for each, member in zip(struct.fields, slot.members, strict=True)]
+        arguments = [self.member(each, member, slot, lane, row) for each, member in zip(struct.fields, slot.members, strict=True)]
         if slot.unknown is not None:
-            given.append(self._text("_bytes", slot.unknown, lane, row))
-        return f"{self.names[struct.name]}({', '.join(given)})"
+            arguments.append(self._text("_bytes", slot.unknown, lane, row))
+        return f"{self.names[struct.name]}({', '.join(arguments)})"
 
     def member(self, each: Field, member: Member, slot: Row, lane: int, row: str) -> str:
         """The value of a field of the struct at a slot; it may be absent."""
