@@ -219,11 +219,11 @@ class Channel:
         """The same with the messages that each table is of, which are not to be written to: the table has taken their large arrays."""
         from rosetta_jit.logs.tables import table_of
 
-        names, chosen, given = None if columns is None else list(columns), tuple(clocks), False
+        names, chosen, is_any = None if columns is None else list(columns), tuple(clocks), False
         for part in self.parts(start=start, end=end, pieces=pieces, on_error=on_error):
             yield part, table_of(part, names, chosen, form)
-            given = True
-        if not given:
+            is_any = True
+        if not is_any:
             empty = nothing(self.decoder)
             yield empty, table_of(empty, names, chosen, form)
 

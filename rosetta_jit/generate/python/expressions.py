@@ -52,7 +52,7 @@ class Scope:
 
     ``flat``: the fields of the message's row are locals, ``rows``, of which ``floats`` are floats. ``views`` are the lanes that it reaches,
     with the code of the view, empty for the bytes themselves; ``paths`` are the fields that lanes belong to; ``counted`` and ``rooms`` are
-    lanes, ``loads`` functions that it needs, ``from_call`` values that each call brings: its time and number, registers, the object to fill.
+    lanes, ``loads`` functions that it needs, ``from_call`` values that each call brings: its time and number, registers, object.
     """
 
     locals: Namespace
