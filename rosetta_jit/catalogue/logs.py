@@ -147,7 +147,9 @@ def unknown_field(name: str, topic: str, field: str, known: Iterable[str]) -> Di
 def several_types(name: str, topic: str, types: Iterable[str]) -> Diagnostic:
     found = ", ".join(f"`{each}`" for each in types)
     return error(
-        "log-types", f"{name}: `{topic}` has messages of several types: {found}", help_=f'name one: log["{topic}", type], or --type'
+        "log-types",
+        f"{name}: `{topic}` has messages of several types: {found}",
+        help_=f'name one: log["{topic}", type], or --type; into a folder, `rosetta-jit convert` writes tables of each',
     )
 
 

@@ -177,6 +177,21 @@ def test_doctor_of_a_topic_with_several_types(command, folder):
     assert "`/x` has messages of several types: `t/msg/A`, `t/msg/B`" in found["message"]
 
 
+def test_a_folder_of_a_topic_with_several_types(command, folder):
+    """Each type has tables of its own, and each of several definitions of one."""
+    write_points(folder / "two.mcap", ("t/msg/A", b"int32 x"), ("t/msg/B", b"uint32 y"), ("t/msg/A", b"uint32 z"))
+    command("convert", "two.mcap", "-o", "out/")
+    read = {
+        each.parent.parent.name: pq.read_table(each).drop_columns(["log_time", "publish_time"]) for each in folder.glob("out/*/*/*.parquet")
+    }
+    assert {name: table.to_pylist() for name, table in read.items()} == {
+        "x.t.msg.A": [{"x": 7}],
+        "x.t.msg.A.2": [{"z": 7}],
+        "x.t.msg.B": [{"y": 7}],
+    }
+    command("convert", "two.mcap", "-o", "out/", "--resume")
+
+
 def test_a_type_whose_definition_is_nowhere(command, folder):
     """Which type of which topic is missing, and where it is looked for."""
     write_points(folder / "bare.mcap", ("t/msg/A", b""))

@@ -7,6 +7,7 @@ The log is read once. Whenever so many bytes of messages are done, the files tha
 from __future__ import annotations
 
 import json
+from collections import Counter
 from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,7 +24,7 @@ from rosetta_jit.logs.tables import table_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from rosetta_jit.logs.base import Block
     from rosetta_jit.logs.channel import Channel
@@ -41,9 +42,10 @@ QUARANTINE = "_quarantine.jsonl"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Stream:
-    """A topic, its folder, and its messages that wait to become a table."""
+    """Messages of one topic and type, the folder of their tables, and those that wait to become a table."""
 
     channel: Channel
+    label: str
     name: str
     collector: Collector
 
@@ -91,8 +93,6 @@ class FolderConversion:
         DecodeError
             A message is not what its type promises, and ``on_error`` is to stop. What was done before is kept.
         """
-        for each in self.channels:
-            self.log.channel(each.topic, each.target)  # a topic has one folder, and a folder one type
         journal = Journal(self.output, self._request())
         self._check_empty()
         progress = journal.read() if self.resume else Progress()
@@ -135,8 +135,12 @@ class FolderConversion:
             raise LogError((words.not_empty(str(output)),))
 
     def _convert(self, journal: Journal, progress: Progress, parts: Parts, rejected: Rejected) -> None:
-        names, room = folder_names(each.topic for each in self.channels), min(LARGE_BYTES, WAITING_BYTES // max(len(self.channels), 1))
-        streams = [_Stream(each, names[each.topic], self._collector(each, progress, rejected, room)) for each in self.channels]
+        labels, room = _labels(self.channels), min(LARGE_BYTES, WAITING_BYTES // max(len(self.channels), 1))
+        names, streams = folder_names(labels), list[_Stream]()
+        for label, each in zip(labels, self.channels, strict=True):
+            first = progress.seen.get(label, 0)
+            collector = Collector(each.decoder, rejected.on_error, first=first, size=room, expected=each.count)
+            streams.append(_Stream(each, label, names[label], collector))
         done = 0
         for piece, within, block in self._blocks(progress):
             for stream in streams:
@@ -150,10 +154,6 @@ class FolderConversion:
                 done = 0
         progress.is_complete = True
         self._step(streams, journal, progress, parts, rejected)
-
-    def _collector(self, channel: Channel, progress: Progress, rejected: Rejected, room: int) -> Collector:
-        first = progress.seen.get(channel.topic, 0)
-        return Collector(channel.decoder, rejected.on_error, first=first, size=room, expected=channel.count)
 
     def _blocks(self, progress: Progress) -> Iterator[tuple[int, int, Block]]:
         """The messages that are left, with the piece and the number of messages in it that are done behind each block."""
@@ -184,4 +184,15 @@ class FolderConversion:
             rejected.add(stream.channel.topic, part.first, part.batch.errors, part.refused)
             if len(part.log_ns):
                 parts.add(stream.name, table_of(part, columns, clocks, options), part.log_ns)
-            progress.seen[stream.channel.topic] = part.first + part.given
+            progress.seen[stream.label] = part.first + part.given
+
+
+def _labels(channels: Sequence[Channel]) -> list[str]:
+    """What the tables of each channel are called: by the topic, and by the type too where a topic has several."""
+    several = Counter(each.topic for each in channels)
+    labels, taken = list[str](), Counter[str]()
+    for each in channels:
+        label = each.topic if several[each.topic] == 1 else f"{each.topic}.{each.type}"
+        taken[label] += 1
+        labels.append(label if taken[label] == 1 else f"{label}.{taken[label]}")
+    return labels
