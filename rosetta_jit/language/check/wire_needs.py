@@ -40,13 +40,13 @@ class Needs:
         The wires that it reads; of a rule to pack, the one that it sets.
     exprs
         What it computes.
-    others
+    arrivals
         All wires, of a rule that asks what has arrived: it runs at messages of any.
     """
 
     read: Wires = NO_WIRE
     exprs: tuple[Expr, ...] = ()
-    others: Wires = NO_WIRE
+    arrivals: Wires = NO_WIRE
 
     def within(self, rule: Rule, target: Side) -> Needs:
         """The same with one more rule."""
@@ -58,7 +58,7 @@ class Needs:
     @property
     def wires(self) -> Wires:
         """The wires on whose messages it depends."""
-        return self.read | self.others
+        return self.read | self.arrivals
 
     @property
     def runs_at(self) -> Wires:
@@ -78,7 +78,7 @@ def with_needs(rules: tuple[Rule, ...], target: Side) -> list[tuple[Rule, Needs]
     """Each rule that is no block, of all of a direction, with what it reads."""
     found = list(_walked(rules, target))
     every = NO_WIRE.union(*(needs.read for _, needs in found))
-    return [(rule, replace(needs, others=every) if asked_for(needs.exprs) else needs) for rule, needs in found]
+    return [(rule, replace(needs, arrivals=every) if asked_for(needs.exprs) else needs) for rule, needs in found]
 
 
 def _walked(rules: tuple[Rule, ...], target: Side, around: Needs = NOTHING_AROUND, *, chosen: bool = False) -> Iterator[tuple[Rule, Needs]]:

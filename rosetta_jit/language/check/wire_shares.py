@@ -57,9 +57,9 @@ def share_of(rules: tuple[Rule, ...], wire: str, wires: Sequence[str], holder: M
     owners = owners_of(rules, cut)
     mine = {cut(place) for place in places_in(rules_of(rules, wire, "holder", holder))}
     joined = frozenset(names for names in mine if len(owners.get(names, ())) > 1)
-    others = {names for names, groups in owners.items() if len(groups) != 1 or any(wire not in each for each in groups)}
+    elsewhere = {names for names, groups in owners.items() if len(groups) != 1 or any(wire not in each for each in groups)}
     around = {names[:count] for names in mine - joined for count in range(1, len(names))}
-    alone = (names for names in around if not any(other[: len(names)] == names for other in others))
+    alone = (names for names in around if not any(other[: len(names)] == names for other in elsewhere))
     return Share(wires.index(wire), frozenset(mine) - joined, frozenset(alone), joined)
 
 

@@ -92,17 +92,17 @@ class _Chosen:
         for rule in rules:
             needs, own = around.within(rule, self.target), of_wire(rule, self.wire, self.memory)
             read = wires_read(own_expressions(rule)) - asked_for(needs.exprs)
-            others = (self.needed(rule, around) | read) - come if self.memory.arrived else NO_WIRE
+            missing = (self.needed(rule, around) | read) - come if self.memory.arrived else NO_WIRE
             match own:
                 case For(body=body):
-                    inner = tuple(self.of(body, needs, come | others))
+                    inner = tuple(self.of(body, needs, come | missing))
                     found = (replace(own, body=inner),) if inner else ()
                 case When(then=then, otherwise=otherwise):
-                    chosen, other = (tuple(self.of(each, needs, come | others)) for each in (then, otherwise))
+                    chosen, other = (tuple(self.of(each, needs, come | missing)) for each in (then, otherwise))
                     found = (replace(own, then=chosen, otherwise=other),) if chosen or other else ()
                 case _:
                     found = (own,) if self.is_run(rule, self.needs[id(rule)]) else ()
-            for each in sorted(others) if found else ():
+            for each in sorted(missing) if found else ():
                 found = (When(self.memory.arrived[each], found, (), rule.span),)
             yield from found
 
