@@ -53,6 +53,7 @@ def cases(span: Span | None, path: str, first: str, second: str) -> Diagnostic:
 
 
 def other_case(span: Span | None, path: str, case: str, labels: tuple[int, int]) -> Diagnostic:
+    """A discriminator that selects another case than the one that is set; ``labels`` are what it says, and what it would without a rule."""
     actual, label = labels
     hint = f"leave the rule out: without one, it is {label}"
     return error("other-case", f"`{path}` is {actual}, which does not select `{case}`", span, f"`{case}` is set", help_=hint)

@@ -35,6 +35,7 @@ def other_block(condition: str, *, holds: bool) -> str:
 
 
 def no_inverse(span: Span | None, why: str, rule: Span | None, place: str, how: str = "") -> Diagnostic:
+    """A relation that cannot be packed; ``how`` it is written so that it can."""
     notes = (f"the relation is at {rule}",) if rule is not None and span is not None and rule != span else ()
     message = f"this cannot be turned round to pack: {why}"
     return error("no-inverse", message, span or rule, "has no inverse", notes=notes, help_=f"{how}{_by_hand([place])}")
@@ -59,6 +60,7 @@ def changes(span: Span | None, function: str) -> Diagnostic:
 
 
 def several_fields(span: Span | None, places: Sequence[str], why: str = "") -> Diagnostic:
+    """A relation among more fields of the wire than one, some of which nothing else sets; ``why`` as many do not say it, either."""
     listed = " and ".join(f"`{shorten(place)}`" for place in places[:MAX_PLACES])
     message = f"one rule cannot set several fields of the wire: nothing else says what {listed} are"
     notes = (f"it cannot be solved together with the other relations of these fields: {why}",) if why else ()

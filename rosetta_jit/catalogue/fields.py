@@ -22,6 +22,7 @@ KINDS = {"parameter": "a parameter", "state": "a state variable", "for": "a loop
 
 
 def unknown_field(step: Member, side: str, owner: str, known: Collection[str], elsewhere: str) -> Diagnostic:
+    """A field that the message does not have; ``elsewhere`` is a hint at where there is one of that name."""
     return error(
         "unknown-field",
         f"`{shorten(owner)}` has no field `{shorten(step.name)}`",
@@ -33,6 +34,7 @@ def unknown_field(step: Member, side: str, owner: str, known: Collection[str], e
 
 
 def unknown_wire(step: Member, wires: Collection[str], owners: Sequence[str]) -> Diagnostic:
+    """A path that begins with no wire's name; ``owners`` are the wires that have a field of the name."""
     paths = " or ".join(f"`.{shorten(wire)}.{shorten(step.name)}`" for wire in owners[:3])
     return error(
         "unknown-field",

@@ -157,6 +157,7 @@ two_orders = Mistake(
 
 
 def no_count(span: Span | None, path: str, whole: str = "") -> Diagnostic:
+    """Elements that nothing says the number of; ``whole`` is an array that is assigned to each of them."""
     help_ = f"set it: `len({path}) = 3`"
     if whole:
         help_ = f"`{whole}[]` is each of the elements there: `{path}[] = {whole}[]`"
@@ -181,6 +182,7 @@ same_order = Mistake(
 
 
 def one_value(span: Span | None, called: str = "", reductions: Sequence[str] = ()) -> Diagnostic:
+    """Many elements for a place that holds one value; what is ``called`` with them may be a reduction, misspelt."""
     meant = closest(called, reductions) if called else None
     misspelt = f"did you mean `{meant}`?" if meant else for_function(called)
     if misspelt:

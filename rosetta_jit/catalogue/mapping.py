@@ -198,6 +198,7 @@ no_rules = Mistake(
 
 
 def import_not_found(span: Span | None, name: str, folders: Iterable[str], near: str | None = None) -> Diagnostic:
+    """An imported file that is nowhere on the search path; ``near`` is one that may be meant."""
     searched = tuple(f"searched {folder}" for folder in folders)
     return error(
         "import-not-found",
@@ -272,6 +273,7 @@ def file_unreadable(name: str, why: str) -> Diagnostic:
 
 
 def mapping_not_found(name: str, folders: Iterable[str], near: str | None = None) -> Diagnostic:
+    """A mapping that is neither a file nor on the search path; ``near`` is one that may be meant."""
     searched = tuple(f"searched {folder}" for folder in folders)
     help_ = f'did you mean "{shorten(near)}"?' if near else ""
     return error("mapping-not-found", f'there is no mapping "{shorten(name)}"', notes=searched, help_=help_)

@@ -79,6 +79,7 @@ def length_not_settable(span: Span | None, found: str) -> Diagnostic:
 
 
 def unknown_name(span: Span | None, name: str, known: Collection[str], members: Collection[str] = ()) -> Diagnostic:
+    """A name that is no loop variable and no constant; what it ends with may be one of the ``members`` of the message."""
     last = re.split(r"[./:]", name)[-1]
     if last in members and last not in known:
         message = f"there is no loop variable or constant `{shorten(name)}`, but a field `{shorten(last)}`"

@@ -73,12 +73,14 @@ EACH = ", and write `[]` behind the array that is set, too"
 
 
 def wide_integer(span: Span | None, found: str, element: str) -> Diagnostic:
+    """An integer of more bits than the float has in which units are converted; ``element`` where it is one of a whole array."""
     message = f"the units differ, and float64, in which they are converted, does not hold every {found}"
     help_ = f"say that it may be rounded: `float64({element or written_at(span)})`{EACH if element else ''}"
     return error("unit", message, span, help_=help_)
 
 
 def fraction_of_unit(span: Span | None, known: str, wanted: str, target: str, element: str) -> Diagnostic:
+    """An integer that may be a fraction in the unit of its place; ``element`` where it is one of a whole array."""
     message = f"a whole number of {shorten(known)} need not be one of {shorten(wanted)}"
     help_ = f"say how it is rounded: `{target}(float64({element or written_at(span)}), round)`, or `truncate`{EACH if element else ''}"
     return error("unit", message, span, help_=help_)
