@@ -1,6 +1,7 @@
 """A diagnostic is data; rendering it with its line and a caret is a function.
 
-The words of each diagnostic stand in `rosetta_jit.catalogue`, one function a mistake, never where it is noticed.
+The words of each diagnostic stand in `rosetta_jit.catalogue` or with their framework, never where a mistake is noticed: each is a
+function, or a `Mistake` where the place is all that differs.
 """
 
 from __future__ import annotations
@@ -39,6 +40,35 @@ class Diagnostic:
     label: str = ""
     notes: tuple[str, ...] = ()
     help: str = ""
+
+
+def error(code: str, message: str, span: Span | None = None, label: str = "", help_: str = "", notes: tuple[str, ...] = ()) -> Diagnostic:
+    """Something that is wrong, with the parts that most reports have."""
+    return Diagnostic("error", code, message, span, label, notes, help_)
+
+
+def warning(code: str, message: str, span: Span | None = None, label: str = "", help_: str = "") -> Diagnostic:
+    """Something that is suspect and not wrong."""
+    return Diagnostic("warning", code, message, span, label, (), help_)
+
+
+def note(code: str, message: str, span: Span | None = None, label: str = "", help_: str = "", notes: tuple[str, ...] = ()) -> Diagnostic:
+    """Something that the text leaves open, and what is made of it."""
+    return Diagnostic("note", code, message, span, label, notes, help_)
+
+
+@dataclass(frozen=True, slots=True)
+class Mistake:
+    """An error whose words are always the same: called with the place, it is the diagnostic. Others are functions of what they tell."""
+
+    code: str
+    message: str
+    label: str = ""
+    help: str = ""
+    notes: tuple[str, ...] = ()
+
+    def __call__(self, span: Span | None) -> Diagnostic:
+        return Diagnostic("error", self.code, self.message, span, self.label, self.notes, self.help)
 
 
 def render(diagnostic: Diagnostic) -> str:

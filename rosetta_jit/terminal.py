@@ -9,9 +9,9 @@ WIDE = frozenset(("W", "F"))
 """East Asian widths of characters that fill two cells: Unicode Standard Annex 11."""
 
 
-def printable(text: str, *, keep: str = "") -> str:
+def printable(text: str) -> str:
     """A text without what could command a terminal or turn its direction: such characters stand as their codes."""
-    return "".join(char if char.isprintable() or char in keep else _code(char) for char in text)
+    return "".join(char if char.isprintable() else _code(char) for char in text)
 
 
 def _code(char: str) -> str:
@@ -48,11 +48,11 @@ def cut(text: str, width: int) -> str:
     return kept + "…"
 
 
-def columns(rows: list[tuple[str, ...]], *, gap: int = 2) -> list[str]:
+def columns(rows: list[tuple[str, ...]]) -> list[str]:
     """Rows with their cells below each other."""
     count = max(map(len, rows), default=0)
     widths = [max((cells(row[number]) for row in rows if number < len(row)), default=0) for number in range(count)]
-    return [(" " * gap).join(padded(cell, width) for cell, width in zip(row, widths, strict=False)).rstrip() for row in rows]
+    return ["  ".join(padded(cell, width) for cell, width in zip(row, widths, strict=False)).rstrip() for row in rows]
 
 
 def wrapped(text: str, width: int, *, first: str = "", then: str = "") -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import object_at
@@ -13,13 +13,8 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.host import Functions
     from rosetta_jit.kernel.ir import Kernel
 
-
-class Runner(Protocol):
-    """A function from a kernel to one that Python can call."""
-
-    def __call__(self, kernel: Kernel, functions: Functions) -> Callable[..., int]:
-        """The kernel as `kernel.interpret.run` without its first parameter; ``functions`` are those of the host."""
-        ...
+    Runner = Callable[[Kernel, Functions], Callable[..., int]]
+    """From a kernel, and the host's functions, to the kernel as `kernel.interpret.run` without its first parameter."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,12 +6,10 @@ from rosetta_jit.diagnostics import Diagnostic
 
 
 def unusable_folder(folder: str, reason: str) -> Diagnostic:
-    """The folder cannot be read or written, or somebody else could have written to it."""
     return _folder(folder, reason, "give it to its user alone (chmod 700)")
 
 
 def full_folder(folder: str, reason: str) -> Diagnostic:
-    """The disk, or what the user may have of it, is full."""
     return _folder(folder, reason, "make room there")
 
 
@@ -26,7 +24,6 @@ def _folder(folder: str, reason: str, remedy: str) -> Diagnostic:
 
 
 def damaged_file(name: str, reason: str) -> Diagnostic:
-    """A file that is cut, altered, or not what its name says."""
     return Diagnostic(
         "warning",
         "cache-damaged",

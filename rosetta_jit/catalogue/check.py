@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.catalogue.mapping import error, shorten, warning
+from rosetta_jit.catalogue.mapping import shorten
+from rosetta_jit.diagnostics import Mistake, error, warning
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -20,7 +21,6 @@ Block = Literal["rules", "unpack-rules", "pack-rules", ""]
 
 
 def never_set(span: Span | None, side: str, path: str, declared: Span | None, *, kind: str, block: Block) -> Diagnostic:
-    """A field that cannot be absent and has no rule."""
     place = path.replace("[]", "[i]")
     if block == "rules":
         relation, word = (f"... <-> {place}", "ignore") if side == "wire" else (f"{place} <-> ...", "default")
@@ -35,13 +35,11 @@ def never_set(span: Span | None, side: str, path: str, declared: Span | None, *,
 
 
 def set_twice(span: Span | None, path: str, first: Span | None) -> Diagnostic:
-    """A second rule for a place."""
     notes = (f"set before at {first}",) if first else ()
     return error("set-twice", f"`{path}` is set twice", span, "again here", notes=notes, help_="remove one of the rules")
 
 
 def set_in_loop(span: Span | None, path: str, variable: str) -> Diagnostic:
-    """A place that each round of a loop sets again."""
     return error(
         "set-in-loop",
         f"`{path}` is set again in each round of the loop over `{variable}`",
@@ -51,7 +49,6 @@ def set_in_loop(span: Span | None, path: str, variable: str) -> Diagnostic:
 
 
 def cases(span: Span | None, path: str, first: str, second: str) -> Diagnostic:
-    """Two cases of one union."""
     return error("set-twice", f"`{path}` can hold `{first}` or `{second}`, not both", span, help_="remove one of the rules")
 
 
@@ -63,17 +60,14 @@ def other_case(span: Span | None, path: str, case: str, labels: tuple[int, int])
 
 
 def late_discriminator(span: Span | None, path: str) -> Diagnostic:
-    """A discriminator in an array that begins to be filled before its own rule can run."""
     return error("other-case", f"`{path}` is set after cases that it selects", span, help_="set it beside the case")
 
 
 def many_labels(span: Span | None, most: int) -> Diagnostic:
-    """More labels than computed discriminators are compared with."""
     return error("too-complex", f"discriminators are computed that select by more than {most} labels", span, help_="use constants")
 
 
 def constant(span: Span | None, path: str, value: str) -> Diagnostic:
-    """Another value for a field that the schema fixes."""
     return error(
         "constant-field",
         f"the schema fixes `{path}`{f' as {value}' if value else ''}",
@@ -83,35 +77,28 @@ def constant(span: Span | None, path: str, value: str) -> Diagnostic:
     )
 
 
-def uneven_rounds(span: Span | None) -> Diagnostic:
-    """A loop whose rounds set different places."""
-    return error(
-        "uneven-rounds",
-        "the blocks of a `when` in this loop do not set the same places",
-        span,
-        help_="set the same fields of the same element in each block, or put the `when` around the loop",
-    )
+uneven_rounds = Mistake(
+    "uneven-rounds",
+    "the blocks of a `when` in this loop do not set the same places",
+    help="set the same fields of the same element in each block, or put the `when` around the loop",
+)
 
 
 def too_many_ways(span: Span | None, most: int) -> Diagnostic:
-    """More combinations of conditions than are looked at."""
     message = f"there are more than {most} ways through these rules"
     return error("too-many-ways", message, span, help_="choose among values: `x if c else y`")
 
 
 def in_one_way(problem: Diagnostic) -> Diagnostic:
-    """A mistake that not every way through the rules makes."""
     return replace(problem, notes=(*problem.notes, "in one way through the `when` blocks, not in all: an `else` may be missing"))
 
 
 def never_read(span: Span | None, side: str, path: str, block: Block) -> Diagnostic:
-    """A field whose value goes nowhere."""
     word = "default" if block == "rules" and side == "holder" else "ignore"
     return warning("never-read", f"no rule reads `{path}`: its value is lost", span, help_=_meant(word, path, block))
 
 
 def left_out(span: Span | None, side: str, path: str, block: Block) -> Diagnostic:
-    """An optional field without a rule."""
     word = "ignore" if block == "rules" and side == "wire" else "default"
     return warning("left-out", f"no rule sets `{path}`", span, help_=_meant(word, path, block))
 
@@ -125,7 +112,6 @@ def _under(block: Block) -> str:
 
 
 def other_length(span: Span | None, array: str, other: str) -> Diagnostic:
-    """An array that a loop reads up to the length of another one."""
     return warning(
         "other-length",
         f"`{array}` is read as far as `{other}` is long, and nothing says that both have one length",
@@ -136,7 +122,6 @@ def other_length(span: Span | None, array: str, other: str) -> Diagnostic:
 
 
 def length_without_elements(span: Span | None, path: str) -> Diagnostic:
-    """A length without rules for the elements."""
     return error(
         "elements-never-set",
         f"the length of `{path}` is set, its elements are not",
@@ -146,7 +131,6 @@ def length_without_elements(span: Span | None, path: str) -> Diagnostic:
 
 
 def elements_without_length(span: Span | None, path: str) -> Diagnostic:
-    """Elements without a rule for the length."""
     return error(
         "length-never-set",
         f"elements of `{path}` are set, its length is not",
@@ -156,24 +140,20 @@ def elements_without_length(span: Span | None, path: str) -> Diagnostic:
 
 
 def overlap(span: Span | None, path: str, first: Span | None) -> Diagnostic:
-    """Rules that set some element twice."""
     notes = (f"set before at {first}",) if first else ()
     return error("overlap", f"elements of `{path}` are set twice", span, "again here", notes=notes, help_="remove one of the rules")
 
 
 def element_missing(span: Span | None, path: str, first: int, last: int) -> Diagnostic:
-    """Known elements that no rule sets."""
     which = f"`{path}[{first}]` is" if first == last else f"`{path}[{first}]` to `{path}[{last}]` are"
     return error("coverage", f"{which} never set", span, "the length says that they exist", help_="set them, or correct the length")
 
 
 def element_beyond(span: Span | None, path: str, index: int, length: int) -> Diagnostic:
-    """A known element beyond the length."""
     return error("index-range", f"`{path}[{index}]` is beyond the length {length}", span, "out of range", help_=BEYOND)
 
 
 def coverage(span: Span | None, path: str, length: str, shown: tuple[str, ...]) -> Diagnostic:
-    """Rules of which it is not evident that they fill an array."""
     return error(
         "coverage",
         f"it cannot be shown that the rules set all elements of `{path}`, each once",
@@ -186,7 +166,6 @@ def coverage(span: Span | None, path: str, length: str, shown: tuple[str, ...]) 
 
 
 def loop_of_other_length(span: Span | None, path: str, length: str, found: str) -> Diagnostic:
-    """A loop that sets more or fewer elements than there are."""
     return error(
         "coverage",
         f"the rules set `{shorten(found)}` elements of `{path}`, but its length is `{shorten(length)}`",
@@ -197,7 +176,6 @@ def loop_of_other_length(span: Span | None, path: str, length: str, found: str) 
 
 
 def not_affine(span: Span | None, path: str) -> Diagnostic:
-    """An index that the proof cannot follow."""
     return error(
         "coverage",
         f"it cannot be shown which elements of `{path}` this rule sets",
@@ -207,12 +185,9 @@ def not_affine(span: Span | None, path: str) -> Diagnostic:
     )
 
 
-def too_complex(span: Span | None) -> Diagnostic:
-    """An expression whose normal form is beyond the limit."""
-    return error("too-complex", "the expression is too large to be checked", span, help_="simplify it")
+too_complex = Mistake("too-complex", "the expression is too large to be checked", help="simplify it")
 
 
 def case_twice(span: Span | None) -> Diagnostic:
-    """A case of a table or a choice that asks what an earlier one asks."""
     message = "an earlier case asks the same: this one is never chosen"
     return warning("unreachable", message, span, "again here", help_="remove one of them, or correct it")

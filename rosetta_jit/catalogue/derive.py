@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.limits import MAX_PLACES
-from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.mapping import shorten
+from rosetta_jit.diagnostics import Mistake, error
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,7 +55,6 @@ def all_numbers(value: str, names: Sequence[str]) -> str:
 
 
 def changes(span: Span | None, function: str) -> Diagnostic:
-    """A relation to what is another value each time."""
     message = f"`{function}()` is another one when the message is packed, so that no relation can hold"
     return error("no-inverse", message, span, "changes", help_="write it in `unpack-rules:`, or in `pack-rules:`")
 
@@ -68,38 +68,34 @@ def several_fields(span: Span | None, places: Sequence[str], why: str = "") -> D
     return error("several-fields", message, span, notes=notes, help_=help_)
 
 
-def unknown_bound(span: Span | None) -> Diagnostic:
-    """A loop to a field of the wire that no relation knows."""
-    return error(
-        "unknown-bound",
-        "to pack, nothing says how long this loop is",
-        span,
-        "no relation sets it",
-        help_="relate it to the holder: `len(.a) <-> len(.b)`",
-    )
+unknown_bound = Mistake(
+    "unknown-bound",
+    "to pack, nothing says how long this loop is",
+    "no relation sets it",
+    help="relate it to the holder: `len(.a) <-> len(.b)`",
+)
 
 
 def unknown_layout(span: Span | None, field: str) -> Diagnostic:
-    """An array whose order depends on a field of the wire that nothing tells of."""
     help_ = f"relate it to the holder, or set it in `pack-rules:`: `{shorten(field)} = ...`"
     return error("unknown-layout", f"to pack, nothing says what `{shorten(field)}` is", span, "the elements lie as it says", help_=help_)
 
 
-def index_reads(span: Span | None) -> Diagnostic:
-    """An index that depends on a field that packing does not know, in a rule for both directions."""
-    help_ = "relate the field to the holder by a rule of its own, or write a rule for each direction"
-    return error("index-reads", "to pack, nothing says what this index is", span, "no relation sets it", help_=help_)
+index_reads = Mistake(
+    "index-reads",
+    "to pack, nothing says what this index is",
+    "no relation sets it",
+    help="relate the field to the holder by a rule of its own, or write a rule for each direction",
+)
 
 
 def unknown_condition(span: Span | None, place: str) -> Diagnostic:
-    """A rejection for a reason that packing does not know."""
     message = f"to pack, nothing says what `{shorten(place)}` is"
     help_ = f"relate `{shorten(place)}` to the holder, or write the rejection in `unpack-rules:`"
     return error("unknown-condition", message, span, "no relation sets it", help_=help_)
 
 
 def undetermined(span: Span | None, place: str, *, holds: bool) -> Diagnostic:
-    """A block in which a field of its condition may have any value but some."""
     which = "where the condition holds" if holds else "where the condition does not hold"
     message = f"to pack, nothing says what `{shorten(place)}` is {which}"
     one = f"or ask for one value there, `when {shorten(place)} == 0`"
@@ -108,7 +104,6 @@ def undetermined(span: Span | None, place: str, *, holds: bool) -> Diagnostic:
 
 
 def unsettled_presence(span: Span | None, place: str, *, holds: bool) -> Diagnostic:
-    """A block that does not set what its condition says is there, or may set what it says is not."""
     shown = shorten(place)
     condition, found = ("holds", "does not set") if holds else ("does not hold", "may set")
     message = f"to pack, the block where the condition {condition} {found} `{shown}`"
@@ -117,7 +112,6 @@ def unsettled_presence(span: Span | None, place: str, *, holds: bool) -> Diagnos
 
 
 def alike_blocks(span: Span | None, place: str) -> Diagnostic:
-    """A `when` whose blocks nothing in the holder tells apart."""
     return error(
         "alike-blocks",
         "to pack, nothing tells which block of the `when` a holder is of",
@@ -130,15 +124,15 @@ def alike_blocks(span: Span | None, place: str) -> Diagnostic:
 
 
 def too_many_blocks(span: Span | None, most: int) -> Diagnostic:
-    """Conditions in expressions that multiply."""
     message = f"to pack, the conditions in these relations make more than {most} blocks"
     return error("too-many-ways", message, span, help_="relate what the conditions read by rules of their own, or use `when`")
 
 
-def too_complex(span: Span | None) -> Diagnostic:
-    """Relations that name each other's fields more often than is followed."""
-    help_ = "relate fields to the holder one by one, and write the rest in `unpack-rules:` and `pack-rules:`"
-    return error("too-complex", "to pack, these relations are too large to be turned round", span, help_=help_)
+too_complex = Mistake(
+    "too-complex",
+    "to pack, these relations are too large to be turned round",
+    help="relate fields to the holder one by one, and write the rest in `unpack-rules:` and `pack-rules:`",
+)
 
 
 def _by_hand(places: Sequence[str]) -> str:

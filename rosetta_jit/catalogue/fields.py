@@ -6,8 +6,9 @@ import re
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.habits import for_member
-from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.resolve import did_you_mean, there_are
+from rosetta_jit.diagnostics import error
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -95,7 +96,6 @@ TURNED = "left of `<->` stands a place of the holder, right of it one of the wir
 
 
 def not_a_struct(span: Span | None, name: str, found: str) -> Diagnostic:
-    """A field of something that has none."""
     hint = "index it first: `[i]`" if found.startswith("an array") else f"leave out `.{shorten(name)}`"
     if found.startswith("an array") or found in ("text", "bytes"):
         hint = for_member(name, span) or hint
@@ -103,20 +103,17 @@ def not_a_struct(span: Span | None, name: str, found: str) -> Diagnostic:
 
 
 def no_keys(span: Span | None, found: str) -> Diagnostic:
-    """A key of what has no elements with fields."""
     message = f"{shorten(found)} has no elements that a field tells apart"
     help_ = 'name an array of messages, a map, or an array of keys beside: `.position[.name[] = "elbow"]`'
     return error("no-keys", message, span, "here", help_=help_)
 
 
 def not_indexable(span: Span | None, found: str, value: str = "") -> Diagnostic:
-    """An element of something that has none."""
     hint = f'bytes of a text are `slice({value or "s"}, 0, 3)`, its parts `part({value or "s"}, "/", 0)`' if found == "text" else ""
     return error("not-indexable", f"{found} cannot be indexed", span, help_=hint or "only arrays and bytes have elements")
 
 
 def index_range(span: Span | None, index: int, length: int | None) -> Diagnostic:
-    """An index that is known to be out of range."""
     has = "indices count from 0" if length is None else f"there are {length} elements, counted from 0"
     hint = "correct the index"
     if index < 0:
@@ -126,17 +123,14 @@ def index_range(span: Span | None, index: int, length: int | None) -> Diagnostic
 
 
 def no_length(span: Span | None, found: str) -> Diagnostic:
-    """`len()` of something that has none."""
     return error("no-length", f"{found} has no length", span, "here", help_="only arrays, bytes and text have one")
 
 
 def always_there(span: Span | None, found: str) -> Diagnostic:
-    """`has()` of something that cannot be absent."""
     help_ = "only optional fields and cases of a union can be absent; compare the value instead"
     return error("always-there", f"{found} is always there", span, "here", help_=help_)
 
 
 def undotted_field(span: Span | None, name: str) -> Diagnostic:
-    """The name of a field without the dot before it."""
     message = f"there is no loop variable or constant `{shorten(name)}`, but a field"
     return error("unknown-name", message, span, "a dot is missing", help_=f"a field begins with a dot: `.{shorten(name)}`")

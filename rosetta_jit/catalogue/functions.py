@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.resolve import CALLED, nearest, written_at
+from rosetta_jit.diagnostics import Mistake, error
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -15,36 +16,30 @@ if TYPE_CHECKING:
 
 
 def no_scalar(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
-    """A type that a function cannot take or give."""
     found = CALLED.get(name) or nearest(name, known)
     help_ = f"did you mean `{found}`?" if found else f"functions take and give {', '.join(known)}"
     return error("no-scalar", f"`{shorten(name)}` is no type of numbers", span, "not a number's type", help_=help_)
 
 
 def taken(span: Span | None, name: str) -> Diagnostic:
-    """A function with the name of one of the language, or with a dot in it."""
     why = "names of functions have no dots" if "." in name else "the language has a function of this name"
     return error("function-name", f"no function can be declared as `{shorten(name)}`", span, why, help_="give it another name")
 
 
 def repeated(span: Span | None, name: str, first: Span | None) -> Diagnostic:
-    """A function that is declared twice, within one mapping or with other types in another one that is used."""
     return error("repeated-function", f"`{shorten(name)}` is declared twice", span, "again", notes=_declared(first))
 
 
 def many_parameters(span: Span | None, most: int) -> Diagnostic:
-    """A function of too many numbers."""
     return error("many-parameters", f"a function takes at most {most} numbers", span, help_="make several functions of it")
 
 
 def arguments(span: Span | None, name: str, wanted: int, found: int, declared: Span | None) -> Diagnostic:
-    """A call with too many or too few arguments."""
     message = f"`{shorten(name)}` takes {wanted} value{'' if wanted == 1 else 's'}, not {found}"
     return error("arguments", message, span, notes=_declared(declared))
 
 
 def argument(span: Span | None, name: str, types: tuple[str, str], how: str, declared: Span | None) -> Diagnostic:
-    """An argument of another type than the declared one."""
     found, wanted = types
     message = f"`{shorten(name)}` takes {wanted} here, not {found}"
     help_ = f"say how: {how.replace('...', written_at(span))}" if how else ""
@@ -52,27 +47,26 @@ def argument(span: Span | None, name: str, types: tuple[str, str], how: str, dec
 
 
 def not_given(span: Span | None, name: str) -> Diagnostic:
-    """A function that the mapping calls and nobody has given."""
     help_ = f'give it when you make the program: functions={{"{shorten(name)}": …}}'
     return error("function-missing", f"the mapping calls `{shorten(name)}`, which was not given", span, "declared here", help_=help_)
 
 
 def not_declared(name: str, known: Collection[str]) -> Diagnostic:
-    """A function that was given and that the mapping does not declare."""
     found = nearest(name, known)
     help_ = f"did you mean `{found}`?" if found else f"declare it in the mapping: function {shorten(name)}(float64): float64"
-    return error("function-unknown", f"the mapping declares no function `{shorten(name)}`", None, help_=help_)
+    return error("function-unknown", f"the mapping declares no function `{shorten(name)}`", help_=help_)
 
 
 def does_not_compile(span: Span | None, name: str, why: str) -> Diagnostic:
-    """A function that numba cannot compile to what is declared."""
     return error("function-type", f"`{shorten(name)}` does not compile to what is declared", span, "declared here", notes=(why,))
 
 
-def no_compiler(span: Span | None) -> Diagnostic:
-    """A mapping with functions where numba is not installed."""
-    message = "functions of one's own are compiled by numba, which is not installed"
-    return error("no-numba", message, span, "declared here", help_='pip install numba, or say backend="python"')
+no_compiler = Mistake(
+    "no-numba",
+    "functions of one's own are compiled by numba, which is not installed",
+    "declared here",
+    help='pip install numba, or say backend="python"',
+)
 
 
 def _declared(span: Span | None) -> tuple[str, ...]:
@@ -86,18 +80,15 @@ EXAMPLES = {"any": "any(.a[] > 3)", "all": "all(.a[] > 3)", "count": "count(.a[]
 
 
 def not_of_each(span: Span | None, function: str) -> Diagnostic:
-    """A reduction of what has no elements, or of several values."""
     help_ = f"write `[]` behind the array: `{EXAMPLES.get(function, f'{function}(.a[])')}`"
     return error("reduction", f"`{function}` takes one value of each element", span, help_=help_)
 
 
 def in_order(span: Span | None, function: str) -> Diagnostic:
-    """A reduction of elements in rows or planes, or of those that a list names."""
     help_ = "write `.a[]`, or a slice of it"
     return error("layout-order", f"`{function}` takes the elements of an array as they lie", span, help_=help_)
 
 
 def within_each(span: Span | None, function: str) -> Diagnostic:
-    """Two `[]` in one path."""
     help_ = f"write a loop over the outer ones: `for i from 0 to len(.rows) ... {function}(.rows[i].cells[]) ... end`"
     return error("many-elements", f"`{function}` takes the elements of one array, not those of each of several", span, help_=help_)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.diagnostics import Mistake, error
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
 
 
 def no_group(span: Span | None, called: str, known: Collection[str]) -> Diagnostic:
-    """Several places, and a value that is no group of numbers; it may be the call of a function of several values, misspelt."""
     meant = closest(called, known) if called else None
     how = "functions of several values give one for each place: `.roll, .pitch, .yaw = euler(.q)`; so does a list: `.x, .y = [1.0, 2.0]`"
     if called in ("degrees", "radians"):
@@ -25,13 +25,11 @@ def no_group(span: Span | None, called: str, known: Collection[str]) -> Diagnost
 
 
 def other_count(span: Span | None, places: int, values: int, names: Sequence[str]) -> Diagnostic:
-    """As many places as a value has not."""
     notes = (f"it gives {_listed(names)}",) if names else ()
     return error("group-size", f"{places} places stand for {values} numbers", span, notes=notes, help_="write a place for each number")
 
 
 def no_component(span: Span | None, name: str, names: Sequence[str]) -> Diagnostic:
-    """A number that a group has not, or of what is no group."""
     notes = (f"it gives {_listed(names)}",) if names else ("functions of several values give several numbers: `euler(.q).yaw`",)
     meant = closest(name, names)
     return error(
@@ -40,7 +38,6 @@ def no_component(span: Span | None, name: str, names: Sequence[str]) -> Diagnost
 
 
 def arguments(span: Span | None, function: str, groups: Sequence[tuple[str, Sequence[str]]], found: int) -> Diagnostic:
-    """Too many or too few arguments of a function of several values."""
     wanted = " and ".join(f"{name} ({_listed(names)})" for name, names in groups)
     numbers = iter("abcdefghijklmnopqrstuvwxyz")
     shown = ", ".join(f"[{inner}]" if len(names) > 1 else inner for _, names in groups if (inner := _places(names, numbers)))
@@ -49,7 +46,6 @@ def arguments(span: Span | None, function: str, groups: Sequence[tuple[str, Sequ
 
 
 def list_size(span: Span | None, group: str, names: Sequence[str], found: int) -> Diagnostic:
-    """A list or an array with another number of values than a group has."""
     several = len(names) > 1
     message = f"{group} has {len(names)} number{'s' if several else ''}, not {found}"
     return error("group-size", message, span, notes=(f"{'they are' if several else 'it is'} {_listed(names)}",))
@@ -61,38 +57,31 @@ def wrong_length(group: str, count: int) -> str:
 
 
 def missing_members(span: Span | None, type_: str, group: str, names: Sequence[str]) -> Diagnostic:
-    """A struct without the fields of a group."""
     message = f"`{shorten(type_)}` is not {group}: it has no {_listed(names)}"
     help_ = "where fields have other names, list them in the order of the group: `[.a, .b, .c]`, or on the left `.a, .b, .c = ...`"
     return error("not-a-group", message, span, help_=help_)
 
 
 def not_a_group(span: Span | None, source: str, group: str) -> Diagnostic:
-    """A value that is no group, where one is needed."""
     return error("not-a-group", f"{source} is not {group}", span, help_=f"{group} is a struct, a list, an array, or a call that gives one")
 
 
 def other_group(span: Span | None, source: str, group: str) -> Diagnostic:
-    """A call that gives another group than is needed."""
     return error(
         "not-a-group", f"this gives {source}, and {group} is needed", span, help_="call the function that makes the one of the other"
     )
 
 
 def alone(span: Span | None, group: str, names: Sequence[str]) -> Diagnostic:
-    """A group of numbers where one number is needed."""
     message = f"one number is needed here, and the value is {group}"
     return error("several-values", message, span, notes=(f"it has {_listed(names)}",), help_="name a place for each: `.a, .b, .c = ...`")
 
 
-def compared(span: Span | None) -> Diagnostic:
-    """A relation to a group that packing would have to compare."""
-    return error(
-        "several-fields",
-        "to pack, other relations say what all fields of this are, and groups of numbers are not compared",
-        span,
-        help_="write this rule in `unpack-rules:`",
-    )
+compared = Mistake(
+    "several-fields",
+    "to pack, other relations say what all fields of this are, and groups of numbers are not compared",
+    help="write this rule in `unpack-rules:`",
+)
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.resolve import written_at
-from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.diagnostics import error
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
 FORMS = {
@@ -22,24 +23,20 @@ FORMS = {
 
 
 def arguments(span: Span | None, function: str, found: int) -> Diagnostic:
-    """Too many or too few arguments."""
     message = f"`{function}` does not take {found} value{'' if found == 1 else 's'}"
     return error("arguments", message, span, help_=f"write {FORMS.get(function, f'`{function}(image)`')}")
 
 
 def no_bytes(span: Span | None, function: str, found: str) -> Diagnostic:
-    """Something else where bytes are meant."""
     return error("no-bytes", f"`{function}` takes bytes, not {found}", span, "not bytes", help_="name a field of bytes, or of uint8[]")
 
 
 def unknown_format(span: Span | None, found: str | None, known: Sequence[str]) -> Diagnostic:
-    """A format that cannot be written."""
     message = "a format is written in quotes" if found is None else f"images cannot be compressed as `{shorten(found)}`"
     return error("image-format", message, span, help_=f"choose one of {', '.join(known)}")
 
 
 def unknown_encoding(span: Span | None, found: str | None, known: Sequence[str], colours: str) -> Diagnostic:
-    """An encoding of pixels that is not made RGB, or an encoding that is no YUV."""
     message = "an encoding is written in quotes" if found is None else f"pixels in `{shorten(found)}` cannot be made RGB"
     if found is not None and colours == "YUV":
         message = f"RGB cannot be made `{shorten(found)}`"
@@ -47,11 +44,9 @@ def unknown_encoding(span: Span | None, found: str | None, known: Sequence[str],
 
 
 def no_integer(span: Span | None, found: str) -> Diagnostic:
-    """A width, height, number of channels or quality that is no integer."""
     help_ = f"convert it: `int64({written_at(span)})`"
     return error("integer", f"the size of an image is in integers, not {found}", span, f"this is {found}", help_=help_)
 
 
 def no_library() -> Diagnostic:
-    """A mapping with images where nothing can read them."""
-    return Diagnostic("error", "no-images", "images need Pillow, which is not installed", help="pip install rosetta-jit[images]")
+    return error("no-images", "images need Pillow, which is not installed", help_="pip install rosetta-jit[images]")

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.spelling import closest, shorten
 from rosetta_jit.catalogue.unexpected import instead
-from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.diagnostics import Mistake, error, warning
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
 EXPECTATIONS = (
@@ -57,7 +58,6 @@ STARTS_RULE = frozenset({"START"})
 
 
 def unexpected(span: Span, kind: str, expected: frozenset[str]) -> Diagnostic:
-    """A token that the grammar does not have there."""
     found = span.source.text[span.start : span.end]
     name = "the end of the file" if kind == "$END" else f"`{shorten(found)}`"
     message = f"expected {_listed(_expected(expected))}, found {name}"
@@ -123,7 +123,6 @@ def _hint(found: str, kind: str, expected: frozenset[str]) -> str:
 
 
 def nesting(span: Span, limit: int) -> Diagnostic:
-    """Brackets, loops, operators or path steps beyond the limit."""
     return error(
         "nesting",
         f"nested deeper than {limit} levels",
@@ -134,111 +133,68 @@ def nesting(span: Span, limit: int) -> Diagnostic:
 
 
 def escape(span: Span, text: str) -> Diagnostic:
-    """A backslash before a character that it gives no meaning."""
     return error("escape", f"unknown escape `{text}`", span, help_=r"known are \" \\ \n \t \r")
 
 
-def lone_brace(span: Span | None) -> Diagnostic:
-    """A brace without its other half."""
-    return error(
-        "lone-brace",
-        "a brace that belongs to no other",
-        span,
-        "here",
-        help_="a value stands in braces: `{.name}`; write a brace as `{{` or `}}`",
-    )
-
-
-def no_value(span: Span | None) -> Diagnostic:
-    """A value in braces, and more."""
-    return error("syntax", "braces hold one value", span, "more than one")
+lone_brace = Mistake(
+    "lone-brace", "a brace that belongs to no other", "here", help="a value stands in braces: `{.name}`; write a brace as `{{` or `}}`"
+)
+no_value = Mistake("syntax", "braces hold one value", "more than one")
 
 
 def many_pieces(span: Span | None, most: int) -> Diagnostic:
-    """A text with too many values."""
     return error("many-pieces", f"a text has at most {most} values and texts between them", span)
 
 
 def number(span: Span, target: str) -> Diagnostic:
-    """A number that no type of the language holds."""
     return error("number", f"the number does not fit {target}", span, "too large", help_="write a smaller one")
 
 
 def compared_index(span: Span | None) -> Diagnostic:
-    """A comparison where the number of an element stands: its writer looks for an element."""
     written = "" if span is None else span.source.text[span.start : span.end].replace("==", "=", 1)
     help_ = f"the element with that key is found by one `=`: `[{shorten(written)}]`"
     return error("key-field", "a comparison is no number of an element", span, "true or false", help_=help_)
 
 
-def key_field(span: Span | None) -> Diagnostic:
-    """A key that is no plain field of the elements."""
-    return error(
-        "key-field",
-        "elements are known by a field, or a field of one",
-        span,
-        "this is none",
-        help_='write `.a[.key = "x"]`, or `.a[.keys[] = "x"]`',
-    )
-
-
-def via_of_several(span: Span) -> Diagnostic:
-    """A mapping for several places at once."""
-    return error("syntax", "`via` maps one message, and several places stand here", span, help_="write a rule for each message")
-
-
-def filter_both_ways(span: Span) -> Diagnostic:
-    """A filter in a relation."""
-    help_ = "write it with `=` below `unpack-rules:`, and below `pack-rules:` what the array of the wire is to be"
-    return error("filter", "a filter goes one way: the elements that it drops do not come back", span, help_=help_)
-
-
-def filter_of_several(span: Span) -> Diagnostic:
-    """A filter of several places at once."""
-    return error("filter", "a filter is of one array, and several places stand here", span, help_="write a rule with `where` for each")
-
-
-def picked(span: Span | None) -> Diagnostic:
-    """An element of a list of elements that is no number."""
-    return error(
-        "picked", "a list of elements has numbers alone", span, help_="`.a[[2, 0, 1]]`; loops and rules for one element take any index"
-    )
+key_field = Mistake(
+    "key-field", "elements are known by a field, or a field of one", "this is none", help='write `.a[.key = "x"]`, or `.a[.keys[] = "x"]`'
+)
+via_of_several = Mistake("syntax", "`via` maps one message, and several places stand here", help="write a rule for each message")
+filter_both_ways = Mistake(
+    "filter",
+    "a filter goes one way: the elements that it drops do not come back",
+    help="write it with `=` below `unpack-rules:`, and below `pack-rules:` what the array of the wire is to be",
+)
+filter_of_several = Mistake("filter", "a filter is of one array, and several places stand here", help="write a rule with `where` for each")
+picked = Mistake("picked", "a list of elements has numbers alone", help="`.a[[2, 0, 1]]`; loops and rules for one element take any index")
 
 
 def rounding_type(span: Span, name: str) -> Diagnostic:
-    """`rounding:` to a type that nothing is rounded to."""
     return error("rounding", f"nothing is rounded to {shorten(name)}", span, "not a type to round to", help_="write `rounding: float32`")
 
 
 def unknown_edition(span: Span, year: str) -> Diagnostic:
-    """An edition of the language that there is not."""
     help_ = "write `edition: 2012`, or leave it out: mappings of today have none"
     return error("edition", f"there is no edition {shorten(year)} of the language", span, "not known", help_=help_)
 
 
 def limit_too_large(span: Span, most: int) -> Diagnostic:
-    """Bytes that no machine has."""
     return error("number", f"a limit is at most {most} bytes", span, "too large", help_="write how many bytes a field may have in a holder")
 
 
 def missing_statement(span: Span, keyword: str) -> Diagnostic:
-    """No `data-holder:` or no `wire-schema:`."""
     return error("missing-statement", f"the mapping has no `{keyword}:`", span, help_=f"add `{keyword}: type.name`")
 
 
 def repeated_statement(span: Span, keyword: str) -> Diagnostic:
-    """A statement or block that may stand once."""
     return error("repeated-statement", f"`{keyword}:` stands twice", span, "again here", help_="merge the two")
 
 
-def no_rules(span: Span | None) -> Diagnostic:
-    """Neither block of rules."""
-    return error(
-        "no-rules",
-        "the mapping has no rules for either direction",
-        span,
-        help_="add `rules:`, `unpack-rules:` or `pack-rules:`; an empty block says that the direction is not meant to exist",
-    )
+no_rules = Mistake(
+    "no-rules",
+    "the mapping has no rules for either direction",
+    help="add `rules:`, `unpack-rules:` or `pack-rules:`; an empty block says that the direction is not meant to exist",
+)
 
 
 def import_not_found(span: Span | None, name: str, folders: Iterable[str], near: str | None = None) -> Diagnostic:
@@ -255,7 +211,6 @@ def import_not_found(span: Span | None, name: str, folders: Iterable[str], near:
 
 
 def import_name(span: Span | None, name: str, why: str) -> Diagnostic:
-    """An import that is not within the search path."""
     return error(
         "import-name",
         f'"{shorten(name)}" cannot be imported: {why}',
@@ -265,24 +220,20 @@ def import_name(span: Span | None, name: str, why: str) -> Diagnostic:
 
 
 def import_suffix(span: Span | None, name: str, suffixes: Iterable[str]) -> Diagnostic:
-    """An imported file that no framework reads."""
     known = ", ".join(sorted(suffixes)) or "none"
     help_ = "import the IDL file that declares the types; mappings themselves are not imported"
     return error("import-suffix", f'no front end reads "{shorten(name)}"', span, notes=(f"known suffixes: {known}",), help_=help_)
 
 
 def import_repeated(span: Span | None, name: str) -> Diagnostic:
-    """The same import once more."""
     return warning("import-repeated", f'"{shorten(name)}" is imported twice', span, help_="remove one of the two")
 
 
 def import_unused(span: Span | None, name: str) -> Diagnostic:
-    """An import without any type or constant that the mapping names."""
     return warning("import-unused", f'nothing of "{shorten(name)}" is used', span, help_="remove the import")
 
 
 def misnamed(span: Span | None, named: str, holder: str, wire: str) -> Diagnostic:
-    """A file that is named after another type."""
     return warning(
         "file-name",
         f"the file is named after `{shorten(named)}`, but maps `{shorten(holder)}` and `{shorten(wire)}`",
@@ -292,7 +243,6 @@ def misnamed(span: Span | None, named: str, holder: str, wire: str) -> Diagnosti
 
 
 def conflicting_type(span: Span | None, name: str, first: str, second: str) -> Diagnostic:
-    """Two imports that declare one name differently."""
     return error(
         "conflicting-type",
         f"`{shorten(name)}` is declared twice, differently",
@@ -303,55 +253,34 @@ def conflicting_type(span: Span | None, name: str, first: str, second: str) -> D
 
 
 def file_too_large(name: str, limit: int) -> Diagnostic:
-    """A file beyond the size limit."""
-    return error("file-too-large", f"{name} is larger than {limit >> 20} MiB", None)
+    return error("file-too-large", f"{name} is larger than {limit >> 20} MiB")
 
 
 def texts_too_large(name: str, limit: int) -> Diagnostic:
-    """Files that together are beyond the size limit."""
-    return error("file-too-large", f"{name} and the files read before it are larger than {limit >> 20} MiB", None)
+    return error("file-too-large", f"{name} and the files read before it are larger than {limit >> 20} MiB")
 
 
 def too_many(span: Span | None, what: str, most: int) -> Diagnostic:
-    """More of something than any mapping needs."""
     return error("too-many", f"a mapping has at most {most} {what}", span, "one too many", help_="split the mapping")
 
 
 def file_not_text(name: str) -> Diagnostic:
-    """A file that is not UTF-8."""
-    return error("file-not-text", f"{name} is not UTF-8 text", None)
+    return error("file-not-text", f"{name} is not UTF-8 text")
 
 
 def file_unreadable(name: str, why: str) -> Diagnostic:
-    """A file that the system does not let us read."""
-    return error("file-unreadable", f"{name} cannot be read: {why}", None)
+    return error("file-unreadable", f"{name} cannot be read: {why}")
 
 
 def mapping_not_found(name: str, folders: Iterable[str], near: str | None = None) -> Diagnostic:
     """A mapping that is neither a file nor on the search path; ``near`` is one that may be meant."""
     searched = tuple(f"searched {folder}" for folder in folders)
     help_ = f'did you mean "{shorten(near)}"?' if near else ""
-    return error("mapping-not-found", f'there is no mapping "{shorten(name)}"', None, notes=searched, help_=help_)
+    return error("mapping-not-found", f'there is no mapping "{shorten(name)}"', notes=searched, help_=help_)
 
 
 def placed(problem: Diagnostic, span: Span | None) -> Diagnostic:
-    """A problem that has no place of its own, with that of the import that met it."""
     return problem if problem.span else replace(problem, span=span)
-
-
-def error(code: str, message: str, span: Span | None, label: str = "", *, notes: tuple[str, ...] = (), help_: str = "") -> Diagnostic:
-    """An error, with the parts that most reports have."""
-    return Diagnostic("error", code, message, span, label, notes, help_)
-
-
-def warning(code: str, message: str, span: Span | None, label: str = "", *, help_: str = "") -> Diagnostic:
-    """The same for what is suspect and not wrong."""
-    return Diagnostic("warning", code, message, span, label, (), help_)
-
-
-def note(code: str, message: str, span: Span | None, label: str = "", *, notes: tuple[str, ...] = (), help_: str = "") -> Diagnostic:
-    """The same for what the text leaves open, and what is made of it."""
-    return Diagnostic("note", code, message, span, label, notes, help_)
 
 
 def _listed(names: list[str]) -> str:

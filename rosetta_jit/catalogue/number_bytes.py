@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error
+from rosetta_jit.diagnostics import error
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -12,29 +12,24 @@ if TYPE_CHECKING:
 
 
 def arguments(span: Span | None, function: str, found: int) -> Diagnostic:
-    """Too many or too few arguments."""
     form = "byte(number, n)" if function == "byte" else f"{function}(bytes, place)` or `{function}(bytes, place, big_endian)"
     message = f"`{function}` does not take {found} value{'' if found == 1 else 's'}"
     return error("arguments", message, span, help_=f"write `{form}`")
 
 
 def no_field(span: Span | None, function: str, found: str) -> Diagnostic:
-    """A number that is to be read in what is no field of bytes."""
     return error("no-bytes", f"`{function}` reads a field of bytes, not {found}", span, help_="name a field of bytes, or of uint8[]")
 
 
 def no_integer(span: Span | None, found: str) -> Diagnostic:
-    """A place that is no integer."""
     return error(
         "integer", f"bytes are counted in integers, not {found}", span, f"this is {found}", help_="`int64(..., round)` makes it one"
     )
 
 
 def no_number(span: Span | None, found: str) -> Diagnostic:
-    """A byte of what is no number."""
     return error("operand", f"`byte` takes a number, not {found}", span, f"this is {found}", help_="bytes of texts are `.text[i]`")
 
 
 def byte_range(span: Span | None, size: int) -> Diagnostic:
-    """A byte that the number does not have."""
     return error("index-range", f"the number has {size} bytes, from 0", span, help_=f"write 0 to {size - 1}; 0 is the lowest")

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.habits import for_function, for_name
 from rosetta_jit.catalogue.limits import MAX_NAMES, MAX_QUOTED
-from rosetta_jit.catalogue.mapping import error, note, shorten, warning
+from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.diagnostics import Mistake, error, note, warning
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -36,7 +37,6 @@ def there_are(what: str, known: Collection[str]) -> tuple[str, ...]:
 
 
 def unknown_type(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
-    """A message type that no import declares."""
     return error(
         "unknown-type",
         f"no import declares a type `{shorten(name)}`",
@@ -48,36 +48,33 @@ def unknown_type(span: Span | None, name: str, known: Collection[str]) -> Diagno
 
 
 def not_a_message(span: Span | None, name: str) -> Diagnostic:
-    """An enum where a message is meant."""
     return error("not-a-message", f"`{shorten(name)}` is an enum, not a message", span, help_="name a message type")
 
 
-def key_to_set(span: Span | None) -> Diagnostic:
-    """An element that is set by a key that is not known."""
-    help_ = "write the key down, or set the elements by their numbers, each with its key"
-    return error("key-to-set", "a key of an element that is set must be known when the mapping is compiled", span, "here", help_=help_)
-
-
-def keys_of_list(span: Span | None) -> Diagnostic:
-    """Elements that are set by the items of a list, and by other keys."""
-    help_ = "put all keys of the array into one list, or write them all down"
-    return error("key-to-set", "an array has the keys of one list, in its order, and no others", span, "here", help_=help_)
+key_to_set = Mistake(
+    "key-to-set",
+    "a key of an element that is set must be known when the mapping is compiled",
+    "here",
+    help="write the key down, or set the elements by their numbers, each with its key",
+)
+keys_of_list = Mistake(
+    "key-to-set",
+    "an array has the keys of one list, in its order, and no others",
+    "here",
+    help="put all keys of the array into one list, or write them all down",
+)
 
 
 def key_twice(span: Span | None, key: str) -> Diagnostic:
-    """A list of keys that has one twice."""
     return error(
         "key-twice", f"the list has {shorten(key)} twice, and each key tells one element", span, "here", help_="remove one of them"
     )
 
 
-def no_number_of(span: Span | None) -> Diagnostic:
-    """`index` of what is not searched for."""
-    return error("arguments", "`index` takes an element that a key tells", span, "this is none", help_='write `index(.a[.key = "x"])`')
+no_number_of = Mistake("arguments", "`index` takes an element that a key tells", "this is none", help='write `index(.a[.key = "x"])`')
 
 
 def length_not_settable(span: Span | None, found: str) -> Diagnostic:
-    """A length that the schema or the type fixes."""
     return error("length-fixed", f"the length of {found} cannot be set", span, "here", help_="assign it as a whole, or remove the rule")
 
 
@@ -113,7 +110,6 @@ def _how_named(name: str) -> str:
 
 
 def ambiguous_name(span: Span | None, name: str, several: Sequence[str]) -> Diagnostic:
-    """A name that stands for constants of several values."""
     shown = ", ".join(f"`{shorten(each)}`" for each in several[:MAX_NAMES])
     message = f"`{shorten(name)}` is the name of several constants"
     help_ = f"write `{shorten(several[0])}`, or another of them"
@@ -121,7 +117,6 @@ def ambiguous_name(span: Span | None, name: str, several: Sequence[str]) -> Diag
 
 
 def unknown_function(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
-    """A call of nothing that is known, or of `index` where there is no element."""
     if name in known:
         help_ = "there is one in a rule with `[]`, in a reduction and behind `where`; in a loop it is the loop's variable"
         return error("unknown-function", f"`{name}()` is the number of an element, and there is none here", span, help_=help_)
@@ -135,12 +130,10 @@ def unknown_function(span: Span | None, name: str, known: Collection[str]) -> Di
 
 
 def arguments(span: Span | None, function: str, expected: str, found: int) -> Diagnostic:
-    """A wrong number of arguments."""
     return error("arguments", f"`{function}` takes {expected}, not {found}", span, help_="docs/language.md shows each function")
 
 
 def conversion_rule(span: Span | None, function: str, allowed: Collection[str]) -> Diagnostic:
-    """A second argument of a conversion that is none of its rules."""
     names = ", ".join(f"`{name}`" for name in sorted(allowed)) or "none"
     return error(
         "conversion-rule", f"`{function}` has no such rule here", span, "not a rule", help_=f"write one of {names}, or leave it out"
@@ -148,12 +141,10 @@ def conversion_rule(span: Span | None, function: str, allowed: Collection[str]) 
 
 
 def shadowed(span: Span | None, name: str) -> Diagnostic:
-    """A loop variable that an outer loop has too."""
     return error("shadowed", f"an outer loop already counts with `{name}`", span, help_="choose another variable")
 
 
 def needs_word(span: Span | None, source: str, target: str, how: str) -> Diagnostic:
-    """A conversion that can change a value, without the word that allows it."""
     return error(
         "lossy-conversion",
         f"{source} does not always fit {target}",
@@ -164,27 +155,23 @@ def needs_word(span: Span | None, source: str, target: str, how: str) -> Diagnos
 
 
 def quotient(span: Span | None, source: str, target: str, how: str) -> Diagnostic:
-    """A quotient of integers where a float belongs: that its remainder is gone may not be known."""
     kept = "`/` of integers drops the remainder, which stays with a float: `.a / 127.0`"
     help_ = f"{kept}; else say how: {how.replace('...', written_at(span))}"
     return error("lossy-conversion", f"{source} does not always fit {target}", span, "a quotient of integers", help_=help_)
 
 
 def many_defaults(span: Span | None, most: int) -> Diagnostic:
-    """A message of messages within each other whose required fields are too many."""
     message = f"this has more than {most:,} fields that must be set, those of the messages within it included"
     return error("many-defaults", message, span, help_="set the fields that matter, or use a mapping for the messages: `via`")
 
 
 def unlike_names(span: Span | None, name: str, wire: str, holder: str, line: str) -> Diagnostic:
-    """Fields of one name that are not of one kind."""
     help_ = f"write a rule for it: `{shorten(line)}`" if line else f"write `same names except {shorten(name)}`, and a rule for it"
     message = f"`{shorten(name)}` is {wire} on the wire and {holder} in the holder: its name alone does not say how it is mapped"
     return error("unlike-names", message, span, help_=help_)
 
 
 def no_number(span: Span | None, source: str, target: str, how: str) -> Diagnostic:
-    """A bool or an enum where a number belongs."""
     help_ = f"say that its number is meant: {how.replace('...', written_at(span))}"
     return error("lossy-conversion", f"{source} is no {target} by itself", span, f"this is {source}", help_=help_)
 
@@ -200,7 +187,6 @@ def written_at(span: Span | None) -> str:
 
 
 def type_clash(span: Span | None, source: str, target: str, how: str = "") -> Diagnostic:
-    """A value that no conversion makes fit."""
     help_ = how.replace("(...)", f"({written_at(span)})", 1) or _of_elements(written_at(span), source, target)
     return error("type-clash", f"{source} cannot become {target}", span, f"this is {source}", help_=help_)
 
@@ -230,7 +216,6 @@ def _of_elements(value: str, source: str, target: str) -> str:
 
 
 def constant_range(span: Span | None, value: str, target: str) -> Diagnostic:
-    """A known value outside the range of its target."""
     help_ = f"write a value that {target} holds, or take a wider type"
     return error("constant-range", f"{shorten(value)} does not fit {target}", span, "known to be out of range", help_=help_)
 
@@ -244,7 +229,6 @@ OF_FLOATS = {
 
 
 def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
-    """Arithmetic with something that is not a number."""
     convertible = found.startswith(("uint", "float", "enum", "bool"))
     hint = f"convert it first: `int64({written_at(span)})`" if convertible else "only numbers can be computed with"
     if found.startswith("float"):
@@ -259,7 +243,6 @@ def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
 
 
 def integer_needed(span: Span | None, what: str, found: str) -> Diagnostic:
-    """A length, index or loop bound that is not an integer."""
     hint = f"convert it: `int64({written_at(span)})`" if found in {"uint64", "float32", "float64"} else ""
     if found == "text":
         key = written_at(span)
@@ -267,42 +250,34 @@ def integer_needed(span: Span | None, what: str, found: str) -> Diagnostic:
     return error("integer-needed", f"{what} is an integer, not {found}", span, f"this is {found}", help_=hint)
 
 
-def zero_division(span: Span | None) -> Diagnostic:
-    """A divisor that is known to be zero."""
-    return error("zero-division", "division by zero", span, "this is zero", help_="divide by something else")
+zero_division = Mistake("zero-division", "division by zero", "this is zero", help="divide by something else")
 
 
 def rounded(span: Span | None, number: float, single: float) -> Diagnostic:
-    """A constant that becomes another number, as float32 has it."""
     help_ = f"write `float32({number!r})` to say that it is meant"
     return warning("rounded", f"no float32 is {number!r}: {single!r} is the nearest", span, "rounded to it", help_=help_)
 
 
 def rounded_by_unit(span: Span | None, found: str, source: str, target: str) -> Diagnostic:
-    """A value that loses digits in the conversion of its unit, though nothing in the text makes it a float32."""
     message = f"a {found} in {source} becomes a float32 in {target}, rounded"
     return warning("rounded", message, span, "rounded", help_="write `float32(...)` to say that it is meant")
 
 
 def fraction(span: Span | None, number: int, divisor: int) -> Diagnostic:
-    """A quotient of constants that is no integer, and that nothing says to be rounded."""
     message = f"{number} / {divisor} is no integer"
     help_ = f"write `{number}.0 / {divisor}` for the float, or `floor_divide({number}, {divisor})` for the integer below it"
     return error("fraction", message, span, "both are integers", help_=help_)
 
 
 def shift_range(span: Span | None, bits: int, most: int) -> Diagnostic:
-    """A shift that is known to be by less than nothing, or by more than all bits."""
     return error("shift-range", f"a shift by {bits} bits", span, f"0 to {most} can be", help_="correct the number of bits")
 
 
 def loop_range(span: Span | None, start: int, stop: int) -> Diagnostic:
-    """A loop that is known to end below its start."""
     return error("loop-range", f"the loop ends at {stop}, below its start {start}", span, help_="`to` is exclusive and not below `from`")
 
 
 def condition_needed(span: Span | None, found: str) -> Diagnostic:
-    """A number or a text where true or false is meant."""
     value, is_array = written_at(span), found.startswith("an array of ")
     kind = found.removeprefix("an array of ")
     with_sign = f"compare it: `{value}{'[]' * is_array}" + (' == "..."`' if kind == "text" else " != 0`")
@@ -311,7 +286,6 @@ def condition_needed(span: Span | None, found: str) -> Diagnostic:
 
 
 def not_comparable(span: Span | None, operator: str, left: str, right: str) -> Diagnostic:
-    """Two values that no comparison relates."""
     hint = "texts are compared with a text in quotes, by `==` or `!=`" if "text" in {left, right} else "convert one of them first"
     others = {left, right} - {"text"}
     if len(others) == 1 and others.pop().startswith(("int", "uint", "float")):
@@ -322,35 +296,29 @@ def not_comparable(span: Span | None, operator: str, left: str, right: str) -> D
 
 
 def long_text(span: Span | None, most: int) -> Diagnostic:
-    """A text too long to compare with."""
     return error("long-text", f"a field is compared with at most {most} bytes of text", span, help_="compare a part that tells it apart")
 
 
 def mixed_choice(span: Span | None, kinds: Collection[str]) -> Diagnostic:
-    """A choice among values of several types."""
     listed = ", ".join(kinds)
     return error("mixed-choice", "the values of a choice have no type in common", span, help_=f"convert them to one of: {listed}")
 
 
-def rules_behind_reject(span: Span | None) -> Diagnostic:
-    """Rules that no message gets to."""
-    message = "what follows a `reject` without `when` is never reached"
-    return error("unreachable", message, span, help_='write `reject "text" when condition`')
+rules_behind_reject = Mistake(
+    "unreachable", "what follows a `reject` without `when` is never reached", help='write `reject "text" when condition`'
+)
 
 
 def overridden(span: Span | None, place: str, first: Span | None) -> Diagnostic:
-    """A place that an earlier rule sets, too, in a mapping of 2012."""
     message = f"`{shorten(place)}` is set before, too: this rule counts"
     help_ = "leave the other rule out in a mapping of today"
     return note("overridden", message, span, "the later one", notes=(f"set before at {first}",) if first else (), help_=help_)
 
 
 def rounded_silently(span: Span | None) -> Diagnostic:
-    """A float64 that becomes a float32 without a word, in a mapping of 2012."""
     help_ = f"write `float32({written_at(span)})` in a mapping of today"
     return note("rounded", "a float64 becomes a float32", span, "rounded to the nearest", help_=help_)
 
 
 def many_cases(span: Span | None, most: int) -> Diagnostic:
-    """A longer table than is compiled."""
     return error("many-cases", f"a choice here has at most {most} cases", span, help_="compute the value, or split the table with `when`")

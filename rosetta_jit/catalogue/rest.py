@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.limits import MAX_REST
-from rosetta_jit.catalogue.mapping import error, note, shorten
+from rosetta_jit.catalogue.mapping import shorten
+from rosetta_jit.diagnostics import Mistake, error, note
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -15,17 +16,13 @@ if TYPE_CHECKING:
 
 
 def no_same_names(span: Span | None, target: str, origin: str) -> Diagnostic:
-    """`same names` where there are none left."""
     return error("no-same-names", f"`{shorten(target)}` and `{shorten(origin)}` have no other names in common", span, help_="remove it")
 
 
-def repeated_same_names(span: Span | None) -> Diagnostic:
-    """A second `same names` in a block."""
-    return error("set-twice", "`same names` stands in this block already", span, "again here", help_="name all exceptions in one")
+repeated_same_names = Mistake("set-twice", "`same names` stands in this block already", "again here", help="name all exceptions in one")
 
 
 def rest(span: Span | None, word: str, direction: str, fields: Sequence[str]) -> Diagnostic:
-    """Which fields `ignore rest` and `default rest` stand for."""
     what = "read" if word == "ignore" else "set"
     message = f"{direction} {what}s every field: nothing is left for `{word} rest`"
     if not fields:
@@ -37,25 +34,24 @@ def rest(span: Span | None, word: str, direction: str, fields: Sequence[str]) ->
 
 
 def rest_in_block(span: Span | None, word: str) -> Diagnostic:
-    """`ignore rest` in a block that does not always run."""
     help_ = "write it beside the `when` or the loop: it is about all rules of the mapping"
     return error("rest", f"`{word} rest` stands within no other block", span, "in a block", help_=help_)
 
 
 def no_default(span: Span | None, found: str) -> Diagnostic:
-    """Elements that a message always has, left without a value."""
     why = "other fields tell how many elements it has"
     return error("no-default", f"there is no default for {found}", span, why, help_="set each of them")
 
 
-def elements_in_block(span: Span | None) -> Diagnostic:
-    """A default of each element, within a block."""
-    help_ = "write it beside the blocks, or of one element: `default .a[i].b`"
-    return error("rest", "`default .a[].b` stands within no other block", span, "in a block", help_=help_)
+elements_in_block = Mistake(
+    "rest",
+    "`default .a[].b` stands within no other block",
+    "in a block",
+    help="write it beside the blocks, or of one element: `default .a[i].b`",
+)
 
 
 def no_elements(span: Span | None, place: str) -> Diagnostic:
-    """Elements of which a field is to have its default, and nothing says how many there are."""
     array = place[: place.rindex("[]")]
     message = f"no rule sets how many elements `{shorten(array)}` has, so that `{shorten(place)}` cannot be given a default in each of them"
     return error(
@@ -68,7 +64,6 @@ def no_elements(span: Span | None, place: str) -> Diagnostic:
 
 
 def default_count(span: Span | None, count: str, array: str) -> Diagnostic:
-    """The number of elements of an array, left at 0 where there are some."""
     message = f"`{shorten(count)}` tells how many elements `{shorten(array)}` has, and its default is 0"
     help_ = f"set it to the number of elements: `{shorten(count)} = len(...)`, and in `rules:` `len(...) <-> {shorten(count)}`"
     return error("no-default", message, span, "here", help_=help_)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.mapping import shorten
+from rosetta_jit.diagnostics import error
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -14,13 +15,11 @@ HOW = 'write its start bit, length, byte order and sign as a DBC file does: `"7|
 
 
 def arguments(span: Span | None, function: str) -> Diagnostic:
-    """Too many or too few arguments."""
     form = 'signal(.data, "7|16@0+")' if function == "signal" else 'signal_bytes(8, "7|16@0+", x, "24|8@1-", y)'
     return error("arguments", f"`{function}` does not take these values", span, help_=f"write `{form}`")
 
 
 def no_field(span: Span | None, found: str) -> Diagnostic:
-    """A signal of what is no field of bytes; one that a condition asks for, of a frame that packing has yet to put together."""
     if found == "bytes":
         help_ = 'relate it in each block of the `when`, to the same field: `.page <-> signal(.data, "0|8@1+")`'
         return error("no-bytes", "to pack, nothing says what the signal is that the condition asks for", span, help_=help_)
@@ -28,36 +27,30 @@ def no_field(span: Span | None, found: str) -> Diagnostic:
 
 
 def no_signal(span: Span | None, found: str | None) -> Diagnostic:
-    """What says no place of a signal."""
     message = "a signal is said by a text in quotes" if found is None else f'"{shorten(found)}" is no signal'
     return error("signal", message, span, help_=HOW)
 
 
 def too_long(span: Span | None, bits: int, most: int) -> Diagnostic:
-    """A signal of no bits, or of more than a number has."""
     return error("signal", f"a signal has 1 to {most} bits, not {bits}", span, help_=HOW)
 
 
 def beyond(span: Span | None, size: int, needed: int) -> Diagnostic:
-    """A signal that ends behind the frame."""
     message = f"the signal needs {needed} bytes, and there are {size}"
     help_ = "the start bit is `byte * 8 + bit`, of the lowest bit for `@1`, of the highest bit for `@0`"
     return error("signal", message, span, help_=help_)
 
 
 def overlapping(span: Span | None, one: str, other: str) -> Diagnostic:
-    """Two signals that share a bit, so that both cannot be packed."""
     help_ = "relate each bit once; signals that take turns stand in the blocks of a `when`, with all others of the frame in each block"
     return error("signal", f'the signals "{shorten(one)}" and "{shorten(other)}" share a bit', span, help_=help_)
 
 
 def no_size(span: Span | None, most: int) -> Diagnostic:
-    """The size of a frame that is no number of the text."""
     return error(
         "signal", f"the size of a frame is a number from 1 to {most}", span, help_="write how many bytes it has: `signal_bytes(8, …)`"
     )
 
 
 def no_integer(span: Span | None, found: str) -> Diagnostic:
-    """A value for a signal that is no integer."""
     return error("integer", f"a signal is an integer, not {found}", span, f"this is {found}", help_="`int64(..., round)` makes it one")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error, shorten, warning
+from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.resolve import CALLED, nearest
+from rosetta_jit.diagnostics import error, warning
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
 
 
 def unknown(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
-    """A rule for a state variable that is not declared."""
     found = nearest(name, known)
     help_ = f"did you mean `{found}`?" if found else f"declare it above the rules: `state {shorten(name)}: int64 = 0`"
     listed = ", ".join(f"`{shorten(each)}`" for each in sorted(known)[:20]) or "none"
@@ -24,18 +24,15 @@ def unknown(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
 
 
 def repeated(span: Span | None, name: str, other: str) -> Diagnostic:
-    """A name that something else in the mapping has."""
     return error("repeated-state", f"`{shorten(name)}` is {other} already", span, "again here", help_="choose another name")
 
 
 def many(span: Span | None, most: int) -> Diagnostic:
-    """More state variables than a mapping may have."""
     title = f"a mapping has at most {most} state variables"
     return error("many-state", title, span, "one too many", help_="keep less from message to message")
 
 
 def unknown_type(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
-    """A type that state variables cannot have."""
     found = CALLED.get(name) or nearest(name, known)
     help_ = f"did you mean `{found}`?" if found in known else "keep what is needed of a text or an array as a number"
     notes = (f"types: {', '.join(known)}",)
@@ -43,43 +40,36 @@ def unknown_type(span: Span | None, name: str, known: Collection[str]) -> Diagno
 
 
 def unfit(span: Span | None, name: str, why: str) -> Diagnostic:
-    """An initial value that is not what the variable was declared to be."""
     help_ = "give it a value of its type: a number, `true`, `false` or a parameter"
     return error("state-initial", f"`{shorten(name)}` cannot be this at first: {why}", span, "here", help_=help_)
 
 
 def set_in_loop(span: Span | None, name: str, variable: str) -> Diagnostic:
-    """A state variable that each round of a loop sets."""
     help_ = "state is set once a message: move the rule out of the loop"
     return error("set-in-loop", f"`{name}` is set again in each round of the loop over `{variable}`", span, "here", help_=help_)
 
 
 def set_for_both(span: Span | None, name: str) -> Diagnostic:
-    """A rule for state among the rules for both directions."""
     help_ = "each direction has its own: write the rule under `unpack-rules:`, under `pack-rules:`, or under both"
     return error("state-in-relation", f"`{name}` cannot be set for both directions at once", span, "under `rules:`", help_=help_)
 
 
 def in_relation(span: Span | None, name: str) -> Diagnostic:
-    """State that a rule for both directions reads."""
     help_ = "write a rule under `unpack-rules:` and one under `pack-rules:`; under `rules:` only the condition of a `reject` may read state"
     title = f"a rule for both directions reads `{name}`, which each direction has for itself: no value would come back"
     return error("state-in-relation", title, span, "state", help_=help_)
 
 
 def in_used(span: Span | None, file: str) -> Diagnostic:
-    """A mapping with state that another one uses."""
     help_ = "declare it in the mapping that uses this one, and set it there: state is of whole messages"
     return error("state-in-used", f"`{shorten(file)}` is used by another mapping, and declares state", span, "here", help_=help_)
 
 
 def never_set(span: Span | None, name: str) -> Diagnostic:
-    """A state variable that stays what it was at first."""
     title = f"no rule sets `{shorten(name)}`: it stays what it is at first"
     return warning("state-never-set", title, span, help_="set it, or make it a parameter")
 
 
 def never_read(span: Span | None, name: str) -> Diagnostic:
-    """A state variable that no rule reads."""
     title = f"no rule reads `{shorten(name)}`, but to set it again"
     return warning("state-never-read", title, span, help_="remove it")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.resolve import did_you_mean, nearest, there_are, written_at
+from rosetta_jit.diagnostics import Mistake, error
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -33,62 +34,55 @@ def listed(kinds: Sequence[str], optional: int) -> str:
 
 
 def text_needed(span: Span | None, function: str, found: str) -> Diagnostic:
-    """A number where a text is meant."""
     is_number = found.startswith(("int", "uint", "float", "bool"))
     hint = f"`text({written_at(span)})` is the number as a text" if is_number else "name a text, bytes, or an array of 8-bit integers"
     return error("text-needed", f"`{function}` takes a text, not {shorten(found)}", span, f"this is {shorten(found)}", help_=hint)
 
 
-def joined_elements(span: Span | None) -> Diagnostic:
-    """Texts of elements, joined."""
-    help_ = 'name a field that is an array of texts, without `[]`: `join(.names, ", ")`; texts within structs are not joined'
-    return error("text-needed", "`join` takes an array of texts as a whole", span, "a text of each element", help_=help_)
+joined_elements = Mistake(
+    "text-needed",
+    "`join` takes an array of texts as a whole",
+    "a text of each element",
+    help='name a field that is an array of texts, without `[]`: `join(.names, ", ")`; texts within structs are not joined',
+)
 
 
 def no_constant(span: Span | None, name: str, enum: str, known: Collection[str]) -> Diagnostic:
-    """A name in quotes that no constant of an enum has."""
     message = f"enum {shorten(enum)} has no constant `{shorten(name)}`"
     notes = there_are("its constants", known)
     return error("unknown-name", message, span, "names none", notes=notes, help_=did_you_mean(name, known))
 
 
 def texts_needed(span: Span | None, function: str, found: str) -> Diagnostic:
-    """Something else than an array of texts."""
     help_ = "name an array of strings or bytes"
     return error(
         "text-needed", f"`{function}` takes an array of texts, not {shorten(found)}", span, f"this is {shorten(found)}", help_=help_
     )
 
 
-def wide_text(span: Span | None) -> Diagnostic:
-    """Text in code units of 16 bits."""
-    return error("wide-text", "text of 16-bit units cannot be computed with", span, "here", help_="assign it as a whole")
-
-
-def text_and_bytes(span: Span | None) -> Diagnostic:
-    """Text and bytes in one."""
-    hint = 'say which: `text(..., "utf-8")` or `bytes(..., "utf-8")`'
-    return error("text-and-bytes", "text and bytes cannot be joined", span, "one is text, the other bytes", help_=hint)
+wide_text = Mistake("wide-text", "text of 16-bit units cannot be computed with", "here", help="assign it as a whole")
+text_and_bytes = Mistake(
+    "text-and-bytes",
+    "text and bytes cannot be joined",
+    "one is text, the other bytes",
+    help='say which: `text(..., "utf-8")` or `bytes(..., "utf-8")`',
+)
 
 
 def quoted_needed(span: Span | None, function: str) -> Diagnostic:
-    """A field where only a text that is known will do."""
     help_ = "write it in quotes: what is looked for must be known when the mapping is compiled"
     return error("quoted-text", f"`{function}` takes a text in quotes here", span, "not known before messages come", help_=help_)
 
 
 def empty_pattern(span: Span | None, function: str) -> Diagnostic:
-    """A search for nothing."""
     return error("empty-text", f"`{function}` cannot look for an empty text", span, "empty", help_="write at least one character")
 
 
 def long_quoted(span: Span | None, most: int) -> Diagnostic:
-    """A text in quotes that is too long."""
     return error("long-text", f"a text in quotes has at most {most} bytes here", span, help_="shorten it")
 
 
 def not_ascii(span: Span | None, function: str) -> Diagnostic:
-    """Characters of several bytes where bytes are looked at."""
     help_ = f'leave out the others; `replace(..., {_first_wide(span)}, "")` removes them everywhere'
     return error("not-ascii", f"`{function}` takes off ASCII characters only", span, help_=help_)
 
@@ -101,13 +95,11 @@ def _first_wide(span: Span | None) -> str:
 
 
 def written_size(span: Span | None, function: str, most: int) -> Diagnostic:
-    """A size that is not known, or too large."""
     help_ = f"write the size as a number: `{function}(..., 16)`"
     return error("written-size", f"`{function}` takes a size that is written down, at most {most}", span, help_=help_)
 
 
 def unknown_encoding(span: Span | None, found: str | None, known: Sequence[str]) -> Diagnostic:
-    """No encoding, or none that is known."""
     message = "an encoding is written in quotes" if found is None else f"there is no encoding `{shorten(found)}`"
     near = None if found is None else nearest(found, known)
     help_ = f'did you mean `"{near}"`?' if near else ""
@@ -115,12 +107,8 @@ def unknown_encoding(span: Span | None, found: str | None, known: Sequence[str])
 
 
 def not_written(span: Span | None, found: Sequence[str], most: int) -> Diagnostic:
-    """`text` of what it cannot write."""
     hint = f"`text(number)`, `text(float, decimals)` with at most {most}, or `text(bytes, encoding)`"
     return error("not-writable", f"`text` does not take {', '.join(map(shorten, found))}", span, help_=hint)
 
 
-def text_length(span: Span | None) -> Diagnostic:
-    """A target that no computed text can be assigned to."""
-    help_ = "assign a field as a whole"
-    return error("wide-text", "a computed text cannot be assigned to text of 16-bit units", span, "here", help_=help_)
+text_length = Mistake("wide-text", "a computed text cannot be assigned to text of 16-bit units", "here", help="assign a field as a whole")

@@ -5,53 +5,45 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.spelling import closest
-from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.diagnostics import error
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
 
 def no_scheme(span: Span, known: Iterable[str]) -> Diagnostic:
-    """Nothing says which transport is meant."""
     names = ", ".join(f"`{each}:`" for each in known)
-    return Diagnostic(
-        "error", "no-scheme", "an address begins with its transport", span, "which transport?", help=f"put one before it: {names}"
-    )
+    return error("no-scheme", "an address begins with its transport", span, "which transport?", help_=f"put one before it: {names}")
 
 
 def unknown_scheme(span: Span, name: str, known: Iterable[str]) -> Diagnostic:
-    """No transport of that name."""
     names = tuple(known)
     near = closest(name, names)
     text = f"did you mean `{near}:`?" if near else f"known are {', '.join(f'`{each}:`' for each in names)}"
-    return Diagnostic("error", "unknown-transport", f"there is no transport `{name}`", span, "not known", help=text)
+    return error("unknown-transport", f"there is no transport `{name}`", span, "not known", help_=text)
 
 
 def cannot(span: Span, name: str, what: str) -> Diagnostic:
-    """A transport that lacks this direction."""
-    return Diagnostic("error", "transport-cannot", f"the transport `{name}` cannot {what}", span, "no such direction")
+    return error("transport-cannot", f"the transport `{name}` cannot {what}", span, "no such direction")
 
 
 def unknown_option(span: Span | None, name: str, known: Iterable[str]) -> Diagnostic:
-    """A word behind the `?` that the transport does not have."""
     names = sorted(known)
     near = closest(name, names)
     text = f"did you mean `{near}`?" if near else f"known are {', '.join(f'`{each}`' for each in names)}"
-    return Diagnostic("error", "unknown-option", f"there is no option `{name}`", span, "not known here", help=text)
+    return error("unknown-option", f"there is no option `{name}`", span, "not known here", help_=text)
 
 
 def bad_option(span: Span | None, name: str, wanted: str) -> Diagnostic:
-    """A value that an option cannot take."""
-    return Diagnostic("error", "option-value", f"`{name}` takes {wanted}", span, "not that")
+    return error("option-value", f"`{name}` takes {wanted}", span, "not that")
 
 
 def option_twice(span: Span, name: str) -> Diagnostic:
-    """Two values of one option."""
-    return Diagnostic("error", "option-twice", f"`{name}` is said twice", span, "again")
+    return error("option-twice", f"`{name}` is said twice", span, "again")
 
 
 def bad_place(span: Span, wanted: str, example: str) -> Diagnostic:
-    """What stands behind the scheme is not what the transport needs."""
-    return Diagnostic("error", "address", f"this is not {wanted}", span, f"expected {wanted}", help=f"for example `{example}`")
+    return error("address", f"this is not {wanted}", span, f"expected {wanted}", help_=f"for example `{example}`")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error, shorten, warning
+from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.resolve import written_at
+from rosetta_jit.diagnostics import error, warning
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -17,20 +18,17 @@ ANGLES = ("degree", "degrees", "deg", "radian", "radians", "rad")
 
 
 def incompatible(span: Span | None, source: str, target: str) -> Diagnostic:
-    """Metres where seconds are meant."""
     message = f"{shorten(source)} cannot become {shorten(target)}: they measure different things"
     return error("unit", message, span, f"this is in {shorten(source)}", help_="assign another field, or compute what is meant")
 
 
 def wrong_way(span: Span | None, function: str, found: str, wanted: str) -> Diagnostic:
-    """A conversion of what is no angle, or one already."""
     message = f"`{function}` takes {wanted}s, and this is in {shorten(found)}"
     other = "degrees" if function == "radians" else "radians"
     return error("unit", message, span, help_=f"write `{other}(...)`, or nothing at all" if found in ANGLES else "")
 
 
 def disagree(span: Span | None, what: str, first: str, second: str, factors: tuple[float, float] | None) -> Diagnostic:
-    """A sum, a comparison or a choice of values in different units."""
     message = f"{what} has one value in {shorten(first)} and one in {shorten(second)}"
     help_ = "they measure different things"
     if factors is not None:
@@ -40,31 +38,26 @@ def disagree(span: Span | None, what: str, first: str, second: str, factors: tup
 
 
 def offset(span: Span | None, source: str, target: str) -> Diagnostic:
-    """A difference of temperatures, which is not converted as a temperature is."""
     message = f"the sum or difference of values in {shorten(source)} has no place on the scale of {shorten(target)}"
     return error("unit", message, span, help_="assign what is meant in its own unit first, or multiply by the factor alone")
 
 
 def shifted(span: Span | None, source: str, target: str) -> Diagnostic:
-    """A relation that adds a constant to a field in another unit, in a way that is not turned round."""
     message = f"what is added is in {shorten(target)}, and {shorten(source)} is not converted to that before it is taken away again"
     return error("unit", message, span, help_="say in `pack-rules:` what the field is to be, or give both fields one unit")
 
 
 def mixed(span: Span | None, source: str, target: str) -> Diagnostic:
-    """A rule for any of several elements whose units differ."""
     message = f"the units of these elements differ: from {source} to {target}"
     return error("unit", message, span, help_="write a rule for each element, with its number, or assign the whole array")
 
 
 def too_much_within(span: Span | None, found: str) -> Diagnostic:
-    """A whole value too large to look at all its parts."""
     message = f"the units differ, and there is too much within {shorten(found)} to convert it as a whole"
     return error("unit", message, span, help_="assign its fields one by one")
 
 
 def wrong_factor(span: Span | None, factor: float, source: str, target: str, right: float) -> Diagnostic:
-    """A factor that converts the other way."""
     message = f"times {factor:.6g} converts {shorten(target)} to {shorten(source)}, and this is in {shorten(source)}"
     function = {"degree": "radians", "radian": "degrees"}.get(source, "")
     how = f"write `{function}(...)`" if function and target in {"degree", "radian"} else f"multiply by {right:.6g}"
@@ -72,7 +65,6 @@ def wrong_factor(span: Span | None, factor: float, source: str, target: str, rig
 
 
 def integers_within(span: Span | None, integers: str, known: str, wanted: str) -> Diagnostic:
-    """Integers within a whole value, which would be refused or rounded one by one."""
     message = f"within this are values of {integers} in {shorten(known)} where {shorten(wanted)} is meant"
     return error("unit", message, span, help_="write a rule for each such field or element: integers are converted one by one")
 
@@ -95,12 +87,10 @@ def fraction_of_unit(span: Span | None, known: str, wanted: str, target: str, el
 
 
 def one_sided(span: Span | None, unit: str, *, is_source: bool) -> Diagnostic:
-    """A field with a unit and one without."""
     known, other = ("the value", "the field that it sets") if is_source else ("the field that it sets", "the value")
     message = f"{known} is in {shorten(unit)}, and nothing says in what {other} is"
     return warning("one-sided-unit", message, span, help_="declare the other unit, or convert: `radians(...)`, `x * 0.001`")
 
 
 def unknown_unit(span: Span | None, unit: str) -> Diagnostic:
-    """A unit that the library of units does not know."""
     return warning("unknown-unit", f"`{shorten(unit)}` is no unit that is known: nothing is converted", span, help_=UNITS)

@@ -49,10 +49,9 @@ def add_mappings(command: ArgumentParser) -> None:
     command.add_argument("mappings", metavar="MAPPING", nargs="+", help="a mapping's path, or its name on the search path")
 
 
-def add_encoding(command: ArgumentParser, default: str | None = None) -> None:
+def add_encoding(command: ArgumentParser) -> None:
     """Which bytes, where a framework has several."""
-    shown = default or "the mapping's own"
-    command.add_argument("--encoding", default=default, help=f"one of those that `rosetta-jit frameworks` lists (default: {shown})")
+    command.add_argument("--encoding", help="one of those that `rosetta-jit frameworks` lists (default: the mapping's own)")
 
 
 def add_wire(command: ArgumentParser) -> None:

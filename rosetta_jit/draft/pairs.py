@@ -1,4 +1,4 @@
-"""Which leaf of one message is which of the other: by their names, by what stands around them, and by what is beside them."""
+"""Pairs of leaves that mean the same in two messages: found by their names, by what stands around them, and by what is beside them."""
 
 from __future__ import annotations
 

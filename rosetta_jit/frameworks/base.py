@@ -11,7 +11,7 @@ from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from rosetta_jit.frameworks.definitions import Definition
     from rosetta_jit.frameworks.probe import Probes
@@ -21,6 +21,27 @@ if TYPE_CHECKING:
     from rosetta_jit.wire.codec import Encoding
     from rosetta_jit.wire.other_type import Partners
     from rosetta_jit.wire.tree import Tree
+
+    Encoder = Callable[[Struct, Schema, str, "Choices"], Encoding]
+    """From a struct to the encoding of a name: what describes its bytes."""
+    Successors = Callable[[Struct, Struct, str], Partners]
+    """From an older struct, the one that followed it, and its name for people, to what became of its fields: the newer name, or None."""
+    TreeOf = Callable[[str, str], Tree | None]
+    """From two encodings to what messages of one become in the other."""
+    Define = Callable[[Struct, Schema], Definition | None]
+    """From a struct to its definition as logs carry it."""
+    Announce = Callable[[Struct, Schema], dict[str, str]]
+    """From a struct to what publishers say of it: by the names of transports' options, as ``type``, ``md5`` or ``hash``."""
+    FileOf = Callable[["Framework", str, str], str]
+    """From a type and a text that declares it to the name of the file that it would be."""
+
+    class Infer(Protocol):
+        """A function from captured messages to a schema that describes them."""
+
+        def __call__(self, messages: Iterable[bytes], *, name: str, encoding: str) -> str:
+            """The schema of a type of that name, as text."""
+            ...
+
 
 ByteOrder = Literal["little", "big"]
 
@@ -42,58 +63,6 @@ class Choices:
 
     byte_order: ByteOrder | None = None
     lenient: frozenset[str] = frozenset()
-
-
-if TYPE_CHECKING:
-
-    class Encoder(Protocol):
-        """A function from a struct to its bytes' description."""
-
-        def __call__(self, struct: Struct, schema: Schema, name: str, choices: Choices) -> Encoding:
-            """The encoding of that name of a struct."""
-            ...
-
-    class Successors(Protocol):
-        """A function from a struct of an older framework and the one that followed it to what became of its fields."""
-
-        def __call__(self, older: Struct, newer: Struct, shown: str) -> Partners:
-            """The newer name of each older field, None of what was dropped; and what was added, zero or empty where the older one comes."""
-            ...
-
-    class TreeOf(Protocol):
-        """A function from two encodings to what messages of one become in the other."""
-
-        def __call__(self, source: str, target: str) -> Tree | None:
-            """The tree, or None."""
-            ...
-
-    class Define(Protocol):
-        """A function from a struct to its definition."""
-
-        def __call__(self, struct: Struct, schema: Schema) -> Definition | None:
-            """The definition of a struct."""
-            ...
-
-    class Announce(Protocol):
-        """A function from a struct to what others are told of it where it is published."""
-
-        def __call__(self, struct: Struct, schema: Schema) -> dict[str, str]:
-            """By the names that options of transports have: ``type``, and ``md5``, ``definition`` or ``hash``."""
-            ...
-
-    class Infer(Protocol):
-        """A function from captured messages to a schema that describes them."""
-
-        def __call__(self, messages: Iterable[bytes], *, name: str, encoding: str) -> str:
-            """The schema of a type of that name, as text."""
-            ...
-
-    class FileOf(Protocol):
-        """A function from a text to the name of the file that it would be."""
-
-        def __call__(self, framework: Framework, type_: str, text: str) -> str:
-            """The name of the file of a type."""
-            ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +116,8 @@ class Framework:
     transcoding: str = ""
     follows: Mapping[str, str] = field(default_factory=dict[str, str])
     infer: str = ""
+    definition: str = ""
+    announcement: str = ""
 
     def successors(self, older: str) -> Successors | None:
         """The function that says what became of an older framework's types in this one; None where this one does not follow that."""
@@ -155,9 +126,6 @@ class Framework:
     def tree(self, source: str, target: str) -> Tree | None:
         """What messages of one encoding become in another one, if they describe themselves and differ in codes alone."""
         return cast("TreeOf", object_at(self.transcoding))(source, target) if self.transcoding else None
-
-    definition: str = ""
-    announcement: str = ""
 
     def probes(self) -> Probes:
         """The probes of its features, none where it offers none."""

@@ -1,4 +1,7 @@
-"""Types that a schema declares within a field, as YARP's bottles within lists, and that a language has to call something."""
+"""The types within a message, each of which a language has to call something.
+
+Also those that a schema declares within a field, without a name, as YARP's bottles within lists.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,9 @@ from typing import TYPE_CHECKING
 from rosetta_jit.model.types import Array, Enum, Map, Optional, Ref, Struct, Union
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.generate.unit import Unit
     from rosetta_jit.model.types import Declaration, Field, Schema, Type
 
 
@@ -68,3 +74,39 @@ class _Names:
         if type_.name and self.types.get(type_.name, type_) == type_:
             return type_.name
         return next(name for number in count(2) if (name := f"{type_.name}_{number}") not in self.types)
+
+
+def reached_types(unit: Unit) -> dict[str, None]:
+    """The declared types that the message contains, each behind those that it contains itself."""
+    found: dict[str, None] = {}
+    pending: list[tuple[str, bool]] = [(unit.type, False)]
+    seen: set[str] = set()
+    while pending:
+        name, done = pending.pop()
+        if done:
+            found[name] = None
+            continue
+        if name in seen:
+            continue
+        seen.add(name)
+        pending.append((name, True))
+        declared = unit.schema.types[name]
+        inner = [each for field in declared.fields for each in _refs(field.type)] if isinstance(declared, Struct) else []
+        pending += [(each, False) for each in reversed(inner)]
+    return found
+
+
+def _refs(type_: Type) -> Iterator[str]:
+    match type_:
+        case Ref(name):
+            yield name
+        case Array(element) | Optional(element):
+            yield from _refs(element)
+        case Map(key, value):
+            yield from _refs(key)
+            yield from _refs(value)
+        case Union(_, cases) | Struct(_, cases):
+            for each in cases:
+                yield from _refs(each.type)
+        case _:
+            return

@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from rosetta_jit.generate.unit import Role, Unit
 
+    Files = Callable[[Unit], dict[str, str]]
+    """From a unit to the texts of its files by their names."""
+
 GROUP = "rosetta_jit.languages"
 """The entry-point group in which packages offer languages of their own: a `Language` each."""
-
-
-class Files(Protocol):
-    """A function from a unit to texts."""
-
-    def __call__(self, unit: Unit) -> dict[str, str]:
-        """The files by their names."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +31,7 @@ class Language:
     summary
         One line for who chooses.
     printer
-        The function that prints units (`Files`), as ``module:name``.
+        The function that prints units, from a `Unit` to texts by the names of files, as ``module:name``.
     borrows
         Its decoders leave bytes in the message, from where the code around them takes them.
     low_byte_first

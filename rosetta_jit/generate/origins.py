@@ -15,7 +15,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from rosetta_jit.kernel.ir import Expr, Stmt
+    from rosetta_jit.kernel.ir import Expr, Site, Stmt
     from rosetta_jit.model.layout import Layout, Slot
     from rosetta_jit.source import Span as Stretch
 
@@ -153,3 +153,10 @@ def _size(slot: Slot, stride: int) -> int:
             return 16
         case _:
             return stride - slot.offset
+
+
+def described(site: Site) -> str:
+    """What a site says, for a comment."""
+    path = f" {site.path}" if site.path else ""
+    line = f" ({site.line})" if site.line else ""
+    return f"{site.kind}{path}: {site.detail}{line}"

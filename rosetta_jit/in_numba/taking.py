@@ -1,4 +1,4 @@
-"""Holders that compiled functions of the user's have: taken when one gets them, mended when a kernel fails, given back when it returns.
+"""Ownership of holders in users' compiled functions: taken when called, repaired when a kernel fails, given back on return.
 
 While a holder is taken nobody else can use it, as inside ``with lanes:``; so its lanes may grow in the middle of a loop. Arrays that such
 a function has read, or returns, keep all memory alive that the holder had meanwhile, whatever has grown since.

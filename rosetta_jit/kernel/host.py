@@ -40,9 +40,9 @@ def in_python(declared: UserFunction) -> Callable[..., Value]:
     """A user's function as one of the host. What it raises, and a result that is not of its type, are refusals."""
 
     def call(*arguments: Value) -> Value:
-        given = [_given(argument, type_) for argument, type_ in zip(arguments, declared.parameters, strict=True)]
+        converted = [_converted(argument, type_) for argument, type_ in zip(arguments, declared.parameters, strict=True)]
         try:
-            found = declared.function(*given)
+            found = declared.function(*converted)
         except Exception as error:
             raise RefusedError from error
         return _of_type(found, declared.result)
@@ -50,7 +50,7 @@ def in_python(declared: UserFunction) -> Callable[..., Value]:
     return call
 
 
-def _given(value: Value, type_: Scalar) -> Value | float:
+def _converted(value: Value, type_: Scalar) -> Value | float:
     """A value as Python computes it: a division of Python's floats by zero raises, as numba's does."""
     match type_:
         case "bool":

@@ -224,11 +224,11 @@ def _call(machine: Machine, call: ir.Call) -> _Outcome:
 
 
 def _host_call(machine: Machine, call: ir.HostCall) -> _Failed | None:
-    given = [value_of(machine, argument) for argument in call.arguments]
+    arguments = [value_of(machine, argument) for argument in call.arguments]
     extents = [bytes_at(machine, each.address, integer(machine, each.size)) for each in extents_of(call)]
     read = extents[: len(call.inputs)]
     try:
-        found = machine.functions[call.function](*given, *(part.toreadonly() for part in read), *extents[len(call.inputs) :])
+        found = machine.functions[call.function](*arguments, *(part.toreadonly() for part in read), *extents[len(call.inputs) :])
     except RefusedError:
         return _failed(machine, call.failure)
     machine.locals[call.result.name] = found

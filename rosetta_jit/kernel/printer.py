@@ -160,13 +160,13 @@ def _statement(stmt: ir.Stmt, depth: int) -> Iterator[str]:
             yield f"return {expression_text(position)}{' with ' * bool(changed)}{changed}"
         case ir.Call(routine, arguments, results, sites, indices):
             bound = ", ".join(map(expression_text, results))
-            given = ", ".join(map(expression_text, arguments))
+            texts = ", ".join(map(expression_text, arguments))
             within = "".join(f"[{expression_text(i)}]" for i in indices)
-            yield f"let {bound} = call {_name(routine)}({given}) else {list(sites)}{within}"
+            yield f"let {bound} = call {_name(routine)}({texts}) else {list(sites)}{within}"
         case ir.HostCall(function, arguments, result, failure, inputs, target):
-            given = ", ".join((*map(expression_text, arguments), *map(_extent, inputs)))
+            texts = ", ".join((*map(expression_text, arguments), *map(_extent, inputs)))
             filled = "" if target is None else f" into {_extent(target)}"
-            yield f"let {expression_text(result)} = host {_name(function)}({given}){filled}{_failure(failure)}"
+            yield f"let {expression_text(result)} = host {_name(function)}({texts}){filled}{_failure(failure)}"
         case ir.For() | ir.While() | ir.If() | ir.Switch():
             yield from _nested(stmt, depth)
         case _:
@@ -199,8 +199,8 @@ def _nested(stmt: ir.For | ir.While | ir.If | ir.Switch, depth: int) -> Iterator
 
 
 def _routine(routine: ir.Routine) -> Iterator[str]:
-    given, found = (", ".join(map(expression_text, some)) for some in (routine.parameters, routine.results))
-    yield f"routine {_name(routine.name)}({given}) gives {found}:"
+    parameters, found = (", ".join(map(expression_text, some)) for some in (routine.parameters, routine.results))
+    yield f"routine {_name(routine.name)}({parameters}) gives {found}:"
     yield from (f"  requires {expression_text(each)}" for each in routine.requires)
     yield from (f"  ensures {expression_text(each)}" for each in routine.ensures)
     yield from _block(routine.body, 1)

@@ -31,10 +31,10 @@ def with_operands(expr: ir.Expr, change: Callable[[ir.Expr], ir.Expr]) -> ir.Exp
 
 def _rebuilt(expr: ir.Expr, parts: list[ir.Expr]) -> ir.Expr:
     """An expression of the same kind with other operands."""
-    given = iter(parts)
+    remaining = iter(parts)
 
     def change(_: ir.Expr) -> ir.Expr:
-        return next(given)
+        return next(remaining)
 
     match expr:
         case ir.Const() | ir.Local() | ir.Used() | ir.Capacity() | ir.HostValue() | ir.Register():
@@ -78,10 +78,10 @@ def with_expressions(stmt: ir.Stmt, change: Callable[[ir.Expr], ir.Expr]) -> ir.
 
 def _restated(stmt: ir.Stmt, parts: list[ir.Expr]) -> ir.Stmt:
     """A statement of the same kind with other expressions."""
-    given = iter(parts)
+    remaining = iter(parts)
 
     def change(_: ir.Expr) -> ir.Expr:
-        return next(given)
+        return next(remaining)
 
     match stmt:
         case ir.Require(at, size, failure):

@@ -67,8 +67,8 @@ def constant_of(value: bool | int | float | str, declared: Type | None, span: Sp
         case int():
             return Const(value, Int(64, signed=holds(INT64, value)), span, declared=declared is not None)
         case float() if declared is not None and is_single(declared):
-            given = Const(value, Float(32), span, declared=True)
-            return in_single(given) or given
+            single = Const(value, Float(32), span, declared=True)
+            return in_single(single) or single
         case float():
             return Const(value, FLOAT64, span, declared=declared is not None)
         case str():

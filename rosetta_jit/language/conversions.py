@@ -1,4 +1,4 @@
-"""Which scalar becomes which without a word: the conversions that cannot change a value.
+"""Implicit conversions: a scalar type converts to another one unwritten if no value can change.
 
 An integer becomes a wider one, or an unsigned one a wider signed one; an integer becomes a float that holds all of its
 values; float32 becomes float64. A constant becomes any type that can hold it; a constant float is rounded to float32.

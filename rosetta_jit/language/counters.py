@@ -1,4 +1,4 @@
-"""Fields that tell how many elements an array has. LCM has no other counts; a bottle schema may say so of a list (`:length`).
+"""Counters: fields that hold the number of elements of an array. LCM has no other counts; a bottle schema may say so of a list (`:length`).
 
 A message in which the two differ is refused, so that one can stand for the other wherever a message is read.
 """

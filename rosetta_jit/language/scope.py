@@ -60,7 +60,7 @@ class Scope:
     problems: list[Diagnostic]
     named: set[str]
     functions: Mapping[str, Signature]
-    others: UsableMappings
+    usable: UsableMappings
     bases: Mapping[Side, Place] = field(default_factory=dict["Side", "Place"])
     suffix: str = ""
     values: Mapping[str, Type] = field(default_factory=dict["str", "Type"])

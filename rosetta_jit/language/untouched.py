@@ -1,4 +1,4 @@
-"""What rules leave alone: fields of the source that none reads, and fields of the target that none sets."""
+"""Fields that no rule touches: of the source those that none reads, of the target those that none sets."""
 
 from __future__ import annotations
 

@@ -159,8 +159,8 @@ class Channel:
             when = shown(int(rows.log_ns[int(number)]))
             raise DecodeError(error.kind, path, f"{error.detail} (a message of {self.topic}, logged {when})", error.offset) from None
 
-    def _blocks(self, start: Moment | None = None, end: Moment | None = None, pieces: range | None = None) -> Iterator[Block]:
-        return self._log.blocks(self._wanted(start, end, pieces))
+    def _blocks(self) -> Iterator[Block]:
+        return self._log.blocks(self._wanted(None, None, None))
 
     def _wanted(self, start: Moment | None, end: Moment | None, pieces: range | None) -> Wanted:
         return Wanted(self.numbers, nanoseconds(start), nanoseconds(end), pieces)
@@ -219,11 +219,11 @@ class Channel:
         """The same with the messages that each table is of, which are not to be written to: the table has taken their large arrays."""
         from rosetta_jit.logs.tables import table_of
 
-        names, chosen, given = None if columns is None else list(columns), tuple(clocks), False
+        names, chosen, is_any = None if columns is None else list(columns), tuple(clocks), False
         for part in self.parts(start=start, end=end, pieces=pieces, on_error=on_error):
             yield part, table_of(part, names, chosen, form)
-            given = True
-        if not given:
+            is_any = True
+        if not is_any:
             empty = nothing(self.decoder)
             yield empty, table_of(empty, names, chosen, form)
 

@@ -78,7 +78,7 @@ class Examination:
         return self.channels[number]
 
     def _findings(self) -> list[Diagnostic]:
-        name, found = self.log.name, list[words.Diagnostic]()
+        name, found = self.log.name, list["Diagnostic"]()
         known = {each.number: each for each in self.log.connections}
         for number, seen in self.seen.items():
             if number not in known:

@@ -12,13 +12,13 @@ if TYPE_CHECKING:
 class Fields:
     """A place in the bytes of a record."""
 
-    def __init__(self, data: bytes | memoryview, at: int = 0, end: int | None = None) -> None:
-        self._data, self.at, self._end = memoryview(data), at, len(data) if end is None else end
+    def __init__(self, data: bytes | memoryview, at: int = 0) -> None:
+        self._data, self.at = memoryview(data), at
 
     @property
     def left(self) -> int:
         """How many bytes are left."""
-        return self._end - self.at
+        return len(self._data) - self.at
 
     def bytes(self, size: int) -> bytes:
         """So many bytes."""

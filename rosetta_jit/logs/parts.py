@@ -140,8 +140,8 @@ class Collector:
         filling = self._filling = self._filling or filling_of(self._decoder, self._likely(rows), self._batch, self._on_error)
         self._batch, first = filling.batch, filling.count
         count = first + len(rows)
-        for own, given in zip(self._rows, (rows.begins, rows.ends, rows.log_ns, rows.publish_ns), strict=True):
-            own[first:count] = given
+        for own, column in zip(self._rows, (rows.begins, rows.ends, rows.log_ns, rows.publish_ns), strict=True):
+            own[first:count] = column
         try:
             with filling.batch.lanes as lanes:
                 fill(self._decoder, filling, block.data, self._spans, count)

@@ -263,7 +263,7 @@ class Records:
 
     def _walked(self, content: Content, at: int) -> Iterator[Block]:
         """The messages in the content of a chunk."""
-        data, told = content.data, content.problem is not None
+        data, is_reported = content.data, content.problem is not None
         if content.problem is not None:
             self._tell(content.problem)
         place = 0
@@ -271,16 +271,16 @@ class Records:
             rows, stop = walk(self._grammar.walk, data, place)
             if len(rows):
                 yield Block(data, rows)
-            place = self._inside(data, stop, at, told=told)
+            place = self._inside(data, stop, at, is_reported=is_reported)
 
-    def _inside(self, data: NDArray[np.uint8], stop: Stop, at: int, *, told: bool) -> int:
+    def _inside(self, data: NDArray[np.uint8], stop: Stop, at: int, *, is_reported: bool) -> int:
         """Where to go on in a chunk: behind the definition that stopped the walk, or at the end."""
         if stop.why in (Why.END, Why.ROOM):
             return stop.at
         peek = data[stop.at : stop.at + PEEK].tobytes()
         head = self._grammar.head(peek) if len(peek) >= 9 and stop.why is Why.OTHER else Head("damaged")
         if head.kind == "damaged" or head.size > data.size - stop.at:
-            if not told:
+            if not is_reported:
                 self._tell(words.chunk_damaged(self._storage.name, at, f"its records break off at byte {stop.at} of {data.size}"))
             return data.size
         if head.kind == "definition":

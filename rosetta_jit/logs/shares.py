@@ -75,13 +75,13 @@ class Reading:
         clocks: Iterable[str],
         start: Moment | None,
         end: Moment | None,
-        **others: Any,
+        **options: Any,
     ) -> Reading:
         """What a user says. ``columns`` are fields; ``clocks`` come before them."""
         chosen = tuple(clocks)
         names = None if columns is None else (*chosen, *columns)
         target = None if mapping is None else str(mapping)
-        return cls(topic, target, names, chosen, start_ns=nanoseconds(start), end_ns=nanoseconds(end), **others)
+        return cls(topic, target, names, chosen, start_ns=nanoseconds(start), end_ns=nanoseconds(end), **options)
 
     def channel(self, path: str) -> Channel:
         """The topic of a log, which is opened; LogError where it has none."""
@@ -215,15 +215,15 @@ def paths_of(paths: str | os.PathLike[str] | Iterable[str | os.PathLike[str]]) -
     import os
     from glob import glob, has_magic
 
-    given = [os.fspath(paths)] if isinstance(paths, str | os.PathLike) else [os.fspath(each) for each in paths]
+    names = [os.fspath(paths)] if isinstance(paths, str | os.PathLike) else [os.fspath(each) for each in paths]
     found: list[str] = []
-    for each in given:
+    for each in names:
         if has_magic(each) and not os.path.exists(each):  # noqa: PTH110 - it may be a URL
             found += _matching(each) if "://" in each else sorted(glob(each))  # noqa: PTH207 - the same
         else:
             found.append(each)
     if not found:
-        raise FileNotFoundError(f"there are no logs {', '.join(given)}")
+        raise FileNotFoundError(f"there are no logs {', '.join(names)}")
     return found
 
 

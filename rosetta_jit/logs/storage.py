@@ -127,8 +127,8 @@ def _file(name: str, path: Path | None) -> BinaryIO:
     try:
         return cast("BinaryIO", fsspec.open(name, "rb").open())
     except Exception as error:  # noqa: BLE001 - each kind of address has a package of its own, and their errors have no base
-        told = error.__cause__ if isinstance(error, FileNotFoundError) and not error.strerror else error  # else it is the name alone
-        raise OSError(0, str(told or os.strerror(ENOENT)) or type(told).__name__) from None
+        cause = error.__cause__ if isinstance(error, FileNotFoundError) and not error.strerror else error  # else it is the name alone
+        raise OSError(0, str(cause or os.strerror(ENOENT)) or type(cause).__name__) from None
 
 
 def _spooled(stream: BinaryIO) -> BinaryIO:

@@ -36,5 +36,5 @@ FORMATS = (
 @cache
 def formats() -> Mapping[str, Format]:
     """Every format by name."""
-    others: list[Any] = [each.load() for each in offered(GROUP)]
-    return {each.name: each for each in (*FORMATS, *others)}
+    offers: list[Any] = [each.load() for each in offered(GROUP)]
+    return {each.name: each for each in (*FORMATS, *offers)}

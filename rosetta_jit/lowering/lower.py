@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.language.check.discriminators import Discriminator
-    from rosetta_jit.language.check.wires import Share
+    from rosetta_jit.language.check.wire_shares import Share
     from rosetta_jit.language.typed import Rule
     from rosetta_jit.lowering.codec.fields import HolderFields
     from rosetta_jit.model.expr import Side

@@ -16,7 +16,7 @@ from typing import Literal as OneOf
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.types import Int, Type
+    from rosetta_jit.model.scalars import Int, Scalar
     from rosetta_jit.source import Span
 
 Side = OneOf["holder", "wire"]
@@ -34,7 +34,7 @@ class Literal:
 
     value: bool | int | float | str
     span: Span | None = field(default=None, compare=False, repr=False)
-    type: Type | None = field(default=None, repr=False)
+    type: Scalar | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,12 +184,16 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """A parameter whose value is not known yet, an item or the length of one. What reads mappings before they are used has them."""
+    """A parameter whose value is not known yet, an item or the length of one. What reads mappings before they are used has them.
+
+    ``type`` is that of each item, where it is a list.
+    """
 
     name: str
     arguments: tuple[Expr, ...]
-    type: Type
+    type: Scalar
     span: Span | None = field(default=None, compare=False, repr=False)
+    is_list: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""The initial values of a new row where zeros alone are none.
+"""Initial values of new rows, for types whose initial value is not all zeros.
 
     InitialValue = FixedArray | FirstCase
 

@@ -13,8 +13,9 @@ Scalars carry the word that their IDL uses (`spelling`): two IDL types with the 
 from __future__ import annotations
 
 from dataclasses import field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
+from rosetta_jit.model.scalars import Bool, Enum, Float, Int, String
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -29,59 +30,12 @@ Constant = bool | int | float | str | bytes
 
 
 @dataclass(frozen=True, slots=True)
-class Bool:
-    """True or false; one byte in a holder."""
-
-    spelling: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Int:
-    """A two's complement or unsigned integer."""
-
-    bits: Literal[8, 16, 32, 64]
-    signed: bool = True
-    spelling: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Float:
-    """An IEEE 754 number."""
-
-    bits: Literal[32, 64]
-    spelling: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class String:
-    """Text. ``octets`` promises nothing about its bytes (YARP); ``utf-8`` is checked when it is read; ``utf-16`` is kept in code units.
-
-    ``maximum`` bounds its length: bytes, or code units.
-    """
-
-    encoding: Literal["utf-8", "octets", "utf-16"] = "utf-8"
-    spelling: str = ""
-    maximum: int | None = None
-
-
-@dataclass(frozen=True, slots=True)
 class Bytes:
     """Bytes without a meaning of their own; ``length`` and ``maximum`` as of an `Array`."""
 
     spelling: str = ""
     length: int | Expr | None = None
     maximum: int | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Enum:
-    """Named integers. A closed one (proto2) holds no other number than those. ``bits`` is the width that the IDL gives it."""
-
-    name: str
-    values: tuple[tuple[str, int], ...]
-    closed: bool = True
-    span: Span | None = field(default=None, compare=False, repr=False)
-    bits: Literal[8, 16, 32] = 32
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,7 +187,6 @@ def same_name(one: str, other: str) -> bool:
     return one == other or name_parts(one) == name_parts(other)
 
 
-Scalar = Bool | Int | Float | Enum
 Type = Bool | Int | Float | String | Bytes | Enum | Array | Struct | Union | Optional | Map | Ref
 
 Declaration = Struct | Enum

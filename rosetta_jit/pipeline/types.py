@@ -11,7 +11,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosetta_jit.language.check.wires import Share
+    from rosetta_jit.language.check.wire_shares import Share
     from rosetta_jit.language.parameters.state import Declared
     from rosetta_jit.language.typed import Rule
     from rosetta_jit.language.uses import Signature

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import wires as words
 from rosetta_jit.errors import MappingError
 from rosetta_jit.language.check.across_wires import Memory, type_name
-from rosetta_jit.language.check.wires import kept_values, rules_of, share_of, value_of_wire
+from rosetta_jit.language.check.wire_shares import share_of
+from rosetta_jit.language.check.wires import kept_values, rules_of, value_of_wire
 from rosetta_jit.language.parameters.state import Declared
 from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, SetState
 from rosetta_jit.model.types import Struct

@@ -1,4 +1,4 @@
-"""How the first memory of lanes begins: what a plan says, where it is aligned, with the addresses of the lanes."""
+"""Writing the first memory of a holder's lanes: what its plan prescribes, at an aligned place, and the address of each lane."""
 
 from __future__ import annotations
 

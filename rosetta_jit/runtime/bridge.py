@@ -1,4 +1,4 @@
-"""Bridges: from the bytes of one wire to those of another. What is not the common case of a call, and many messages in one.
+"""Bridges, from the bytes of one wire to those of another: many messages at once, and calls that the entry does not serve itself.
 
 Their lanes are nobody else's: threads take them in turn, and others where they are taken.
 """

@@ -1,4 +1,4 @@
-"""Encoders: what is not the common case of a call, and many messages in one."""
+"""Encoders: encoding many messages at once, and all calls that the compiled entry does not serve by itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Memory of lanes that tables take, so that large arrays are not copied: the lanes get other memory before they are filled again."""
+"""Memory of lanes that becomes an Arrow table's without a copy: the lanes get other memory before they are filled again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Memory of ours: where it lies, and that it lies well; and the memory that kernels have besides a holder's fields."""
+"""Memory for lanes at well aligned addresses, and the hidden lanes that kernels use besides a holder's fields."""
 
 from __future__ import annotations
 

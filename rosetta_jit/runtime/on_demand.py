@@ -1,4 +1,4 @@
-"""Programs that are made on demand: for messages that hardly ever come, such as CDR of the other byte order, when the first of them does.
+"""Programs that are compiled on demand: messages of CDR's other byte order are rare, and the first one that arrives has its program made.
 
 The compiled kernel of a program that leaves such messages to another one looks for that one's kernel where it has failed itself
 (`backends/entry/on_demand.ll`). Until it is there, the message comes to the slow path, which makes it.

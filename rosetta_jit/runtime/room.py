@@ -1,4 +1,4 @@
-"""How much room a message starts with: the initial values of every message, and what others of its layout have come to need."""
+"""How many rows the lanes of a new message have: those of its initial values, and as many as earlier messages of its layout needed."""
 
 from __future__ import annotations
 

@@ -122,23 +122,18 @@ class Dialer:
     connected
         Is called with each connected socket, which then belongs to it.
     failed
-        Is called with what each round of attempts failed by.
-    again
-        Whether a failed round is followed by another one, after a pause.
+        Is called with what each round of attempts failed by. Another round follows, after a pause.
     """
 
     def __init__(
         self,
         targets: list[Target],
         connected: Callable[[socket.socket], object],
-        failed: Callable[[str], object],
-        *,
-        again: bool = True,
+        failed: Callable[[str], object] = lambda _: None,
     ) -> None:
         self._targets = targets
         self._connected = connected
         self._failed = failed
-        self._again = again
         self._pause = FIRST_PAUSE_S
         self._socket: socket.socket | None = None
         self._stopped = False
@@ -163,9 +158,8 @@ class Dialer:
             return
         if index == len(self._targets):
             self._failed(why)
-            if self._again:
-                loop().later(self._pause, self.start)
-                self._pause = min(2 * self._pause, LAST_PAUSE_S)
+            loop().later(self._pause, self.start)
+            self._pause = min(2 * self._pause, LAST_PAUSE_S)
             return
         family, address = self._targets[index]
         sock = self._socket = socket.socket(family, socket.SOCK_STREAM)

@@ -1,4 +1,4 @@
-"""Short conversations in threads that wait: a connection of which all together takes bounded time, however slowly the peer sends."""
+"""Short conversations with a peer, in a thread that waits: a whole conversation takes bounded time, however slowly the peer sends."""
 
 from __future__ import annotations
 

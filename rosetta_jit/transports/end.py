@@ -1,4 +1,4 @@
-"""What every end of a channel is: it counts what passes and what is lost, and is closed when its block ends."""
+"""The end of a channel: it counts what passes and what is lost, and is closed when its `with` block ends."""
 
 from __future__ import annotations
 

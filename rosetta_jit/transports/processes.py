@@ -1,4 +1,4 @@
-"""Objects that a process has one of: sockets and threads are of no use behind a fork, so a forked process makes its own."""
+"""Objects of which each process has one. Sockets and threads do not survive a fork, so a forked process makes its own."""
 
 from __future__ import annotations
 

@@ -49,8 +49,6 @@ class Stream:
         sock: socket.socket,
         machine: Callable[[Stream], Machine],
         ended: Callable[[Stream, str], object],
-        *,
-        max_waiting: int = MAX_WAITING_BYTES,
     ) -> None:
         sock.setblocking(False)
         _tune(sock)
@@ -63,7 +61,6 @@ class Stream:
         self._ended = ended
         self._machine = machine
         self._feed: Feed | None = None
-        self._most = max_waiting
         self._waiting: deque[tuple[memoryview, End | None]] = deque()
         self._waiting_bytes = 0
         self._turn = threading.RLock()  # a signal may interrupt a sender, and its handler send, too
@@ -98,7 +95,7 @@ class Stream:
         """
         size = sum(map(len, parts))
         with self._turn:  # not the condition, whose block is entered by a function of Python
-            if self.closed or self._finishing or (self._waiting and self._waiting_bytes + size > self._most):
+            if self.closed or self._finishing or (self._waiting and self._waiting_bytes + size > MAX_WAITING_BYTES):
                 return False
             sent = 0
             if not self._waiting:
@@ -126,7 +123,7 @@ class Stream:
         """Wait for room, or until nothing waits any more; False where that takes longer. Not in the loop's thread."""
         until = monotonic() + seconds
         with self._room:
-            while not self.closed and (self._waiting_bytes > (0 if empty else self._most // 2)):
+            while not self.closed and (self._waiting_bytes > (0 if empty else MAX_WAITING_BYTES // 2)):
                 if not self._room.wait(until - monotonic()) and monotonic() >= until:
                     return False
         return True

@@ -1,4 +1,4 @@
-"""What becomes of the fields of a type where another one stands for it, in sentences for whoever connects the two."""
+"""The differences between a type and another one that is used in its place, in sentences for the person who connects the two."""
 
 from __future__ import annotations
 

@@ -185,7 +185,7 @@ def test_a_hostile_schema_stays_in_its_place(module):
 
 
 @pytest.mark.parametrize(
-    "name", ["data", "end", "most", "sites", "indices", "self", "parts", "target", "np", "Struct", "field", "told_end"]
+    "name", ["data", "end", "most", "sites", "indices", "self", "parts", "target", "np", "Struct", "field", "call_end"]
 )
 def test_types_are_called_as_the_module_calls_its_own(module, name):
     """A class of that name would be hidden by a parameter or a variable, or hide what the module needs."""

@@ -17,6 +17,7 @@ import pytest
 
 from rosetta_jit.errors import EncodeError, InUse, InvalidHolder, ValuesError
 from rosetta_jit.kernel.state import CAPACITY, CLEAN, UNSETTLED, USED, VALID, lane_word
+from rosetta_jit.model.limits import MAX_SERIAL_DEPTH
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Array, Bytes, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Union
 from rosetta_jit.runtime.holder import holder_class, holder_class_of
@@ -334,9 +335,24 @@ def test_classes_are_shared_and_rebuilt_from_plain_data():
     plain = json.loads(json.dumps(to_plain(Ref("t.Whole"), SCHEMA)))
     assert holder_class_of(plain) is whole()
     assert from_plain(plain) == (Ref("t.Whole"), SCHEMA)
-    for wrong in ({}, {"type": ["int"], "declared": {}}, {"type": 3, "declared": {}}, {"type": ["ref", "x"], "declared": 1}):
+    numbers = {"is": "Array", "element": {"is": "Int", "bits": 8}}
+    wrong = (
+        "Int",
+        3,
+        ["Int"],
+        {"is": "Int"},
+        {"is": "cast"},
+        {"is": "nothing"},
+        {"is": "Int", "bits": 8, "bytes": 1},
+        {**numbers, "is": "Len"},
+    )
+    for plain in ({}, {"type": numbers, "declared": 1}, *({"type": each, "declared": {}} for each in wrong)):
         with pytest.raises(ValueError, match="not a type"):
-            from_plain(wrong)
+            from_plain(plain)
+    for _ in range(MAX_SERIAL_DEPTH):
+        numbers = {"is": "Array", "element": numbers}
+    with pytest.raises(ValueError, match="nest more than"):
+        from_plain({"type": numbers, "declared": {}})
 
 
 def test_lanes_grow_and_keep_what_they_hold():

@@ -1,4 +1,4 @@
-"""What LLVM would take more than linear time for in long bodies: very many checks of one value, very many stores in one block.
+"""Shapes of long kernels on which LLVM would spend more than linear time: very many checks of one value, very many stores in one block.
 
 Values that very many checks ask about, one check after another, are other values to LLVM from time to time.
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 from rosetta_jit.catalogue.spelling import closest
-from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.diagnostics import Mistake, error
 from rosetta_jit.frameworks.lcm.limits import MAX_SHOWN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
 
@@ -41,10 +42,6 @@ SCALARS = {
 """Words of other languages, and LCM's own for the same."""
 
 
-def _error(code: str, message: str, span: Span | None, label: str, help_: str = "", *notes: str) -> Diagnostic:
-    return Diagnostic("error", code, message, span, label, notes, help_)
-
-
 def _cut(word: str) -> str:
     return word if len(word) <= MAX_SHOWN else f"{word[:MAX_SHOWN]}..."
 
@@ -57,131 +54,110 @@ def _nearest(word: str, known: Iterable[str]) -> str:
 # --- the text ---------------------------------------------------------------------------------------------------------------
 
 
-def no_space(span: Span) -> Diagnostic:
-    """A brace or a comment right behind a word, of which lcm-gen makes one word."""
-    note = "to LCM, braces and slashes are part of the word that they stand in"
-    return _error("no-space", "a space is missing", span, "not apart from what stands before it", "Put a space or a line break here.", note)
-
-
-def unclosed_comment(span: Span) -> Diagnostic:
-    """A comment that goes on to the end of the file."""
-    return _error("unclosed-comment", "a comment does not end", span, "it begins here", "Close it with `*/`.")
+no_space = Mistake(
+    "no-space",
+    "a space is missing",
+    "not apart from what stands before it",
+    help="Put a space or a line break here.",
+    notes=("to LCM, braces and slashes are part of the word that they stand in",),
+)
+unclosed_comment = Mistake("unclosed-comment", "a comment does not end", "it begins here", help="Close it with `*/`.")
 
 
 def unexpected(span: Span, found: str, wanted: str, help_: str = "") -> Diagnostic:
-    """A word that does not fit where it stands."""
-    return _error("syntax", f"`{_cut(found)}` does not fit here", span, f"expected {wanted}", help_)
+    return error("syntax", f"`{_cut(found)}` does not fit here", span, f"expected {wanted}", help_)
 
 
 def unfinished(span: Span, wanted: str) -> Diagnostic:
-    """The end of the file within a declaration."""
-    return _error("unfinished", "the file ends within a declaration", span, f"expected {wanted}")
+    return error("unfinished", "the file ends within a declaration", span, f"expected {wanted}")
 
 
 def nested(span: Span, kind: str) -> Diagnostic:
-    """A declaration within a struct."""
     help_ = "Declare it outside, and use its name here; or close the struct around it."
-    return _error("nested", f"LCM has no {kind} within a struct", span, "not here", help_)
+    return error("nested", f"LCM has no {kind} within a struct", span, "not here", help_)
 
 
 # --- types ------------------------------------------------------------------------------------------------------------------
 
 
 def primitive_declared(name: Name) -> Diagnostic:
-    """A struct or enum with the name of a primitive type."""
-    return _error("repeated-type", f"`{name.text}` is a type of LCM itself", name.span, "taken")
+    return error("repeated-type", f"`{name.text}` is a type of LCM itself", name.span, "taken")
 
 
 def repeated_type(name: Name, full: str, first: Span) -> Diagnostic:
-    """Two declarations of one name."""
-    return _error("repeated-type", f"`{_cut(full)}` is declared twice", name.span, "again", "", f"it was declared at {first}")
+    return error("repeated-type", f"`{_cut(full)}` is declared twice", name.span, "again", "", (f"it was declared at {first}",))
 
 
 def unknown_type(name: Name, full: str, paths: Sequence[str], known: Iterable[str]) -> Diagnostic:
-    """A type that is neither declared nor found."""
     word = SCALARS.get(name.text)
     help_ = f"LCM's own is `{word}`." if word else _nearest(full, known)
     note = f"it was looked for in {', '.join(f'`{_cut(path)}`' for path in paths)}"
-    return _error("unknown-type", f"there is no type `{_cut(full)}`", name.span, "unknown", help_, note)
+    return error("unknown-type", f"there is no type `{_cut(full)}`", name.span, "unknown", help_, (note,))
 
 
 def endless(field: str, span: Span | None, struct: str) -> Diagnostic:
-    """A struct that contains itself always."""
     help_ = "Let it contain an array whose size another field tells."
-    return _error("endless", f"no value of `{_cut(struct)}` would end", span, f"`{_cut(field)}` contains one again", help_)
+    return error("endless", f"no value of `{_cut(struct)}` would end", span, f"`{_cut(field)}` contains one again", help_)
 
 
 def too_deep(name: str, span: Span | None, limit: int) -> Diagnostic:
-    """Structs in structs in structs."""
-    return _error("too-deep", f"`{_cut(name)}` nests structs more than {limit} deep, or too many in each other", span, "met here")
+    return error("too-deep", f"`{_cut(name)}` nests structs more than {limit} deep, or too many in each other", span, "met here")
 
 
 def recursion_in_elements(field: str, span: Span | None) -> Diagnostic:
-    """An array whose elements are not recursive structs, but contain them."""
     help_ = "Make the elements of the array the recursive structs themselves, in one dimension."
     message = f"the elements of `{_cut(field)}` contain recursive structs"
-    return _error("recursion", message, span, "this cannot be read or written", help_)
+    return error("recursion", message, span, "this cannot be read or written", help_)
 
 
 # --- members ----------------------------------------------------------------------------------------------------------------
 
 
 def repeated_name(name: Name, first: Span) -> Diagnostic:
-    """Two fields, constants or enumerators of one name."""
-    return _error("repeated-name", f"`{_cut(name.text)}` has two meanings", name.span, "again", "", f"it was declared at {first}")
+    return error("repeated-name", f"`{_cut(name.text)}` has two meanings", name.span, "again", "", (f"it was declared at {first}",))
 
 
 def repeated_number(name: Name, first: str, number: int) -> Diagnostic:
-    """Two enumerators of one number."""
-    return _error("repeated-number", f"two enumerators have the number {number}", name.span, f"taken by `{_cut(first)}`")
+    return error("repeated-number", f"two enumerators have the number {number}", name.span, f"taken by `{_cut(first)}`")
 
 
 def constant_type(type_: Name, known: Sequence[str]) -> Diagnostic:
-    """A constant of a type that can have none."""
-    return _error("constant-type", f"there are no constants of the type `{_cut(type_.text)}`", type_.span, f"expected {', '.join(known)}")
+    return error("constant-type", f"there are no constants of the type `{_cut(type_.text)}`", type_.span, f"expected {', '.join(known)}")
 
 
 def no_integer(value: Name) -> Diagnostic:
-    """Something else where an integer must stand."""
     help_ = "Decimal numbers, hexadecimal ones (0x1f) and octal ones (017) are read."
-    return _error("number", f"`{_cut(value.text)}` is no integer", value.span, "expected one", help_)
+    return error("number", f"`{_cut(value.text)}` is no integer", value.span, "expected one", help_)
 
 
 def no_number(value: Name) -> Diagnostic:
-    """Something else where a number must stand."""
     help_ = "LCM reads a `+` as a word of its own: leave it out." if value.text.endswith(("e", "E")) else ""
-    return _error("number", f"`{_cut(value.text)}` is no finite number", value.span, "expected one", help_)
+    return error("number", f"`{_cut(value.text)}` is no finite number", value.span, "expected one", help_)
 
 
 def constant_range(value: Name, type_: str) -> Diagnostic:
-    """A number that its type cannot hold."""
-    return _error("range", f"{_cut(value.text)} does not fit into {type_}", value.span, "too large or too small")
+    return error("range", f"{_cut(value.text)} does not fit into {type_}", value.span, "too large or too small")
 
 
 # --- sizes ------------------------------------------------------------------------------------------------------------------
 
 
 def size_range(size: Name, value: int, limit: int) -> Diagnostic:
-    """A size that no array can have."""
-    return _error("size", f"no array has the size {_cut(str(value))}", size.span, f"expected 1 to {limit}")
+    return error("size", f"no array has the size {_cut(str(value))}", size.span, f"expected 1 to {limit}")
 
 
 def unknown_size(size: Name, known: Sequence[str], *, later: bool) -> Diagnostic:
-    """A name that is no constant and no field before the array."""
     help_ = "Declare it before the array." if later else _nearest(size.text, known)
-    return _error("size", f"`{_cut(size.text)}` tells no size", size.span, "no number, constant, or integer field before the array", help_)
+    return error("size", f"`{_cut(size.text)}` tells no size", size.span, "no number, constant, or integer field before the array", help_)
 
 
 def size_is_array(size: Name) -> Diagnostic:
-    """An array as the size of another."""
-    return _error("size", f"`{_cut(size.text)}` is an array itself", size.span, "expected one integer")
+    return error("size", f"`{_cut(size.text)}` is an array itself", size.span, "expected one integer")
 
 
 def size_type(size: Name, type_: str) -> Diagnostic:
-    """A size of a type that cannot count."""
-    return _error("size", f"a {_cut(type_)} cannot be a size", size.span, "expected an int8_t, int16_t, int32_t or int64_t")
+    return error("size", f"a {_cut(type_)} cannot be a size", size.span, "expected an int8_t, int16_t, int32_t or int64_t")
 
 
 def too_many_dimensions(size: Name, limit: int) -> Diagnostic:
-    """An array of more dimensions than are supported."""
-    return _error("size", f"an array has more than {limit} dimensions", size.span, "one too many")
+    return error("size", f"an array has more than {limit} dimensions", size.span, "one too many")

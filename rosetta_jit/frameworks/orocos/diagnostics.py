@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.diagnostics import Mistake, error
 
 if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
 REFUSED = {
@@ -24,23 +25,15 @@ REFUSED = {
 """Why a type is refused, and what helps."""
 
 
-def _error(code: str, message: str, span: Span | None, label: str, help_: str = "") -> Diagnostic:
-    return Diagnostic("error", code, message, span, label=label, help=help_)
-
-
-def no_libclang(span: Span) -> Diagnostic:
-    """The package that reads C++ is not installed."""
-    return _error("libclang", "C++ headers are read by libclang, which is not installed", span, "", "Install `rosetta-jit[orocos]`.")
+no_libclang = Mistake("libclang", "C++ headers are read by libclang, which is not installed", help="Install `rosetta-jit[orocos]`.")
 
 
 def compile_error(span: Span, text: str) -> Diagnostic:
-    """An error of the C++ compiler."""
-    return _error("c++", "this is no C++ that can be read", span, text[:200])
+    return error("c++", "this is no C++ that can be read", span, text[:200])
 
 
 def missing_file(span: Span, path: str) -> Diagnostic:
-    """An include that leads nowhere."""
-    return _error(
+    return error(
         "missing-file",
         f"there is no file `{path[:80]}`",
         span,
@@ -50,130 +43,103 @@ def missing_file(span: Span, path: str) -> Diagnostic:
 
 
 def too_many_files(span: Span, files: int, characters: int) -> Diagnostic:
-    """More or larger includes than may be."""
-    return _error("too-many-files", f"a header may include {files} files of {characters} characters together", span, "too much")
+    return error("too-many-files", f"a header may include {files} files of {characters} characters together", span, "too much")
 
 
-def too_much_work(span: Span) -> Diagnostic:
-    """The compiler failed, or ran out of time or memory."""
-    return _error("limit", "this header takes the compiler too much time or memory", span, "reading it was given up")
+too_much_work = Mistake("limit", "this header takes the compiler too much time or memory", "reading it was given up")
 
 
 def refused_type(span: Span, member: str, reason: str, word: str) -> Diagnostic:
-    """A member whose type is no data."""
     why, help_ = REFUSED[reason]
     label = f"`{word[:60]}`" if word else "of such a type"
-    return _error(reason, f"`{member}` cannot be part of a message: {why}", span, label, help_)
+    return error(reason, f"`{member}` cannot be part of a message: {why}", span, label, help_)
 
 
 def bit_field(span: Span, member: str) -> Diagnostic:
-    """A member of some bits."""
-    return _error("bit-field", f"`{member}` is a bit field", span, "not a number of whole bytes", "Use an integer.")
+    return error("bit-field", f"`{member}` is a bit field", span, "not a number of whole bytes", "Use an integer.")
 
 
 def hidden_member(span: Span, member: str) -> Diagnostic:
-    """A private or protected member."""
-    return _error("private", f"`{member}` is private, so no other type can stand for it", span, "not public", "Make it public.")
+    return error("private", f"`{member}` is private, so no other type can stand for it", span, "not public", "Make it public.")
 
 
 def unnamed_member(span: Span, record: str) -> Diagnostic:
-    """A member without a name."""
-    return _error("unnamed", f"a member of `{record}` has no name", span, "needs one")
+    return error("unnamed", f"a member of `{record}` has no name", span, "needs one")
 
 
 def repeated_member(span: Span, record: str, member: str) -> Diagnostic:
-    """Two members with one name, of two bases or of a base and what derives from it."""
-    return _error("repeated-member", f"`{record}` has two members `{member}`", span, "a second one", "Members of bases count as its own.")
+    return error("repeated-member", f"`{record}` has two members `{member}`", span, "a second one", "Members of bases count as its own.")
 
 
 def virtual_class(span: Span, record: str) -> Diagnostic:
-    """A class with a table of virtual functions."""
-    return _error("virtual", f"`{record}` is no plain data: it has virtual functions or bases", span, "holds hidden pointers")
+    return error("virtual", f"`{record}` is no plain data: it has virtual functions or bases", span, "holds hidden pointers")
 
 
 def unusable_base(span: Span, record: str) -> Diagnostic:
-    """A base that is a template, or not public."""
-    return _error("base", f"the base of `{record}` cannot be part of a message", span, "expected a public struct")
+    return error("base", f"the base of `{record}` cannot be part of a message", span, "expected a public struct")
 
 
 def repeated_name(span: Span | None, name: str) -> Diagnostic:
-    """Two declarations with one name."""
-    return _error("repeated-name", f"`{name}` is declared twice", span, "a second one")
+    return error("repeated-name", f"`{name}` is declared twice", span, "a second one")
 
 
 def large_enumerator(span: Span, name: str) -> Diagnostic:
-    """An enum that needs more than 32 bits."""
-    return _error("enum", f"`{name}` needs more than 32 bits, signed", span, "too large", "Use an integer and constants.")
+    return error("enum", f"`{name}` needs more than 32 bits, signed", span, "too large", "Use an integer and constants.")
 
 
 def empty_array(span: Span, member: str) -> Diagnostic:
-    """An array of no elements."""
-    return _error("empty-array", f"`{member}` is an array of no elements", span, "needs one at least")
+    return error("empty-array", f"`{member}` is an array of no elements", span, "needs one at least")
 
 
 def too_large(span: Span | None, name: str, limit: int) -> Diagnostic:
-    """A type of too many bytes."""
-    return _error("size", f"`{name}` takes more than {limit} bytes", span, "too large")
+    return error("size", f"`{name}` takes more than {limit} bytes", span, "too large")
 
 
 def strange_layout(span: Span | None, name: str) -> Diagnostic:
-    """A member that overlaps another one, or lies far behind it."""
-    return _error("layout", f"the bytes of `{name}` are not where they can be", span, "overlaps, or leaves a large gap")
+    return error("layout", f"the bytes of `{name}` are not where they can be", span, "overlaps, or leaves a large gap")
 
 
 def nested_too_deep(span: Span | None, name: str, limit: int) -> Diagnostic:
-    """Structs of structs of structs."""
-    return _error("nesting", f"`{name}` has structs inside each other more than {limit} deep", span, "too deep")
+    return error("nesting", f"`{name}` has structs inside each other more than {limit} deep", span, "too deep")
 
 
 def contains_itself(span: Span | None, name: str) -> Diagnostic:
-    """A struct that is part of itself without a vector between."""
-    return _error("recursion", f"`{name}` is part of itself", span, "would have no end", "Put a std::vector between.")
+    return error("recursion", f"`{name}` is part of itself", span, "would have no end", "Put a std::vector between.")
 
 
 def not_xml(span: Span, why: str) -> Diagnostic:
-    """A registry that is no XML."""
-    return _error("xml", "this is no well-formed XML", span, why)
+    return error("xml", "this is no well-formed XML", span, why)
 
 
-def document_type(span: Span) -> Diagnostic:
-    """A DOCTYPE, which could declare entities."""
-    return _error("doctype", "a registry has no document type", span, "not allowed", "Remove it; entities cannot be declared.")
+document_type = Mistake("doctype", "a registry has no document type", "not allowed", help="Remove it; entities cannot be declared.")
 
 
 def unexpected_element(span: Span, element: str, expected: str) -> Diagnostic:
-    """An element where there is none of its kind."""
-    return _error("element", f"`<{element[:40]}>` cannot stand here", span, f"expected {expected}")
+    return error("element", f"`<{element[:40]}>` cannot stand here", span, f"expected {expected}")
 
 
 def missing_attribute(span: Span, element: str, attribute: str) -> Diagnostic:
-    """An attribute that must be there."""
-    return _error("attribute", f"`<{element}>` has no `{attribute}`", span, f"expected {attribute}=")
+    return error("attribute", f"`<{element}>` has no `{attribute}`", span, f"expected {attribute}=")
 
 
 def wrong_attribute(span: Span, value: str, expected: str) -> Diagnostic:
-    """A value that an attribute cannot have."""
-    return _error("attribute", f"`{value[:60]}` cannot stand here", span, f"expected {expected}")
+    return error("attribute", f"`{value[:60]}` cannot stand here", span, f"expected {expected}")
 
 
 def unknown_type(span: Span, name: str) -> Diagnostic:
-    """A name that the registry does not declare."""
-    return _error("unknown-type", f"there is no type `{name[:80]}`", span, "not declared in this file")
+    return error("unknown-type", f"there is no type `{name[:80]}`", span, "not declared in this file")
 
 
 def unusable_type(span: Span, name: str, kind: str) -> Diagnostic:
-    """A type that has no bytes: an opaque, a pointer, a null."""
-    return _error("unusable-type", f"`{name[:80]}` is of a kind that has no values: {kind}", span, "cannot be part of a message")
+    return error("unusable-type", f"`{name[:80]}` is of a kind that has no values: {kind}", span, "cannot be part of a message")
 
 
 def foreign_container(span: Span, name: str, size: int, expected: int) -> Diagnostic:
-    """A container as large as on another platform."""
-    return _error("platform", f"`{name[:80]}` takes {size} bytes", span, f"takes {expected} on x86-64", "Export the registry there.")
+    return error("platform", f"`{name[:80]}` takes {size} bytes", span, f"takes {expected} on x86-64", "Export the registry there.")
 
 
 def not_plain_memory(span: Span | None, member: str) -> Diagnostic:
-    """A container in a struct that is written as its memory."""
-    return _error(
+    return error(
         "container",
         f"`{member}` lies elsewhere: the memory of the struct holds a pointer to it",
         span,
@@ -183,10 +149,8 @@ def not_plain_memory(span: Span | None, member: str) -> Diagnostic:
 
 
 def not_in_typelib(span: Span | None, member: str, what: str) -> Diagnostic:
-    """A type that typelib cannot describe."""
-    return _error("typelib", f"typelib cannot write `{member}`", span, what, "Use the encoding `rtt-mqueue`.")
+    return error("typelib", f"typelib cannot write `{member}`", span, what, "Use the encoding `rtt-mqueue`.")
 
 
 def unfolds(span: Span | None, name: str, limit: int) -> Diagnostic:
-    """A struct of too many numbers."""
-    return _error("size", f"`{name}` unfolds to more than {limit} fields", span, "too large")
+    return error("size", f"`{name}` unfolds to more than {limit} fields", span, "too large")

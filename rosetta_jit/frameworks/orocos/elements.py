@@ -16,6 +16,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Source
 
 TYPES = ("alias", "array", "character", "compound", "container", "enum", "null", "numeric", "opaque", "pointer")
@@ -108,5 +109,5 @@ def read_elements(source: Source) -> list[Element]:
     return reading.types
 
 
-def _refuse(problem: words.Diagnostic) -> NoReturn:
+def _refuse(problem: Diagnostic) -> NoReturn:
     raise SchemaError((problem,))

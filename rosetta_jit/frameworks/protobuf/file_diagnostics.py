@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.diagnostics import Diagnostic
-from rosetta_jit.frameworks.protobuf.diagnostics import problem
+from rosetta_jit.diagnostics import Mistake, error
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
 TOKENS = {
@@ -38,14 +38,12 @@ TOKENS = {
 
 
 def unexpected(span: Span, text: str, expected: Collection[str]) -> Diagnostic:
-    """A token where the grammar has none like it."""
     label = f"expected {_alternatives(expected)}"
-    return problem("syntax", f"`{text[:40]}` cannot stand here", span, label)
+    return error("syntax", f"`{text[:40]}` cannot stand here", span, label)
 
 
 def unfinished(span: Span, expected: Collection[str]) -> Diagnostic:
-    """The end of the file within a statement."""
-    return problem("syntax", "the file ends in the middle of a statement", span, f"expected {_alternatives(expected)}")
+    return error("syntax", "the file ends in the middle of a statement", span, f"expected {_alternatives(expected)}")
 
 
 def _alternatives(expected: Collection[str]) -> str:
@@ -58,53 +56,34 @@ def _alternatives(expected: Collection[str]) -> str:
 
 
 def nesting(span: Span, limit: int) -> Diagnostic:
-    """More brackets open at once than may be."""
-    return problem("nesting", f"more than {limit} brackets are open at once", span, "one too many", "Declare the inner types outside.")
+    return error("nesting", f"more than {limit} brackets are open at once", span, "one too many", "Declare the inner types outside.")
 
 
-def unclosed_string(span: Span) -> Diagnostic:
-    """A quotation mark without its partner."""
-    return problem("syntax", "a string does not end on its line", span, "starts here", "Close it; `\\n` stands for a new line.")
-
-
-def unclosed_comment(span: Span) -> Diagnostic:
-    """`/*` without `*/`."""
-    return problem("syntax", "a comment does not end", span, "starts here", "Close it with `*/`.")
+unclosed_string = Mistake("syntax", "a string does not end on its line", "starts here", help="Close it; `\\n` stands for a new line.")
+unclosed_comment = Mistake("syntax", "a comment does not end", "starts here", help="Close it with `*/`.")
 
 
 def wrong_number(span: Span, wanted: str) -> Diagnostic:
-    """A number that is misspelt, or of the wrong kind for its place."""
-    return problem("number", "this is no such number", span, f"expected {wanted}", "Write 10, 0x0a, 012 or, where it may be one, 1.5e3.")
+    return error("number", "this is no such number", span, f"expected {wanted}", "Write 10, 0x0a, 012 or, where it may be one, 1.5e3.")
 
 
-def wrong_escape(span: Span) -> Diagnostic:
-    """A backslash with something behind it that means nothing."""
-    return problem("escape", "nothing is written like this in a string", span, "not an escape", "A backslash itself is `\\\\`.")
-
-
-def not_utf8(span: Span) -> Diagnostic:
-    """The name of a file, or a reserved name, that is not text."""
-    return problem("text", "this is not text in UTF-8", span, "bytes that are no characters")
+wrong_escape = Mistake("escape", "nothing is written like this in a string", "not an escape", help="A backslash itself is `\\\\`.")
+not_utf8 = Mistake("text", "this is not text in UTF-8", "bytes that are no characters")
 
 
 def name_too_long(span: Span | None, limit: int) -> Diagnostic:
-    """A name longer than the limit."""
-    return problem("name-length", f"a name has more than {limit} characters", span, "too long")
+    return error("name-length", f"a name has more than {limit} characters", span, "too long")
 
 
 def unknown_syntax(span: Span, value: str) -> Diagnostic:
-    """A version of the language that does not exist."""
-    return problem("syntax-version", f"there is no syntax {value!r}", span, "unknown", 'Use "proto2" or "proto3".')
+    return error("syntax-version", f"there is no syntax {value!r}", span, "unknown", 'Use "proto2" or "proto3".')
 
 
-def second_package(span: Span | None) -> Diagnostic:
-    """Another `package` in the same file."""
-    return problem("package", "a file has one package", span, "a second one")
+second_package = Mistake("package", "a file has one package", "a second one")
 
 
 def missing_file(span: Span | None, path: str) -> Diagnostic:
-    """An import that leads nowhere."""
-    return problem(
+    return error(
         "missing-file",
         f"there is no file `{path}`",
         span,
@@ -114,32 +93,26 @@ def missing_file(span: Span | None, path: str) -> Diagnostic:
 
 
 def import_cycle(span: Span | None, names: Sequence[str]) -> Diagnostic:
-    """An import that leads back to its own file."""
     note = " imports ".join(f"`{name}`" for name in names)
-    return Diagnostic("error", "import-cycle", "a file imports itself", span, label="leads back", notes=(note,))
+    return error("import-cycle", "a file imports itself", span, "leads back", notes=(note,))
 
 
 def repeated_import(span: Span | None, path: str) -> Diagnostic:
-    """The same import again."""
-    return problem("repeated-import", f"`{path}` is imported twice", span, "again")
+    return error("repeated-import", f"`{path}` is imported twice", span, "again")
 
 
 def repeated_file(name: str) -> Diagnostic:
-    """Two files of a descriptor set with one name."""
-    return problem("repeated-file", f"the file `{name}` comes twice", None, "")
+    return error("repeated-file", f"the file `{name}` comes twice", None, "")
 
 
 def too_many_files(limit: int) -> Diagnostic:
-    """More files than may be imported."""
-    return problem("too-many-files", f"more than {limit} files are imported", None, "")
+    return error("too-many-files", f"more than {limit} files are imported", None, "")
 
 
 def bad_descriptor(reason: str) -> Diagnostic:
-    """A descriptor that protoc would not have written."""
-    return problem("descriptor", f"this is no usable file descriptor set: {reason}", None, "")
+    return error("descriptor", f"this is no usable file descriptor set: {reason}", None, "")
 
 
 def unsupported_descriptor(file: str, syntax: str) -> Diagnostic:
-    """A descriptor of a file in a version of the language that is not known."""
     known = "proto2, proto3 and the editions 2023 and 2024 are known"
-    return problem("edition", f"the file `{file[:100]}` is written in `{syntax[:40]}`; {known}", None, "")
+    return error("edition", f"the file `{file[:100]}` is written in `{syntax[:40]}`; {known}", None, "")

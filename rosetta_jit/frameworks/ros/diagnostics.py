@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.spelling import closest
-from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.diagnostics import Mistake, error
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
 SHOWN = 80
@@ -30,155 +31,114 @@ MEANT = {
 """Words of other languages, and the nearest one of these."""
 
 
-def _error(code: str, message: str, span: Span | None, label: str, help_: str = "", notes: tuple[str, ...] = ()) -> Diagnostic:
-    return Diagnostic("error", code, message, span, label=label, help=help_, notes=notes)
-
-
 def _short(text: str) -> str:
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}…"
 
 
-def not_a_declaration(span: Span) -> Diagnostic:
-    """A word alone."""
-    return _error("declaration", "this line declares nothing", span, "has no name", "Write `type name` or `type NAME=value`.")
-
-
-def too_much(span: Span) -> Diagnostic:
-    """Words behind the name of a ROS 1 field."""
-    return _error("declaration", "a field is a type and a name", span, "too much", "A comment begins with `#`; ROS 1 has no defaults.")
-
-
-def tab(span: Span) -> Diagnostic:
-    """A tab alone between type and name, which genmsg takes for a part of them."""
-    return _error("blank", "ROS 1 does not see a tab as the end of a type", span, "has no space", "Put a space there.")
-
-
-def indented(span: Span) -> Diagnostic:
-    """Blanks before a declaration of ROS 2."""
-    return _error("blank", "a declaration of ROS 2 begins with its line", span, "is indented", "Remove the blanks before it.")
+not_a_declaration = Mistake("declaration", "this line declares nothing", "has no name", help="Write `type name` or `type NAME=value`.")
+too_much = Mistake("declaration", "a field is a type and a name", "too much", help="A comment begins with `#`; ROS 1 has no defaults.")
+tab = Mistake("blank", "ROS 1 does not see a tab as the end of a type", "has no space", help="Put a space there.")
+indented = Mistake("blank", "a declaration of ROS 2 begins with its line", "is indented", help="Remove the blanks before it.")
 
 
 def not_a_type(span: Span, text: str) -> Diagnostic:
-    """Brackets or signs that make no type."""
     help_ = "Write `type`, `type[]` or `type[3]`, in ROS 2 also `string<=3` and `type[<=3]`."
-    return _error("type", f"`{_short(text)}` is not a type", span, "malformed", help_)
+    return error("type", f"`{_short(text)}` is not a type", span, "malformed", help_)
 
 
 def not_a_type_name(span: Span, text: str, package: str, message: str) -> Diagnostic:
-    """A word that no builtin type or message can have as its name."""
     notes = (f"a package's name is {package}", f"a message's name is {message}")
     near = MEANT.get(text) or (text.replace("/msg/", "/") if text.count("/") == 2 and "/msg/" in text else "")
     help_ = f"Did you mean `{_short(near)}`?" if near else ""
-    return _error("type", f"`{_short(text)}` is no name of a type", span, "malformed", help_, notes)
+    return error("type", f"`{_short(text)}` is no name of a type", span, "malformed", help_, notes)
 
 
 def not_a_length(span: Span, least: int) -> Diagnostic:
-    """A length or bound that is no number, or too small or great for one."""
-    return _error("length", "a length or bound is a plain number", span, f"expected one from {least} to 4294967295")
+    return error("length", "a length or bound is a plain number", span, f"expected one from {least} to 4294967295")
 
 
 def not_a_name(span: Span, text: str, what: str, rule: str) -> Diagnostic:
-    """A field or constant with a name that it cannot have."""
-    return _error("name", f"`{_short(text)}` cannot be the name of a {what}", span, f"a {what}'s name is {rule}")
+    return error("name", f"`{_short(text)}` cannot be the name of a {what}", span, f"a {what}'s name is {rule}")
 
 
 def wrong_file_name(span: Span, name: str, rule: str) -> Diagnostic:
-    """A file whose name no message can have."""
-    return _error("name", f"`{_short(name)}` cannot be the name of a message", span, f"the file's name must be {rule}")
+    return error("name", f"`{_short(name)}` cannot be the name of a message", span, f"the file's name must be {rule}")
 
 
 def duplicate(span: Span, name: str, first: Span) -> Diagnostic:
-    """A second field or constant of one name."""
-    return _error("duplicate", f"`{_short(name)}` is declared twice", span, "again here", notes=(f"first at {first}",))
+    return error("duplicate", f"`{_short(name)}` is declared twice", span, "again here", notes=(f"first at {first}",))
 
 
 def not_a_constant_type(span: Span, text: str, scalars: Sequence[str]) -> Diagnostic:
-    """A constant of a message or an array."""
     help_ = f"Use one of {', '.join(scalars)}."
-    return _error("constant-type", f"`{_short(text)}` has no constants", span, "not a type of constants", help_)
+    return error("constant-type", f"`{_short(text)}` has no constants", span, "not a type of constants", help_)
 
 
 def not_a_value(span: Span, type_: str, wanted: str) -> Diagnostic:
-    """A constant or default that is misspelt, out of range or of another type."""
-    return _error("value", f"this is no value of `{_short(type_)}`", span, f"expected {wanted}")
+    return error("value", f"this is no value of `{_short(type_)}`", span, f"expected {wanted}")
 
 
-def default_of_message(span: Span) -> Diagnostic:
-    """A default for a message."""
-    return _error("default", "a message has no default", span, "not possible", "Give the fields of that message defaults.")
+default_of_message = Mistake("default", "a message has no default", "not possible", help="Give the fields of that message defaults.")
 
 
 def annotation(span: Span, text: str, *, again: bool) -> Diagnostic:
-    """`@` and a word that means nothing here."""
     if again:
-        return _error("annotation", "the same field is made optional twice", span, "again here")
-    return _error("annotation", f"`{_short(text)}` is not known", span, "means nothing here", "The only one is `@optional`, in ROS 2.")
+        return error("annotation", "the same field is made optional twice", span, "again here")
+    return error("annotation", f"`{_short(text)}` is not known", span, "means nothing here", "The only one is `@optional`, in ROS 2.")
 
 
-def optional_nothing(span: Span) -> Diagnostic:
-    """`@optional` with no field behind it."""
-    return _error("annotation", "there is nothing to be optional", span, "no field follows")
+optional_nothing = Mistake("annotation", "there is nothing to be optional", "no field follows")
 
 
 def no_section_name(span: Span, kinds: Sequence[str]) -> Diagnostic:
-    """A line of `=` that no line with the name of the next definition follows."""
     help_ = f"Write {', '.join(f'`{kind}: package/Name`' for kind in kinds[:-1])} or `{kinds[-1]}: package/Name`."
-    return _error("section", "a definition does not say its name", span, "the line below this one must say it", help_)
+    return error("section", "a definition does not say its name", span, "the line below this one must say it", help_)
 
 
 def wrong_section_name(span: Span, text: str, kind: str) -> Diagnostic:
-    """A name behind `MSG:` that no message has."""
     what = {"MSG": "a message", "SRV": "a service", "ACTION": "an action"}.get(kind, "a file")
-    return _error("section", f"`{_short(text)}` is no qualified name of {what}", span, "not a name", f"Write `{kind}: package/Name`.")
+    return error("section", f"`{_short(text)}` is no qualified name of {what}", span, "not a name", f"Write `{kind}: package/Name`.")
 
 
 def defined_twice(span: Span, name: str, first: Span) -> Diagnostic:
-    """Two different definitions of a message in one text."""
     notes = (f"first at {first}",)
-    return _error("defined-twice", f"`{_short(name)}` is defined in two ways", span, "differs from the first one", notes=notes)
+    return error("defined-twice", f"`{_short(name)}` is defined in two ways", span, "differs from the first one", notes=notes)
 
 
 def wrong_parts(span: Span, kind: str, found: int, wanted: int) -> Diagnostic:
-    """A service or an action with too few or too many lines of `---`."""
     what = {"srv": "a request and a response", "action": "a goal, a result and feedback"}[kind]
     label = "one too many" if found > wanted else f"{found} of {wanted} lines of `---`"
     message = f"{'a service' if kind == 'srv' else 'an action'} has {what}, with `---` between them"
-    return _error("parts", message, span, label, "Write a line of `---` between the parts, also where one of them is empty.")
+    return error("parts", message, span, label, "Write a line of `---` between the parts, also where one of them is empty.")
 
 
 def unknown_message(span: Span, name: str, written: str, places: Sequence[str], scalars: Sequence[str]) -> Diagnostic:
-    """A field of a message that is nowhere."""
     word = written.split("[", maxsplit=1)[0][:SHOWN]
     near = MEANT.get(word) or closest(word, scalars)
     help_ = f"Did you mean `{near}`?" if near else "Add its file's folder to the search path, or its definition to the text."
     notes = (f"looked for {', '.join(_short(place) for place in places)}",)
-    return _error("unknown-message", f"no definition of `{_short(name)}` is found", span, "unknown", help_, notes)
+    return error("unknown-message", f"no definition of `{_short(name)}` is found", span, "unknown", help_, notes)
 
 
 def too_many(span: Span, limit: int) -> Diagnostic:
-    """More messages than anybody needs."""
-    return _error("too-many", f"more than {limit} messages are needed", span, "one too many")
+    return error("too-many", f"more than {limit} messages are needed", span, "one too many")
 
 
 def cycle(span: Span, names: Sequence[str]) -> Diagnostic:
-    """A message within itself."""
     shown = [*names[:3], "…", names[-1]] if len(names) > 5 else list(names)
-    return _error("cycle", "a message contains itself", span, " → ".join(_short(name) for name in shown))
+    return error("cycle", "a message contains itself", span, " → ".join(_short(name) for name in shown))
 
 
 def too_deep(span: Span, name: str, depth: int, fields: int) -> Diagnostic:
-    """A message that unfolds to too much."""
     message = f"`{_short(name)}` nests more than {depth} deep or has more than {fields} fields in all"
-    return _error("nesting", message, span, "too large")
+    return error("nesting", message, span, "too large")
 
 
 def no_literal(span: Span, value: str) -> Diagnostic:
-    """A value of a message that is read as IDL, since others are declared in IDL, and is none there."""
-    return _error(
+    return error(
         "value", f"IDL cannot write `{value}`", span, "has this value", "Declare it, or what it is used with, in the other language."
     )
 
 
 def no_type_hash(span: Span | None, name: str) -> Diagnostic:
-    """A type that type descriptions of ROS 2 cannot describe."""
-    return _error("type-hash", f"the type of `{_short(name)}` has no place in a ROS 2 type description", span, "cannot be hashed")
+    return error("type-hash", f"the type of `{_short(name)}` has no place in a ROS 2 type description", span, "cannot be hashed")

@@ -1,4 +1,4 @@
-"""The structs of the model that are no plain lists of their fields, and the marks by which an encoding knows them.
+"""Structs of the model that YARP does not write as a list of their fields, and the options by which an encoding knows them.
 
 form = packed     the values of the fields, one behind the other, without code or count
      | bare       the code and the count of a list, then such values
@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
-
-FORMS = ("packed", "bare")
 
 
 def make_union(name: str, cases: Sequence[Field], span: Span) -> Struct:

@@ -131,18 +131,12 @@ def _top(common: _Common) -> Fixed | Many:
             raise AssertionError("what has neither was refused when it was united")
 
 
-def detect(data: bytes) -> Dialect:
-    """The dialect of a message; raises DecodeError where it is a bottle in none.
+def read_any(data: bytes) -> tuple[Dialect, List]:
+    """The dialect of a message, and its tree.
 
     Nothing on the wire says so. What decides, in this order: in which dialects the message is a bottle at all, to its last
     byte (tag 10 stands for eight bytes in YARP 3 and for four in YARP 4); a NUL after every string, which only 2012 writes;
     and in an image the high half of the quantum word. A message that means the same in all of them is called YARP 3.
-    """
-    return read_any(data)[0]
-
-
-def read_any(data: bytes) -> tuple[Dialect, List]:
-    """The dialect of a message, and its tree.
 
     Raises
     ------

@@ -11,6 +11,7 @@ from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Source
 
 Kind = Literal["name", "number", "text", "sign", "end"]
@@ -50,7 +51,7 @@ def words_of(source: Source) -> list[Word]:
     return words
 
 
-def _stray(source: Source, at: int) -> say.Diagnostic:
+def _stray(source: Source, at: int) -> Diagnostic:
     rest, span = source.text[at : at + 2], Span(source, at, at + 1)
     if rest == "/*":
         return say.unclosed(span, "comment")

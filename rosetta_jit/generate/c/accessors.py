@@ -124,13 +124,13 @@ def _presence(struct: Struct, taken: Namespace) -> list[str]:
         if member.presence is None:
             continue
         word, bit = divmod(member.presence, 64)
-        asks, sets = (taken.identifier(f"{struct.identifier}_{verb}_{member.identifier}") for verb in ("has", "set_has"))
-        texts.append(f"""static inline bool {asks}(const {struct.identifier} *row)
+        getter, setter = (taken.identifier(f"{struct.identifier}_{verb}_{member.identifier}") for verb in ("has", "set_has"))
+        texts.append(f"""static inline bool {getter}(const {struct.identifier} *row)
 {{
     return (row->presence[{word}] & UINT64_C({1 << bit})) != 0;
 }}
 
-static inline void {sets}({struct.identifier} *row, bool is_there)
+static inline void {setter}({struct.identifier} *row, bool is_there)
 {{
     row->presence[{word}] &= ~UINT64_C({1 << bit});
     row->presence[{word}] |= is_there ? UINT64_C({1 << bit}) : 0u;

@@ -15,10 +15,11 @@ from rosetta_jit.backends.base import Namespace, Writer, counted_lanes
 from rosetta_jit.generate.c.expressions import constant, expression
 from rosetta_jit.generate.c.scope import Scope, register_name
 from rosetta_jit.generate.c.state import register_word
-from rosetta_jit.generate.c.statements import Callable, Function, leaves, moved, print_block, reached, read_names
+from rosetta_jit.generate.c.statements import Callable, Function, moved, print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.reached import leaves, reached, read_names
 from rosetta_jit.kernel.ir import Advance, Call, For, While
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.startup.dataclass import dataclass
@@ -130,10 +131,10 @@ def _routine(writer: Writer, role: str, direction: Direction, routine: Routine, 
     if fails:
         function.line("return 0;")
     shared = tuple(each for each in SHARED if each in scope.parameters)
-    given = [f"{C_TYPES[each.type]} {own[each.name]}" for each in routine.parameters]
+    parameters = [f"{C_TYPES[each.type]} {own[each.name]}" for each in routine.parameters]
     found = [f"{C_TYPES[each.type]} *found_{scope.locals.identifier(each.name)}" for each in routine.results]
     name = f"{role}_{routine.name}"
-    declared = ", ".join((*_declared(shared, direction, scope.lanes), *given, *found)) or "void"
+    declared = ", ".join((*_declared(shared, direction, scope.lanes), *parameters, *found)) or "void"
     _head(writer, f"{inline}static {'int64_t' if fails else 'void'} {name}({declared})", scope, direction)
     writer.lines += [f"    (void){identifier};" for parameter, identifier in own.items() if parameter not in function.read]
     writer.lines += [*function.writer.lines, "}"]

@@ -71,8 +71,8 @@ def _calls(unit: Unit) -> list[str]:
     roles = sorted(unit.kernels, key=lambda role: kinds.index(kind_of(role)))
     called = [(OF_WIRE if wire_of(role) else CALLS[kind_of(role)]).format(name=unit.name, wire=wire_of(role)) for role in roles]
     for function in unit.functions:
-        given = "".join(f"{C_TYPES[each]} number_{number}, " for number, each in enumerate(function.parameters, 1))
-        text = f"bool {unit.name}_{function.name}({given}{C_TYPES[function.result]} *result);"
+        parameters = "".join(f"{C_TYPES[each]} number_{number}, " for number, each in enumerate(function.parameters, 1))
+        text = f"bool {unit.name}_{function.name}({parameters}{C_TYPES[function.result]} *result);"
         called.append(f"/* You write this function, which the mapping calls: false refuses the message. */\n{text}")
     return called
 

@@ -11,14 +11,12 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.c.rows import SpanType, Struct, path_to
-from rosetta_jit.generate.c.support import function_names
-from rosetta_jit.generate.c.words import C_TYPES, RESERVED, of_unit
+from rosetta_jit.generate.c.words import C_TYPES, RESERVED
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping
 
     from rosetta_jit.generate.c.rows import Element
 
@@ -145,21 +143,3 @@ def row_type(prefix: str, element: Element | None) -> str:
             return f"{prefix}_span"
         case Struct():
             return element.identifier
-
-
-def named_lanes(names: Sequence[str], unit: str) -> list[tuple[str, str]]:
-    """For each lane the identifiers of its pointer and of its count: variables, which hide no type of the unit's and no function."""
-    scope = Namespace(RESERVED | OWN_WORDS | function_names() | of_unit(unit, names))
-    pointers = ["message" if number == 0 else scope.identifier(_unique(names, number)) for number in range(len(names))]
-    return [(pointer, scope.identifier(f"{pointer}\0used")) for pointer in pointers]
-
-
-def hidden_lanes(strides: Iterable[int]) -> list[Lane]:
-    """The lanes of a kernel that are not the holder's."""
-    return [Lane(f"scratch_{number}", f"scratch_{number}_used", stride, None) for number, stride in enumerate(strides)]
-
-
-def _unique(names: Sequence[str], number: int) -> str:
-    """The name of a lane; those that share one, as the rows of recursive structs may, are numbered."""
-    name = names[number] or "rows"
-    return name if names.count(names[number]) == 1 else f"{name}\0{number}"

@@ -5,21 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.base import Namespace
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.generate.c.accessors import words_of
 from rosetta_jit.generate.c.functions import print_kernel
 from rosetta_jit.generate.c.header import header
-from rosetta_jit.generate.c.lanes import Lane, Lanes, hidden_lanes, named_lanes
-from rosetta_jit.generate.c.rows import Structs, elements_of
+from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.source import source
-from rosetta_jit.generate.c.words import RESERVED
-from rosetta_jit.model.layout import UNKNOWN
+from rosetta_jit.generate.c.unit_lanes import hidden_lanes, own_lanes
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Mapping
 
     from rosetta_jit.generate.c.functions import Printed
     from rosetta_jit.generate.c.lanes import Dialect
@@ -28,19 +24,6 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Kernel
 
     Print = Callable[[Kernel, Lanes, Role], Printed]
-
-
-def _own_lanes(unit: Unit) -> tuple[Structs, list[Lane]]:
-    structs = Structs(unit.name, Namespace(RESERVED | words_of(unit) | {f"{unit.name}_source"}), {})
-    named = named_lanes([lane.name.replace(UNKNOWN, "unknown") for lane in unit.layout.lanes], unit.name)
-    elements = elements_of(unit.layout, structs, tuple(name for name, _ in named))
-    return structs, [Lane(*names, lane.stride, element) for names, lane, element in zip(named, unit.layout.lanes, elements, strict=True)]
-
-
-def named_parts(unit: Unit, reserved: frozenset[str]) -> Callable[[Sequence[int]], Lanes]:
-    """The lanes of a unit, for kernels with such strides, named otherwise than what is reserved."""
-    own = [replace(each, identifier=f"{each.identifier}_lane") if each.identifier in reserved else each for each in _own_lanes(unit)[1]]
-    return lambda strides: Lanes(unit.name, (*own, *hidden_lanes(strides[len(own) :])), len(own))
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +54,7 @@ def as_c(unit: Unit, print_function: Print) -> dict[str, str]:
 
 def parts_of(unit: Unit, print_function: Print, dialect: Dialect = "c") -> Parts:
     """The structs, the lanes and the printed kernels of a unit."""
-    structs, own = _own_lanes(unit)
+    structs, own = own_lanes(unit)
     lanes = Lanes(unit.name, tuple(own), len(own), dialect)
     printed: dict[Role, Printed] = {
         role: print_function(kernel, replace(lanes, all=(*own, *hidden_lanes(kernel.strides[len(own) :]))), role)

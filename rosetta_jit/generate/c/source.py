@@ -172,8 +172,8 @@ def _call(unit: Unit, role: Role, printed: Mapping[Role, Printed]) -> str:
 def run(attempt: Attempt, failure: str) -> str:
     """The call of a printed function."""
     names = {"failure": f"&{failure}", "given_object": "target"}
-    given = (names.get(each, each) for each in attempt.parameters)
-    return f"{attempt.name}({', '.join(given)})"
+    arguments = (names.get(each, each) for each in attempt.parameters)
+    return f"{attempt.name}({', '.join(arguments)})"
 
 
 def _table(role: Role, unit: Unit, lanes: Lanes, named: tuple[int, ...]) -> str:

@@ -14,12 +14,12 @@ from rosetta_jit.generate.c.expressions import expression, location, store, writ
 from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import C_TYPES
-from rosetta_jit.generate.origins import origin_of
+from rosetta_jit.generate.origins import described, origin_of
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.reached import leaves
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded
-from rosetta_jit.kernel.rewrite import ends, locals_in, with_blocks
-from rosetta_jit.kernel.shape import expressions_of, statements
+from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.terms import END, add, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -76,48 +76,6 @@ class Function:
         with self.writer.indented(f"{head} {{"):
             yield
         self.line("}")
-
-
-def read_names(block: ir.Block, results: Iterable[str] = ()) -> frozenset[str]:
-    """The locals whose values anything needs that a block does, or its ``results``: not those that only others need which nothing does."""
-    pending, values = list(results), dict[str, set[str]]()
-    for stmt, _ in statements(block):
-        exprs = (stmt.condition,) if isinstance(stmt, ir.While) else expressions_of(stmt)
-        found = {name for expr in exprs for name in locals_in(expr)}
-        if isinstance(stmt, ir.Let | ir.Var | ir.Assign):
-            values.setdefault(stmt.name, set()).update(found)
-        else:
-            pending += found
-    read = set[str]()
-    while pending:
-        name = pending.pop()
-        if name not in read:
-            read.add(name)
-            pending += values.get(name, ())
-    return frozenset(read)
-
-
-def leaves(block: ir.Block) -> bool:
-    """Whether a compiler sees that nothing goes on behind a block."""
-    match block[-1] if block else None:
-        case ir.Expect(ir.Const(_, False), _):
-            return True
-        case ir.If(_, then, otherwise):
-            return leaves(then) and leaves(otherwise)
-        case ir.Switch(_, cases, default):
-            return leaves(default) and all(leaves(inner) for _, inner in cases)
-        case _:
-            return ends(block)
-
-
-def reached(block: ir.Block) -> ir.Block:
-    """A block without the statements that are never reached: compilers look at them, too."""
-    found: list[ir.Stmt] = []
-    for stmt in block:
-        found.append(with_blocks(stmt, reached))
-        if leaves((stmt,)):
-            break
-    return tuple(found)
 
 
 def print_block(function: Function, block: ir.Block) -> None:
@@ -210,8 +168,8 @@ def _lacks(function: Function, at: ir.Expr, size: ir.Expr) -> str:
         case ir.Local(_, name), ir.Const(_, length) if name in function.within and length >= 0:
             return f"({expression(scope, END)} < {bare(expression(scope, add(at, size)))})"
         case _:
-            given = [bare(expression(scope, each)) for each in (at, size, END)]
-            return f"{scope.calls('lacks')}({', '.join(given)})"
+            arguments = [bare(expression(scope, each)) for each in (at, size, END)]
+            return f"{scope.calls('lacks')}({', '.join(arguments)})"
 
 
 def _fail_if(function: Function, condition: str, failure: ir.Failure) -> None:
@@ -233,13 +191,6 @@ def _failed(function: Function, site: str, at: str, indices: tuple[ir.Expr, ...]
     said = "" if about is None else f" {comment(described(about))}"
     name = "fail_here" if function.is_routine else "fail"
     function.line(f"return {function.scope.calls(name)}(failure, {site}, {bare(at)});{said}")
-
-
-def described(site: ir.Site) -> str:
-    """What a site says, for a comment."""
-    path = f" {site.path}" if site.path else ""
-    line = f" ({site.line})" if site.line else ""
-    return f"{site.kind}{path}: {site.detail}{line}"
 
 
 def _fill(scope: Scope, target: ir.Address, size: ir.Expr, byte: int) -> str:
@@ -358,13 +309,13 @@ def _call(function: Function, call: ir.Call) -> None:
     found = (f"&{scope.locals.identifier(result.name)}" for result in call.results)
     for each in routine.shared:
         scope.takes(each)
-    given = ", ".join((*routine.shared, *(bare(expression(scope, each)) for each in call.arguments), *found))
+    arguments = ", ".join((*routine.shared, *(bare(expression(scope, each)) for each in call.arguments), *found))
     if not routine.fails:
-        function.line(f"{routine.name}({given});")
+        function.line(f"{routine.name}({arguments});")
         return
     name = call.results[0].name if call.results else call.routine
     problem = scope.locals.identifier(f"{name} problem")
-    function.line(f"const int64_t {problem} = {routine.name}({given});")
+    function.line(f"const int64_t {problem} = {routine.name}({arguments});")
     with function.block(f"if ({problem} != 0)"):
         _failed(function, _site(problem, tuple(map(function.site, call.sites))), "failure->offset", call.indices, None)
 
@@ -382,6 +333,6 @@ def _host_call(function: Function, call: ir.HostCall) -> None:
     scope = function.scope
     result = scope.locals.identifier(call.result.name)
     function.line(f"{C_TYPES[call.result.type]} {result} = 0;")
-    given = ", ".join((*(bare(expression(scope, each)) for each in call.arguments), f"&{result}"))
-    with function.block(f"if (!{scope.lanes.prefix}_{call.function}({given}))"):
+    arguments = ", ".join((*(bare(expression(scope, each)) for each in call.arguments), f"&{result}"))
+    with function.block(f"if (!{scope.lanes.prefix}_{call.function}({arguments}))"):
         _fail(function, call.failure)

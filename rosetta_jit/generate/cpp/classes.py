@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import RESERVED, of_unit
+from rosetta_jit.generate.inner_types import reached_types
 from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.generate.unit import Unit
     from rosetta_jit.model.types import Type
 
@@ -32,42 +31,6 @@ def names_of(unit: Unit) -> dict[str, str]:
         whole = "_".join(parts[name])
         found[name] = scope.identifier(simple if simple not in scope.identifiers else whole)
     return found
-
-
-def reached_types(unit: Unit) -> dict[str, None]:
-    """The declared types that the message contains, each behind those that it contains itself."""
-    found: dict[str, None] = {}
-    pending: list[tuple[str, bool]] = [(unit.type, False)]
-    seen: set[str] = set()
-    while pending:
-        name, done = pending.pop()
-        if done:
-            found[name] = None
-            continue
-        if name in seen:
-            continue
-        seen.add(name)
-        pending.append((name, True))
-        declared = unit.schema.types[name]
-        inner = [each for field in declared.fields for each in _refs(field.type)] if isinstance(declared, Struct) else []
-        pending += [(each, False) for each in reversed(inner)]
-    return found
-
-
-def _refs(type_: Type) -> Iterator[str]:
-    match type_:
-        case Ref(name):
-            yield name
-        case Array(element) | Optional(element):
-            yield from _refs(element)
-        case Map(key, value):
-            yield from _refs(key)
-            yield from _refs(value)
-        case Union(_, cases) | Struct(_, cases):
-            for each in cases:
-                yield from _refs(each.type)
-        case _:
-            return
 
 
 def classes(unit: Unit) -> str:

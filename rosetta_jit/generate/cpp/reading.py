@@ -79,12 +79,12 @@ def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -
     lanes, copied = parts.lanes, _copied(parts, directs, walk)
     members = [(f"rosetta_jit::detail::lane<{lanes.type(lane)}> &", lanes.rows(lane)) for lane in copied]
     members += [("rosetta_jit::detail::scratch *", "scratch")] if parts.hidden else []
-    given = [f"{name}(memory.{name})" for _, name in members]
+    initial = [f"{name}(memory.{name})" for _, name in members]
     members += [("int64_t ", "most"), ("int64_t ", "now"), ("int64_t ", "number")]
-    given += ["most(rosetta_jit::detail::most_rows(std::size_t{1} << 39))", "now(owner.now)", "number(owner.number)"]
+    initial += ["most(rosetta_jit::detail::most_rows(std::size_t{1} << 39))", "now(owner.now)", "number(owner.number)"]
     if unit.state:
         members.append(("codec::state *", "state"))
-        given.append("state(&owner.kept)")
+        initial.append("state(&owner.kept)")
     views = {each.direct.lane: _view(walk, each) for each in viewed_in(unit, lanes, walk.manners)}
     shown = {lane: f"shown<{lanes.type(lane)}>" for lane in range(1, lanes.own) if lane not in copied} | views
     lines = [
@@ -93,7 +93,7 @@ def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -
         *(f"    {type_}{name};" for type_, name in members),
         *(f"    rosetta_jit::detail::{kind} {lanes.rows(lane)} = {{}};" for lane, kind in shown.items()),
         "",
-        f"    {unit.name}_source({unit.name}_holder &memory, codec &owner) : {', '.join(given)} {{ static_cast<void>(memory); }}",
+        f"    {unit.name}_source({unit.name}_holder &memory, codec &owner) : {', '.join(initial)} {{ static_cast<void>(memory); }}",
         "};",
         "",
     ]

@@ -108,10 +108,10 @@ def root_class(unit: Unit) -> str:
 
 
 def _function(unit: Unit, name: str, parameters: tuple[str, ...], result: str) -> str:
-    given = "".join(f"{C_TYPES[each]} number_{number}, " for number, each in enumerate(parameters, 1))
+    numbers = "".join(f"{C_TYPES[each]} number_{number}, " for number, each in enumerate(parameters, 1))
     return (
         "/* You write this function, which the mapping calls: false refuses the message. */\n"
-        f"bool {unit.name}_{name}({given}{C_TYPES[result]} *result);\n"
+        f"bool {unit.name}_{name}({numbers}{C_TYPES[result]} *result);\n"
     )
 
 
@@ -138,8 +138,8 @@ def _section(file: Path) -> tuple[str, str]:
     return "\n".join(includes), "\n".join(line for line in text.splitlines() if line not in includes).strip() + "\n"
 
 
-def _filled(file: str, **given: str) -> str:
-    return re.sub(r"\n{3,}", "\n\n", Template((FOLDER / file).read_text("utf-8")).substitute(given))
+def _filled(file: str, **values: str) -> str:
+    return re.sub(r"\n{3,}", "\n\n", Template((FOLDER / file).read_text("utf-8")).substitute(values))
 
 
 def source(unit: Unit, parts: Parts, manners: Manners) -> str:
@@ -273,9 +273,9 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
         assert isinstance(element, RowStruct)
         row = element.identifier
     if walk.direction == "decode":
-        given = f"const {unit.name}_holder &from, const unsigned char *bytes, const {row} &row, Target &target"
+        parameters = f"const {unit.name}_holder &from, const unsigned char *bytes, const {row} &row, Target &target"
         function = f"share_{wire_of(role)}" if wire_of(role) else f"fill{name}"
-        head = f"template <class Target>\nvoid {function}({given})"
+        head = f"template <class Target>\nvoid {function}({parameters})"
         target, unused = "target", ("from", "bytes", "row", "target")
     else:
         head = f"template <class Source>\nvoid collect{name}(const Source &source, {unit.name}_source &to, {row} &row)"

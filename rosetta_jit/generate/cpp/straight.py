@@ -1,4 +1,4 @@
-"""What encoders take from an object where it lies: texts and bytes, by their addresses, and the message's row, which is a local.
+"""What encoders read of an object in place: texts and bytes by their addresses, and the message's row, which is a local variable.
 
 A lane is *addressed* where its rows are the characters of strings anywhere in the object: the start of a span is an address then.
 """

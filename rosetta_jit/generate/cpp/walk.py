@@ -86,16 +86,16 @@ class Walk:
 
     # --- names and templates ---------------------------------------------------------------------------------------------------------
 
-    def text(self, kind: str, spot: Spot, **given: str) -> str:
+    def text(self, kind: str, spot: Spot, **more: str) -> str:
         """A section, filled in."""
         sections = self.manners.sections()
         section = sections.get(f"{kind} {self.direction}", sections.get(kind))
         if section is None:
             raise SchemaError((words.no_manner(self.manners.name, kind, spot.field or spot.at),))
-        return Template(section).substitute(at=spot.at, object=spot.owner, field=spot.field, **given)
+        return Template(section).substitute(at=spot.at, object=spot.owner, field=spot.field, **more)
 
-    def lines(self, kind: str, spot: Spot, **given: str) -> None:
-        for line in self.text(kind, spot, **given).splitlines():
+    def lines(self, kind: str, spot: Spot, **more: str) -> None:
+        for line in self.text(kind, spot, **more).splitlines():
             self.writer.line(line)
 
     def member_of(self, owner: str, name: str) -> Spot:
@@ -331,14 +331,14 @@ class Walk:
         assert isinstance(element, RowStruct)
         known, opened = members_of(element), False
         for number, (case, member, own) in enumerate(zip(union.cases, slot.members, known, strict=True), 1):
-            given = {"case": self.named(case.name), "number": str(number)}
-            there = f"{row}.which == {number}" if self.direction == "decode" else self.text("case is there", spot, **given)
+            more = {"case": self.named(case.name), "number": str(number)}
+            there = f"{row}.which == {number}" if self.direction == "decode" else self.text("case is there", spot, **more)
             with self.writer.indented(f"{'} else ' if opened else ''}if ({there}) {{"):
                 if self.direction == "decode":
-                    self.lines("case make", spot, **given)
+                    self.lines("case make", spot, **more)
                 else:
                     self.writer.line(f"{row}.which = {number};")
-                self.nested(case.type, member, own.type, f"{row}.{own.identifier}", self._case(spot, given))
+                self.nested(case.type, member, own.type, f"{row}.{own.identifier}", self._case(spot, more))
             opened = True
         if self.direction == "decode":
             with self.writer.indented("} else {" if opened else "{"):
@@ -346,10 +346,10 @@ class Walk:
         if opened or self.direction == "decode":
             self.writer.line("}")
 
-    def _case(self, spot: Spot, given: dict[str, str]) -> Spot:
+    def _case(self, spot: Spot, more: dict[str, str]) -> Spot:
         if f"case {self.direction}" in self.manners.sections():
-            return Spot(self.text("case", spot, **given))
-        return self.member_of(spot.owner, given["case"])
+            return Spot(self.text("case", spot, **more))
+        return self.member_of(spot.owner, more["case"])
 
     # --- what is direct --------------------------------------------------------------------------------------------------------------
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.generate.cpp.classes import reached_types
+from rosetta_jit.generate.inner_types import reached_types
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.texts import doc
 from rosetta_jit.generate.lisp.words import LISP_TYPES, Names, constants, hyphenated, runtime_names, symbols
@@ -47,9 +47,9 @@ class Classes:
         wanted = f"{wanted}-field" if wanted in constants() else wanted
         return self.names.symbol(f"{struct.name}\0{field}", f"{name}-{{}}", wanted=wanted)
 
-    def accessor(self, struct: Struct, field: str, at: str = "object") -> str:
+    def accessor(self, struct: Struct, field: str) -> str:
         """The place of a field of an object."""
-        return f"({self.types[struct.name]}-{self.slot(struct, field)} {at})"
+        return f"({self.types[struct.name]}-{self.slot(struct, field)} object)"
 
     def case(self, union: Union, name: str) -> str:
         """The keyword of a case."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.generate.c.language import named_parts
+from rosetta_jit.generate.c.unit_lanes import named_lanes
 from rosetta_jit.generate.lisp.classes import classes_of, definitions, function_symbols, wire_symbols
 from rosetta_jit.generate.lisp.functions import About, computes_with_floats, print_kernel
 from rosetta_jit.generate.lisp.lanes import lanes_of
@@ -69,7 +69,7 @@ class _Source:
         self.shares: dict[Role, str] = {}
         self.functions = function_symbols(self.classes, [each.name for each in unit.functions])
         longest = max(unit.kernels.values(), key=lambda each: len(each.strides))
-        c = named_parts(unit, frozenset())(longest.strides)
+        c = named_lanes(unit, frozenset())(longest.strides)
         self.lanes = lanes_of(c.all, c.own)
         self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.printed: dict[Role, Printed] = {role: self._kernel(role, kernel) for role, kernel in unit.kernels.items()}
@@ -155,26 +155,26 @@ class _Source:
     def _functions_of_the_header(self) -> Iterator[str]:
         """Those that a program calls."""
         sections = dict(part.split("\n", 1) for part in API.read_text("utf-8").split(";; == ")[1:])
-        told = asks_host(self.unit.kernels.values())
-        given = {
+        calls_host = asks_host(self.unit.kernels.values())
+        filling = {
             "type": self.classes.types[self.unit.type],
             "codec": "*codec*" if self.unit.state else "(make-codec)",
-            "tell": "(tell codec)" if told else "",
+            "tell": "(tell codec)" if calls_host else "",
             "measure": "(size-of-rows codec)" if self._needs_measures() else "",
             "empty": "".join(f"\n        {self.lanes.place_of_used(lane)} 0" for lane in range(1, self.lanes.own)),
         }
         apart = bool(self.wires) and "encode" in self.unit.kernels
-        given["apart"] = "(setf codec (writer codec))" if apart else ""
+        filling["apart"] = "(setf codec (writer codec))" if apart else ""
         for role, kernel in self.unit.kernels.items():
             if role == "size":
                 continue
             floats = computes_with_floats(kernel) or (role == "encode" and computes_with_floats(self.unit.kernels["size"]))
             around = {"begin": "with-floats" if floats else "progn", "attempts": str(self.printed[role].attempts)}
             section = sections["wire" if wire_of(role) else self.verbs[role]]
-            yield _tidy(Template(section).substitute(given, **around, **self._of_wire(role)))
+            yield _tidy(Template(section).substitute(filling, **around, **self._of_wire(role)))
         if self.wires:
             writer = "\n        (codec.writer codec) nil" if apart else ""
-            yield Template(sections["wires"]).substitute(emptied=(given["empty"] + writer).strip())
+            yield Template(sections["wires"]).substitute(emptied=(filling["empty"] + writer).strip())
         if apart:
             yield sections["writer"]
 

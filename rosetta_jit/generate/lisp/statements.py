@@ -6,12 +6,11 @@ from contextlib import contextmanager
 from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.generate.c.statements import described
 from rosetta_jit.generate.lisp.expressions import access, expression, got, location, state_word, zero
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.texts import literal
 from rosetta_jit.generate.lisp.words import LISP_TYPES, hyphenated
-from rosetta_jit.generate.origins import origin_of
+from rosetta_jit.generate.origins import described, origin_of
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import END, add, type_of
@@ -317,7 +316,7 @@ def _host_call(function: Function, call: ir.HostCall) -> None:
     scope, site = function.scope, function.site(call.failure.site)
     indices = "".join(f" {function.form(each)}" for each in call.failure.indices)
     refused = function.leave(f"(fail codec {site} {function.form(call.failure.at)}{indices})")
-    given = "".join(f" {function.form(each)}" for each in call.arguments)
+    arguments = "".join(f" {function.form(each)}" for each in call.arguments)
     name = function.functions.get(call.function, hyphenated(call.function))
-    found = f"(call-function ({name} {LISP_TYPES[call.result.type]}) {refused}{given})"
+    found = f"(call-function ({name} {LISP_TYPES[call.result.type]}) {refused}{arguments})"
     function.line(f"(setf {scope.locals.symbol(call.result.name)} {found})")

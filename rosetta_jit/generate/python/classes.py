@@ -8,7 +8,7 @@ import re
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.base import Namespace
-from rosetta_jit.generate.cpp.classes import reached_types
+from rosetta_jit.generate.inner_types import reached_types
 from rosetta_jit.generate.unit import wire_of
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
@@ -36,7 +36,7 @@ WORDS = frozenset(
         "copy",
         "np",
     )
-) | {f"told_{what}" for what in ("now", "number", "registers", "end", "copy", "into")}
+) | {f"call_{what}" for what in ("now", "number", "registers", "end", "copy", "into")}
 """What no class and no variable may be called: what functions are given, and what they need."""
 
 OWN = """dataclass field Struct Any Callable c_float decode encode size reset Refused MessageError DecodeError EncodeError npt"""

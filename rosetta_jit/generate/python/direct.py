@@ -78,7 +78,7 @@ class _Search:
 
     def _note(self, stmt: ir.Stmt) -> None:
         places = list(_places(stmt))
-        for lane in {each.lane for each in places} | _asked(stmt):
+        for lane in {each.lane for each in places} | _counted(stmt):
             self.mentions.setdefault(lane, []).append(stmt)
         for place in () if isinstance(stmt, ir.Fill) and stmt.target == ir.Place(0, index(0)) else places:
             self.fields.setdefault((place.lane, place.offset), []).append(stmt)
@@ -244,7 +244,7 @@ def _places(stmt: ir.Stmt) -> Iterator[ir.Place]:
                     pass
 
 
-def _asked(stmt: ir.Stmt) -> set[int]:
+def _counted(stmt: ir.Stmt) -> set[int]:
     """Lanes whose counts a statement changes or asks for."""
     found = {stmt.lane} if isinstance(stmt, ir.Reserve | ir.Advance) else set[int]()
     parts = (part for expr in expressions_of(stmt) for part in subexpressions(expr))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer
-from rosetta_jit.generate.c.statements import reached, read_names
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.functions import words_of
 from rosetta_jit.generate.python.object_rows import ObjectScope
@@ -13,6 +12,7 @@ from rosetta_jit.generate.python.parts import Parts
 from rosetta_jit.generate.python.positions import NotInParts, Sum, without_places, without_positions
 from rosetta_jit.generate.python.presence import without_lengths
 from rosetta_jit.generate.python.statements import Function, Objects
+from rosetta_jit.generate.reached import reached, read_names
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.kernel.ir import Expect
 from rosetta_jit.kernel.shape import statements
@@ -37,7 +37,7 @@ class InParts:
     routines: tuple[str, ...]
     lines: tuple[str, ...]
     loads: frozenset[str]
-    told: frozenset[str]
+    from_call: frozenset[str]
 
 
 def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str, ...]) -> InParts:
@@ -66,7 +66,7 @@ def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str,
         pending |= {each for each, function in written.items() if any(f"{function}(" in line for line in texts.get(name, ())[1:])} - called
     lines = [*(["        parts = []"] if parts.begun else []), *parts.function.writer.lines]
     routines = tuple("\n".join(texts[name]) for name in written if name in called and name in texts)
-    return InParts(routines, tuple(lines), frozenset(loads), frozenset(scope.told))
+    return InParts(routines, tuple(lines), frozenset(loads), frozenset(scope.from_call))
 
 
 def _scope(kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], loads: set[str]) -> ObjectScope:
@@ -88,10 +88,10 @@ def _routine(unit: Unit, kernel: Kernel, routine: Routine, scope: ObjectScope, w
         raise NotInParts
     first, *others = routine.parameters
     parts.positions.at = parts.positions.values[first.name] = Sum(0, frozenset({(first, 1)}))
-    given = ", ".join(scope.locals.identifier(each.name) for each in others)
+    parameters = ", ".join(scope.locals.identifier(each.name) for each in others)
     parts.block(parts.body)
     if parts.positions.sum(routine.results[0]) != parts.positions.at:
         raise NotInParts
     parts.end("")
     begun = ["    parts = []"] if parts.begun else []
-    return [f"def _encode_{routine.name}({given}):", *begun, *parts.function.writer.lines]
+    return [f"def _encode_{routine.name}({parameters}):", *begun, *parts.function.writer.lines]

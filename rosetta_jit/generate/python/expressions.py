@@ -52,7 +52,7 @@ class Scope:
 
     ``flat``: the fields of the message's row are locals, ``rows``, of which ``floats`` are floats. ``views`` are the lanes that it reaches,
     with the code of the view, empty for the bytes themselves; ``paths`` are the fields that lanes belong to; ``counted`` and ``rooms`` are
-    lanes, ``loads`` functions that it needs.
+    lanes, ``loads`` functions that it needs, ``from_call`` values that each call brings: its time and number, registers, object.
     """
 
     locals: Namespace
@@ -66,7 +66,7 @@ class Scope:
     floats: set[str] = field(default_factory=set[str])
     counted: set[int] = field(default_factory=set[int])
     rooms: set[int] = field(default_factory=set[int])
-    told: set[str] = field(default_factory=set[str])
+    from_call: set[str] = field(default_factory=set[str])
     direct: Direct = field(default_factory=Direct)
     numpy: bool = False
 
@@ -215,11 +215,11 @@ def _known(scope: Scope, expr: ir.Known) -> str:
         case ir.Capacity(lane):
             return scope.room(lane)
         case ir.HostValue(what):
-            scope.told.add(what)
-            return f"told_{what}"
+            scope.from_call.add(what)
+            return f"call_{what}"
         case ir.Register(number):
-            scope.told.add("registers")
-            return f"told_registers[{number}]"
+            scope.from_call.add("registers")
+            return f"call_registers[{number}]"
 
 
 def _is_text(scope: Scope, address: ir.Address, size: str) -> str:

@@ -6,7 +6,6 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer
-from rosetta_jit.generate.c.statements import reached, read_names
 from rosetta_jit.generate.cleared import settled
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import WORDS
@@ -14,6 +13,7 @@ from rosetta_jit.generate.python.direct import FEW, direct
 from rosetta_jit.generate.python.expressions import CODES, Scope, expression, flat_name, view_name
 from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.statements import Attempt, Function, print_block
+from rosetta_jit.generate.reached import reached, read_names
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import kind_of
 from rosetta_jit.kernel import ir
@@ -112,18 +112,18 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Att
     function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, ir.Reserve))
     blocks = (body, *(routine.body for routine in kernel.routines))
     exprs = (expr for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt))
-    asked = {part.lane for expr in exprs for part in subexpressions(expr) if isinstance(part, ir.Capacity)}
-    function.outside = {stmt.lane for stmt in body if isinstance(stmt, ir.Reserve)} - asked - {*kernel.kept}
+    measured = {part.lane for expr in exprs for part in subexpressions(expr) if isinstance(part, ir.Capacity)}
+    function.outside = {stmt.lane for stmt in body if isinstance(stmt, ir.Reserve)} - measured - {*kernel.kept}
     print_block(function, body)
     made = objects.inner(scope)
     name = f"_{role}_{number + 1}"
-    given = _given(function, own_only=kernel.direction != "decode", hidden=role == "encode")
+    parameters = _parameters(function, own_only=kernel.direction != "decode", hidden=role == "encode")
     _blank(writer)
-    writer.line(f"def {name}({', '.join(['data', 'end', 'most', *given])}):")
+    writer.line(f"def {name}({', '.join(['data', 'end', 'most', *parameters])}):")
     for line in (*_begin(function, role), *made):
         writer.line(f"    {line}" if line else "")
     writer.lines += [each for line in function.writer.lines for each in _completed(line, function)]
-    return Attempt(name, tuple(given))
+    return Attempt(name, tuple(parameters))
 
 
 def _completed(line: str, function: Function) -> list[str]:
@@ -142,12 +142,12 @@ def _completed(line: str, function: Function) -> list[str]:
     return [line]
 
 
-def _given(function: Function, *, own_only: bool, hidden: bool) -> list[str]:
+def _parameters(function: Function, *, own_only: bool, hidden: bool) -> list[str]:
     """What a function gets: for encoders what the object became, for routines all that their caller has."""
     scope, own = function.scope, function.scope.lanes.own
     if not own_only and not function.is_routine:
-        return sorted(f"told_{what}" for what in scope.told)
-    names = {*scope.rows, *(f"told_{what}" for what in scope.told)}
+        return sorted(f"call_{what}" for what in scope.from_call)
+    names = {*scope.rows, *(f"call_{what}" for what in scope.from_call)}
     names |= {view_name(scope.lanes, lane, code) for lane, code in scope.views if lane < own or function.is_routine}
     names |= {
         f"{scope.lanes.rows(lane)}_{what}"
@@ -208,8 +208,8 @@ def _routine(writer: Writer, role: Role, routine: ir.Routine, function: Function
     print_block(function, routine.body)
     results = [bare(expression(scope, each)) for each in routine.results]
     function.line(f"return {', '.join(results)}{',' if len(results) == 1 else ''}" if results else "return ()")
-    given, name = _given(function, own_only=True, hidden=False), f"_{role}_{routine.name}"
+    parameters, name = _parameters(function, own_only=True, hidden=False), f"_{role}_{routine.name}"
     _blank(writer)
-    writer.line(f"def {name}({', '.join(['data', 'end', 'sites', 'indices', *given, *own])}):")
+    writer.line(f"def {name}({', '.join(['data', 'end', 'sites', 'indices', *parameters, *own])}):")
     writer.lines += function.writer.lines
-    return Attempt(name, tuple(given))
+    return Attempt(name, tuple(parameters))

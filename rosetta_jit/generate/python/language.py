@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 from rosetta_jit.backends.base import Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.generate.c.language import named_parts
+from rosetta_jit.generate.c.unit_lanes import named_lanes
 from rosetta_jit.generate.python.classes import WORDS, classes, names_of
+from rosetta_jit.generate.python.collecting import Collect
 from rosetta_jit.generate.python.encoder import encoder_in_parts
 from rosetta_jit.generate.python.expressions import CODES, Scope, view_name
 from rosetta_jit.generate.python.functions import is_flat, print_kernel
-from rosetta_jit.generate.python.objects import Collect, Make, arrays_of
+from rosetta_jit.generate.python.making import Make, arrays_of
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.python.statements import Objects
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
@@ -53,7 +54,7 @@ class _Module:
 
     def __init__(self, unit: Unit) -> None:
         self.unit, self.names = unit, names_of(unit)
-        self.lanes = named_parts(unit, WORDS | frozenset(self.names.values()))
+        self.lanes = named_lanes(unit, WORDS | frozenset(self.names.values()))
         self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.loads, self.structs = set[str](), dict[str, str]()
         self.root, self.guesses = self.names[unit.type], False
@@ -170,23 +171,23 @@ class _Module:
         objects = Objects(lambda _, __: "filled()", inner=inner, numpy=self.unit.numpy, classes=frozenset(self.names.values()))
         origins, lanes = self.unit.origins.get(role, ()), self._lanes(kernel)
         text, attempts = print_kernel(kernel, lanes, role, self.loads, origins, objects, self.paths, flat=False)
-        told = Writer()
-        self._told(told, {each for attempt in attempts for each in attempt.needs}, "decode")
-        called = decoder(self.root, wire, attempts, told.lines, self.unit.arrivals[wire])
+        lines = Writer()
+        self._from_call(lines, {each for attempt in attempts for each in attempt.needs}, "decode")
+        called = decoder(self.root, wire, attempts, lines.lines, self.unit.arrivals[wire])
         return "\n\n".join([self._sites(role), f"\n{text.rstrip()}", f"\n{called}"])
 
     def _decode(self, attempts: tuple[Attempt, ...]) -> str:
         writer = Writer()
-        copies = any("told_copy" in attempt.needs for attempt in attempts)
-        given = ", *, copy: bool = True" if copies else ""
-        writer.line(f"def decode(data: bytes | bytearray | memoryview{given}) -> {self.root}:")
+        copies = any("call_copy" in attempt.needs for attempt in attempts)
+        option = ", *, copy: bool = True" if copies else ""
+        writer.line(f"def decode(data: bytes | bytearray | memoryview{option}) -> {self.root}:")
         writer.depth = 1
         said = "; without ``copy`` arrays are views of it, where they can be, which nothing writes to. Raises" if copies else "; raises"
         writer.line(f'"""Read a message{said} `DecodeError`."""')
         writer.line("data = bytes(data)")
         writer.line("end = len(data)")
         writer.line("most = 1048576 + 64 * end")
-        self._told(writer, {each for attempt in attempts for each in attempt.needs}, "decode")
+        self._from_call(writer, {each for attempt in attempts for each in attempt.needs}, "decode")
         for number, attempt in enumerate(attempts):
             writer.line("try:")
             writer.line(f"    return {attempt.name}({', '.join(['data', 'end', 'most', *attempt.needs])})")
@@ -199,15 +200,15 @@ class _Module:
         writer.line("raise _error(_BORROW_SITES, farthest, end)")
         return writer.text()
 
-    def _told(self, writer: Writer, needs: set[str], direction: Direction) -> None:
-        if "told_registers" in needs:
-            writer.line(f"told_registers = {REGISTERS[direction]}")
-        if "told_copy" in needs:
-            writer.line("told_copy = copy")
-        if "told_now" in needs:
-            writer.line("told_now = now()")
-        if "told_number" in needs:
-            writer.line("told_number = next(_numbers)")
+    def _from_call(self, writer: Writer, needs: set[str], direction: Direction) -> None:
+        if "call_registers" in needs:
+            writer.line(f"call_registers = {REGISTERS[direction]}")
+        if "call_copy" in needs:
+            writer.line("call_copy = copy")
+        if "call_now" in needs:
+            writer.line("call_now = now()")
+        if "call_number" in needs:
+            writer.line("call_number = next(_numbers)")
 
     # --- encoding --------------------------------------------------------------------------------------------------------------------
 
@@ -220,7 +221,7 @@ class _Module:
         writer.line('    """The message; raises `EncodeError`."""')
         writer.line("    try:")
         writer.depth = 2
-        self._told(writer, {f"told_{what}" for what in made.told}, "encode")
+        self._from_call(writer, {f"call_{what}" for what in made.from_call}, "encode")
         writer.lines += made.lines
         writer.depth = 1
         fails = any("raise _Failed(" in line for line in made.lines)
@@ -247,8 +248,8 @@ class _Module:
             def result(scope: Scope, position: str, role: str = role, lanes: Lanes = lanes) -> str:
                 if role == "encode":
                     return position
-                given = [f"{scope.view(lane, '')}, {scope.room(lane)}" for lane in range(lanes.own, len(lanes.all))]
-                return ", ".join([position, *given]) + ("," if not given else "")
+                rooms = [f"{scope.view(lane, '')}, {scope.room(lane)}" for lane in range(lanes.own, len(lanes.all))]
+                return ", ".join([position, *rooms]) + ("," if not rooms else "")
 
             text, (attempts[role], *_) = print_kernel(
                 kernel, lanes, role, self.loads, self.unit.origins.get(role, ()), Objects(result), self.paths, flat=flat
@@ -285,7 +286,7 @@ class _Module:
                     writer.line(f'{name}_{code} = memoryview({name}).cast("{code}")')
             if lane and f"{name}_used" in needs | {each.replace("_room", "_used") for each in needs}:
                 writer.line(f"{name}_used = {name}_room = len({name}){f' // {stride}' if stride > 1 else ''}")
-        self._told(writer, needs, "encode")
+        self._from_call(writer, needs, "encode")
         writer.lines = [line for line in writer.lines if line not in collect.replaced]
         self.loads |= collect.wholes
         measured = [f"{lanes.rows(lanes.own + number)}{end}" for number in range(hidden) for end in ("", "_room")]

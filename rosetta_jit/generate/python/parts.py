@@ -16,7 +16,7 @@ from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.joined_parts import Written
 from rosetta_jit.generate.python.packed import Part
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
-from rosetta_jit.generate.python.presence import bit_asked, case_asked, named_in_rounds, places_read
+from rosetta_jit.generate.python.presence import bit_tested, case_tested, named_in_rounds, places_read
 from rosetta_jit.generate.python.statements import fail, print_statement
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded
@@ -81,8 +81,8 @@ class Parts(Written):
             case ir.If():
                 self._if(stmt)
             case ir.Switch(value, cases, default):
-                asked = [(f"case {number}:", each, self._maybe(ir.Compare("eq", value, index(number)))) for number, each in cases]
-                self._branches(f"match {self.function.text(value)}:", asked, default)
+                tested = [(f"case {number}:", each, self._maybe(ir.Compare("eq", value, index(number)))) for number, each in cases]
+                self._branches(f"match {self.function.text(value)}:", tested, default)
             case ir.For():
                 self._for(stmt)
             case ir.While():
@@ -104,8 +104,8 @@ class Parts(Written):
 
     def _maybe(self, condition: ir.Expr) -> Maybe | None:
         """What an object has if a condition holds: a field that may be absent, or the case of a union."""
-        asked = bit_asked(condition, self.words) or case_asked(condition, self.words)
-        return None if asked is None else self.scope.maybe.get(asked)
+        tested = bit_tested(condition, self.words) or case_tested(condition, self.words)
+        return None if tested is None else self.scope.maybe.get(tested)
 
     def _let(self, stmt: ir.Let) -> None:
         if isinstance(stmt.value, ir.Get) and stmt.value.place.lane >= self.scope.lanes.own:
@@ -151,8 +151,8 @@ class Parts(Written):
             case (ir.Convert(_, ir.Local(_, name)),) if name in self.lengths:
                 self.begin(name, self.routines[call.routine])
             case arguments:
-                given = ", ".join(self._argument(each) for each in arguments)
-                self.pending.append(Part("", "", (f"{self.routines[call.routine]}({given})",)))
+                texts = ", ".join(self._argument(each) for each in arguments)
+                self.pending.append(Part("", "", (f"{self.routines[call.routine]}({texts})",)))
         behind = self.positions.new()
         self.positions.written(call.arguments[0], behind.plus(self.positions.at, -1))
         self.positions.values[call.results[0].name] = behind

@@ -1,4 +1,4 @@
-"""Where an encoder has got to in the message, as a sum that is told from another one by looking at it."""
+"""Positions of an encoder in its message, as sums in a normal form: two positions are the same if their sums are equal."""
 
 from __future__ import annotations
 

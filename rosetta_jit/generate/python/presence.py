@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 CHANGED = "the holder changed while it was written"
 
 
-def bit_asked(condition: Expr, words: Mapping[str, Place]) -> tuple[Place, int] | None:
+def bit_tested(condition: Expr, words: Mapping[str, Place]) -> tuple[Place, int] | None:
     """The presence word and the bit that a condition asks for; ``words`` are the fields that locals are."""
     match condition:
         case Compare("ne", Binary("and", word, Const(_, bit)), Const(_, 0)):
@@ -32,7 +32,7 @@ def bit_asked(condition: Expr, words: Mapping[str, Place]) -> tuple[Place, int] 
             return None
 
 
-def case_asked(condition: Expr, words: Mapping[str, Place]) -> tuple[Place, int] | None:
+def case_tested(condition: Expr, words: Mapping[str, Place]) -> tuple[Place, int] | None:
     """The discriminator and the number of the case that a condition asks for."""
     match condition:
         case Compare("eq", which, Const(_, number)):
@@ -54,8 +54,8 @@ def _place(value: Expr, words: Mapping[str, Place]) -> Place | None:
 
 def places_read(expr: Expr) -> Iterator[Place]:
     """The fields whose values an expression reads: not those of which it asks for one bit."""
-    if (asked := bit_asked(expr, {})) is not None and asked[1].bit_count() == 1:
-        yield from (place for part in subexpressions(asked[0].row) for place in _read(part))
+    if (tested := bit_tested(expr, {})) is not None and tested[1].bit_count() == 1:
+        yield from (place for part in subexpressions(tested[0].row) for place in _read(part))
         return
     for part in subexpressions(expr):
         yield from _read(part)

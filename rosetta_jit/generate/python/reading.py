@@ -38,8 +38,8 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
     part = f"data[{begin} : {begin} + {expression(scope, size)}]"
     if isinstance(slot, Number) and scope.numpy:
         count = Const("i64", int(size.value) // stride) if isinstance(size, Const) else _divided(size, stride)
-        scope.told.add("copy")
-        found = f"_array({scope.dtype(slot.scalar, order)}, data, {bare(expression(scope, count))}, {begin}, told_copy)"
+        scope.from_call.add("copy")
+        found = f"_array({scope.dtype(slot.scalar, order)}, data, {bare(expression(scope, count))}, {begin}, call_copy)"
         return f"{found} != 0" if slot.scalar == "bool" else found
     if isinstance(slot, Number):
         if stride == 1 and slot.scalar != "i8":

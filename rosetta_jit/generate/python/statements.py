@@ -140,11 +140,11 @@ def print_statement(function: Function, stmt: ir.Stmt) -> None:
         case ir.Return(position, ()):
             function.line(f"return {function.objects.result(function.scope, function.text(position))}")
         case ir.Return(position, registers):
-            function.scope.told.add("registers")
-            words = "".join(f"told_registers[{number}], " for number, _ in registers)
+            function.scope.from_call.add("registers")
+            words = "".join(f"call_registers[{number}], " for number, _ in registers)
             values = "".join(f"{function.text(value)}, " for _, value in registers)
-            function.line(f"{words}told_end = {values}{function.text(position)}")
-            function.line(f"return {function.objects.result(function.scope, 'told_end')}")
+            function.line(f"{words}call_end = {values}{function.text(position)}")
+            function.line(f"return {function.objects.result(function.scope, 'call_end')}")
         case ir.For() | ir.While() | ir.If() | ir.Switch():
             _nested(function, stmt)
         case ir.Call():
@@ -194,8 +194,8 @@ def fail(function: Function, failure: ir.Failure) -> None:
         *indices, first, count = indices
         detail = f", bytes({function.scope.view(site.detail_lane, '')}[{first} : {first} + {count}])"
     said = f"  # {ascii(f'{site.kind} {site.path}: {site.detail}')[1:-1]}"
-    given = f", ({', '.join(indices)}{',' if len(indices) == 1 else ''})" if indices or detail else ""
-    function.line(f"raise _Failed({failure.site}, {at}{given}{detail}){said}")
+    places = f", ({', '.join(indices)}{',' if len(indices) == 1 else ''})" if indices or detail else ""
+    function.line(f"raise _Failed({failure.site}, {at}{places}{detail}){said}")
 
 
 def _effect(function: Function, stmt: ir.Effect) -> None:
@@ -341,9 +341,9 @@ def _call(function: Function, call: ir.Call) -> None:
     results = [scope.locals.identifier(result.name) for result in call.results]
     sites = [f"sites[{each - 1}]" if function.is_routine else str(each) for each in call.sites]
     indices = "indices" if function.is_routine else _tuple([function.text(each) for each in call.indices])
-    given = ", ".join(["data", "end", _tuple(sites), indices, *routine.needs, *(function.text(each) for each in call.arguments)])
+    arguments = ", ".join(["data", "end", _tuple(sites), indices, *routine.needs, *(function.text(each) for each in call.arguments)])
     bound = f"{', '.join(results)}{',' if len(results) == 1 else ''} = " if results else ""
-    function.line(f"{bound}{routine.name}({given})")
+    function.line(f"{bound}{routine.name}({arguments})")
 
 
 def _pass_on(function: Function, routine: Attempt) -> None:
@@ -364,8 +364,8 @@ def _tuple(texts: list[str]) -> str:
 
 def _host_call(function: Function, call: ir.HostCall) -> None:
     result = function.scope.locals.identifier(call.result.name)
-    given = ", ".join(function.text(each) for each in call.arguments)
+    arguments = ", ".join(function.text(each) for each in call.arguments)
     with function.writer.indented("try:"):
-        function.line(f'{result} = functions["{call.function}"]({given})')
+        function.line(f'{result} = functions["{call.function}"]({arguments})')
     with function.writer.indented("except Refused:"):
         fail(function, call.failure)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.python.objects import Make
+    from rosetta_jit.generate.python.making import Make
     from rosetta_jit.generate.python.statements import Attempt
     from rosetta_jit.generate.shares import Ways
     from rosetta_jit.generate.unit import Role, Unit
@@ -44,16 +44,16 @@ def rows_at_first(unit: Unit, lanes: Lanes) -> str:
 
 def filling(make: Make, kernel: Kernel, ways: Ways) -> list[str]:
     """The function within a decoder that sets the share of its wire, and keeps the rows."""
-    make.scope.told.add("into")
+    make.scope.from_call.add("into")
     root, slot = make.unit.schema.types[make.unit.type], make.unit.layout.root
     assert isinstance(root, Struct)
     assert isinstance(slot, Row)
-    lines = [f"    {line}" for line in _set(make, root, slot, ways, "told_into")]
+    lines = [f"    {line}" for line in _set(make, root, slot, ways, "call_into")]
     for lane in changed_lanes(kernel):
         rows = make.scope.lanes.rows(lane)
         part = f"[: {make.scope.used(lane)} * {make.scope.lanes.stride(lane)}]"
         lines.append(f'    _rows["{rows}"] = {make.scope.view(lane, "")}{part}')
-    return ["def filled():", *lines, '    _rows["message"] = message', "    return told_into", ""]
+    return ["def filled():", *lines, '    _rows["message"] = message', "    return call_into", ""]
 
 
 def _set(make: Make, struct: Struct, slot: Row, ways: Ways, at: str) -> Iterator[str]:
@@ -78,13 +78,13 @@ def _set(make: Make, struct: Struct, slot: Row, ways: Ways, at: str) -> Iterator
         yield from (f"    {line}" for line in lines)
 
 
-def decoder(root: str, wire: str, attempts: tuple[Attempt, ...], told: list[str], arrivals: tuple[int, int]) -> str:
-    """The functions that a program calls; ``told`` are lines for what the mapping asks of its host."""
+def decoder(root: str, wire: str, attempts: tuple[Attempt, ...], from_call: list[str], arrivals: tuple[int, int]) -> str:
+    """The functions that a program calls; ``from_call`` are lines for what the mapping asks of its host."""
     writer, (every, last) = Writer(), arrivals
     writer.line(f"def decode_{wire}(data: bytes | bytearray | memoryview, into: {root}) -> {root}:")
     writer.depth = 1
     said = f"Read a message of `{wire}`, and set what its messages tell of an object; raises `DecodeError`, and changes nothing then."
-    for line in (f'"""{said}"""', "data = bytes(data)", "end = len(data)", "most = 1048576 + 64 * end", "told_into = into", *told):
+    for line in (f'"""{said}"""', "data = bytes(data)", "end = len(data)", "most = 1048576 + 64 * end", "call_into = into", *from_call):
         writer.line(line)
     for number, attempt in enumerate(attempts):
         with writer.indented("try:"):

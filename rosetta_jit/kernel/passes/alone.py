@@ -47,6 +47,6 @@ def _expression(expr: Expr) -> Expr:
 def as_proven(kernel: Kernel) -> Kernel:
     """What `verify` must prove of such a kernel: it is safe wherever the message begins at 0 and lane 0 has a row."""
     at_0 = Compare("eq", BEGIN, index(0))
-    given = Expect(Binary("and", at_0, Compare("gt", Capacity(0), index(0))), Failure(1, BEGIN))
+    assumed = Expect(Binary("and", at_0, Compare("gt", Capacity(0), index(0))), Failure(1, BEGIN))
     routines = tuple(replace(each, requires=(at_0, *each.requires)) for each in kernel.routines)
-    return replace(kernel, bodies=tuple((given, *body) for body in kernel.bodies), routines=routines)
+    return replace(kernel, bodies=tuple((assumed, *body) for body in kernel.bodies), routines=routines)

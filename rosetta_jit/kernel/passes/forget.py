@@ -1,4 +1,4 @@
-"""What a body leaves in hidden lanes and never looks at is not left there: of fields that no rule reads, the bytes stay in the message.
+"""Stores to hidden lanes that nothing reads go: the bytes of fields that no rule reads stay in the message.
 
 Hidden lanes hold what a message was staged in, and end with the message. Of one that a body neither writes nor asks anything about, it
 needs no rows either.

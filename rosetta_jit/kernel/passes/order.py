@@ -99,8 +99,8 @@ def _once(passes: tuple[Pass, ...]) -> tuple[Pass, ...]:
 
 def _is_same(kernel: Kernel, other: Kernel) -> bool:
     """Whether two kernels, one made from the other by passes, have the same statements."""
-    blocks, others = _blocks(kernel), _blocks(other)
-    return len(blocks) == len(others) and all(map(is_, blocks, others))
+    blocks, other_blocks = _blocks(kernel), _blocks(other)
+    return len(blocks) == len(other_blocks) and all(map(is_, blocks, other_blocks))
 
 
 def _blocks(kernel: Kernel) -> list[Block]:

@@ -1,4 +1,4 @@
-"""What is read of a message that is not changed is read where it is used, if that is one place: fewer values are kept meanwhile."""
+"""Loads from the message, which decoding does not change, move to the one statement that uses them: fewer values are live meanwhile."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rows that a loop sets one by one are emptied by it, one by one: while a row is near, and but for what is set anyway."""
+"""Initial values move into the loop that fills the rows: each round writes those of its own row, without the ones that it overwrites."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is left of a proven kernel when checks go that cannot fail: it does the same, so that it needs no proof of its own."""
+"""A proven kernel without the checks that cannot fail: it does the same, so it needs no proof of its own."""
 
 from __future__ import annotations
 
@@ -48,5 +48,5 @@ def _is_alike(stmt: ir.Stmt, proven: ir.Stmt, known: frozenset[int]) -> bool:
     inside, before = blocks_of(stmt), blocks_of(proven)
     if type(stmt) is not type(proven) or len(inside) != len(before):
         return False
-    given = iter(inside)
-    return with_blocks(proven, lambda _: next(given)) == stmt and all(map(partial(_is_less, known), inside, before))
+    inner = iter(inside)
+    return with_blocks(proven, lambda _: next(inner)) == stmt and all(map(partial(_is_less, known), inside, before))

@@ -284,8 +284,8 @@ def _cases(scope: Scope, stmt: ir.Switch) -> list[tuple[Formula, ir.Block]]:
     subject = linear(value)
     low, high = limits(type_)
     demand(all(low <= number <= high for number in numbers), f"a case that is no {type_}")
-    others = All(tuple(negated(equal(subject, Linear(number))) for number in sorted(numbers)))
-    return [*((equal(subject, Linear(number)), block) for number, block in stmt.cases), (others, stmt.default)]
+    no_case = All(tuple(negated(equal(subject, Linear(number))) for number in sorted(numbers)))
+    return [*((equal(subject, Linear(number)), block) for number, block in stmt.cases), (no_case, stmt.default)]
 
 
 def _for(walk: _Walk, loop: ir.For) -> None:

@@ -1,4 +1,4 @@
-"""Whether typed expressions are the same, or one is what a rule in loops says in some round."""
+"""Equality of typed expressions; and whether one equals, in some round, what a rule in loops sets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What rejections of a mapping for both directions ask of a field that no other rule knows, which packing then writes.
+"""Values that rejections demand: packing writes the one value that a `reject` lets through, where no other rule sets the field.
 
 `reject "why" when .id != 0x201` packs `.id = 0x201`, `… when len(.values) != 3` packs `len(.values) = 3`, and `… when .check != crc(.data,
 "CRC-16/X-25")` packs the checksum: what unpacking lets through has one value there.

@@ -1,4 +1,4 @@
-"""`ignore .a[].b`, which is a loop over the elements to unpack, and is `default .a[].b` to pack."""
+"""`ignore .a[].b` in both directions: a loop over the elements when unpacking, and `default .a[].b` when packing."""
 
 from __future__ import annotations
 

@@ -21,7 +21,8 @@ from rosetta_jit.language.check.rounding import rounded
 from rosetta_jit.language.check.state import idle, set_again
 from rosetta_jit.language.check.unequal_lengths import other_lengths
 from rosetta_jit.language.check.unreachable import unreachable
-from rosetta_jit.language.check.wires import message_of_wires, wrong_wires
+from rosetta_jit.language.check.wire_shares import wrong_wires
+from rosetta_jit.language.check.wires import message_of_wires
 from rosetta_jit.language.imports.declarations import Imports, merge, reached, read_imports
 from rosetta_jit.language.imports.mappings import read_others
 from rosetta_jit.language.imports.search import Reading

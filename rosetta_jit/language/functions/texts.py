@@ -19,6 +19,7 @@ from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.language.typed import Expr
     from rosetta_jit.model import expr as model
@@ -190,7 +191,7 @@ def _usable(function: str, value: Expr, scope: Scope) -> bool:
     return True
 
 
-def _pattern_problem(function: str, kind: str, value: Expr) -> words.Diagnostic | None:
+def _pattern_problem(function: str, kind: str, value: Expr) -> Diagnostic | None:
     quoted = _quoted(value)
     if isinstance(value, Given) and isinstance(value.type, String):
         return None  # a parameter, whose text is looked at when it is given

@@ -72,12 +72,12 @@ def type_host_call(expr: model.Call, signature: Signature, scope: Scope, type_ex
         scope.problems.append(words.arguments(expr.span, signature.name, len(signature.parameters), len(expr.arguments), signature.span))
         return None
     typed = [type_expr(argument, scope) for argument in expr.arguments]
-    given = [
+    arguments = [
         None if argument is None else _argument(argument, wanted, signature, scope)
         for argument, wanted in zip(typed, signature.parameters, strict=True)
     ]
-    known = [argument for argument in given if argument is not None]
-    return HostCall(signature.name, tuple(known), signature.result, expr.span) if len(known) == len(given) else None
+    known = [argument for argument in arguments if argument is not None]
+    return HostCall(signature.name, tuple(known), signature.result, expr.span) if len(known) == len(arguments) else None
 
 
 def _argument(argument: Expr, wanted: Type, signature: Signature, scope: Scope) -> Expr | None:

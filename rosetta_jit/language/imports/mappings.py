@@ -61,8 +61,8 @@ def _read(source: Source, problems: list[Diagnostic], parameters: Mapping[str, o
     try:
         mapping = parse(source)
         declared = {each.name for each in mapping.parameters}
-        given = None if parameters is None else {name: value for name, value in parameters.items() if name in declared}
-        return bind(mapping, given, problems)
+        arguments = None if parameters is None else {name: value for name, value in parameters.items() if name in declared}
+        return bind(mapping, arguments, problems)
     except ReportError as error:
         problems.extend(error.diagnostics)
         return None

@@ -1,4 +1,4 @@
-"""There and back: what is left of a value when all that was done to it is undone, as far as that can be shown.
+"""The law of a chain of steps: what comes back of a value when each step is undone in turn, as far as that can be shown.
 
 An expression of one field is a chain of steps from it. Steps that are affine (`+ - * /` by constants, `radians`, conversions) are followed
 as a slope and an offset, with the rounding of each; bijections of another kind (`^`, `not`, tables) must be met by their own inverses.

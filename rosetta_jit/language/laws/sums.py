@@ -1,4 +1,4 @@
-"""Fields that come back out of sums of several, as those do that relations of their sums are solved for: exactly, but for rounding.
+"""Laws of fields that relations know only as sums of several: solved for each field, the sums give it back exactly but for rounding.
 
 How far off they are depends on the other fields of the sums: a large one beside a small one leaves little of that.
 """

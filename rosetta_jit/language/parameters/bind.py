@@ -18,7 +18,7 @@ from rosetta_jit.language.parameters.several_places import one_by_one, spread
 from rosetta_jit.language.parameters.values import SCALARS, accepted, written
 from rosetta_jit.model.expr import Call, Choice, Given, Item, List, Literal, Name
 from rosetta_jit.model.mapping import For, Several, When
-from rosetta_jit.model.types import Array, Int
+from rosetta_jit.model.types import Int
 from rosetta_jit.model.walk import parts, rebuilt, with_expressions
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -31,12 +31,12 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 
-def bind(mapping: Mapping, given: Dictionary[str, object] | None, problems: list[Diagnostic]) -> Mapping:
-    """The mapping with the values of its parameters; None where it is checked before they are given.
+def bind(mapping: Mapping, arguments: Dictionary[str, object] | None, problems: list[Diagnostic]) -> Mapping:
+    """The mapping with the values of its parameters; None where it is checked before there are any.
 
     Lists that are assigned are assigned item by item, whether they are parameters or stand in the text.
     """
-    binder = _Binder(_values(mapping, given, problems), problems)
+    binder = _Binder(_values(mapping, arguments, problems), problems)
     blocks = [None if block is None else binder.rules(block, ()) for block in (mapping.rules, mapping.unpack_rules, mapping.pack_rules)]
     state = tuple(replace(each, initial=folded(binder.expr(each.initial))) for each in mapping.state)
     unused = [parameter for parameter in mapping.parameters if parameter.name not in binder.used and parameter.type in SCALARS]
@@ -44,17 +44,17 @@ def bind(mapping: Mapping, given: Dictionary[str, object] | None, problems: list
     return replace(mapping, rules=blocks[0], unpack_rules=blocks[1], pack_rules=blocks[2], state=state)
 
 
-def handed_on(mapping: Mapping, given: Dictionary[str, object] | None) -> Dictionary[str, object] | None:
-    """The values of a mapping's parameters that the mappings it uses have too: those given, and its defaults for the rest."""
-    if given is None:
+def handed_on(mapping: Mapping, arguments: Dictionary[str, object] | None) -> Dictionary[str, object] | None:
+    """The values of a mapping's parameters that the mappings it uses have too: the ``arguments``, and its defaults for the rest."""
+    if arguments is None:
         return None
     defaults = {each.name: written(folded(each.default)) for each in mapping.parameters if each.default is not None}
-    return {**defaults, **given}
+    return {**defaults, **arguments}
 
 
-def _values(mapping: Mapping, given: Dictionary[str, object] | None, problems: list[Diagnostic]) -> dict[str, Expr]:
+def _values(mapping: Mapping, arguments: Dictionary[str, object] | None, problems: list[Diagnostic]) -> dict[str, Expr]:
     declared = {parameter.name: parameter for parameter in mapping.parameters}
-    problems.extend(words.unknown(mapping.holder_span, name, declared) for name in (given or {}) if name not in declared)
+    problems.extend(words.unknown(mapping.holder_span, name, declared) for name in (arguments or {}) if name not in declared)
     values: dict[str, Expr] = {}
     for parameter in mapping.parameters:
         if parameter.name in values:
@@ -62,21 +62,21 @@ def _values(mapping: Mapping, given: Dictionary[str, object] | None, problems: l
         elif parameter.type not in SCALARS:
             problems.append(words.unknown_type(parameter.span, parameter.name, parameter.type, SCALARS))
         else:
-            values[parameter.name] = _value(parameter, given, problems)
+            values[parameter.name] = _value(parameter, arguments, problems)
     return values
 
 
-def _value(parameter: Parameter, given: Dictionary[str, object] | None, problems: list[Diagnostic]) -> Expr:
+def _value(parameter: Parameter, arguments: Dictionary[str, object] | None, problems: list[Diagnostic]) -> Expr:
     """The value of a parameter, or what stands for it where it has none."""
     type_ = SCALARS[parameter.type]
-    unknown = Given(parameter.name, (), Array(type_) if parameter.is_list else type_, parameter.span)
+    unknown = Given(parameter.name, (), type_, parameter.span, is_list=parameter.is_list)
     default = None if parameter.default is None else folded(parameter.default)
-    if given is not None and parameter.name in given:
-        value, span = given[parameter.name], parameter.span
+    if arguments is not None and parameter.name in arguments:
+        value, span = arguments[parameter.name], parameter.span
     elif default is not None:
         value, span = written(default), parameter.default.span if parameter.default else None
     else:
-        if given is not None:
+        if arguments is not None:
             problems.append(words.missing(parameter.span, parameter.name))
         return unknown
     found = accepted(value, parameter)
@@ -127,7 +127,7 @@ class _Binder:
                 return _placed(self.values[name], expr.span)
             case Call("len", (List(items),)):
                 return Literal(len(items), bound.span)
-            case Call("len", (Given(name, (), Array()),)):
+            case Call("len", (Given(name, is_list=True),)):
                 return Given(f"len({name})", (), Int(64), bound.span)
             case Item(items, index):
                 return self.item(items, index, bound)
@@ -145,7 +145,7 @@ class _Binder:
                 return values[number]
             case List(values), Literal(int(number)):
                 self.problems.append(words.no_such_item(index.span, number, len(values)))
-            case Given(name, (), Array(element)), _:
+            case Given(name, _, element, is_list=True), _:
                 return Given(name, (index,), element, item.span)
             case List(values), _:
                 return self.chosen(item, len(values))

@@ -19,7 +19,7 @@ from rosetta_jit.language.groups import component, group_functions, group_of
 from rosetta_jit.language.limits import MAX_SINGLE
 from rosetta_jit.model.expr import Binary, Call, Given, Index, Item, Len, List, Literal, Name, Path
 from rosetta_jit.model.mapping import Assign, Default, For, Reject, Relation, SetLength, When
-from rosetta_jit.model.types import Array, Int
+from rosetta_jit.model.types import Int
 from rosetta_jit.model.walk import parts, rebuilt
 
 if TYPE_CHECKING:
@@ -74,9 +74,9 @@ def _other_parts(split: Call, count: int) -> Rule:
 def spread(rule: Rule, variables: tuple[str, ...]) -> tuple[Rule, ...]:
     """The rules that a rule with a list stands for; ``variables`` are those of the loops around it."""
     match rule:
-        case Assign(place=Path() as place, value=(List() | Given(type=Array())) as value):
+        case Assign(place=Path() as place, value=(List() | Given(is_list=True)) as value):
             return _spread(rule, place, value, variables)
-        case Relation(place=Path() as place, value=(List() | Given(type=Array())) as value):
+        case Relation(place=Path() as place, value=(List() | Given(is_list=True)) as value):
             return _spread(rule, place, value, variables)
         case _:
             return (rule,)
@@ -99,8 +99,7 @@ def _loop(rule: Assignment | Relation, place: Path, value: List | Given, count: 
     variable = next(name for name in ("item", *(f"item_{number}" for number in range(2, 100))) if name not in variables)
     index = Name(variable, value.span)
     if isinstance(value, Given):
-        element = value.type.element if isinstance(value.type, Array) else value.type
-        item: Expr = Given(value.name, (index,), element, value.span)
+        item: Expr = Given(value.name, (index,), value.type, value.span)
     else:
         item = Item(value, index, value.span)
     body = _item(rule, place, index, item, (*variables, variable))

@@ -16,10 +16,11 @@ if TYPE_CHECKING:
 
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Parameter
+    from rosetta_jit.model.scalars import Scalar
     from rosetta_jit.model.types import Type
 
 
-SCALARS: Mapping[str, Type] = {
+SCALARS: Mapping[str, Scalar] = {
     "bool": Bool(),
     "int8": Int(8),
     "int16": Int(16),

@@ -1,4 +1,4 @@
-"""``default .place``: the values that the schema gives what nothing was said of, as rules.
+"""``default .place`` as rules: each field without a rule of its own is set to the value that the schema gives it.
 
 What the schema requires is there (proto2): with its default, else 0 or empty.
 """

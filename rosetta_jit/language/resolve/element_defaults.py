@@ -57,7 +57,7 @@ def is_of_elements(rule: model.Rule) -> bool:
 
 
 def named_elements(
-    rules: Sequence[model.Rule], others: tuple[Rule, ...], broken: list[Names], scope: Scope
+    rules: Sequence[model.Rule], explicit: tuple[Rule, ...], broken: list[Names], scope: Scope
 ) -> list[tuple[Elements, Span | None]]:
     """The elements of which such ``rules`` say that a field has its default; other rules must say how many there are."""
     found: list[tuple[Elements, Span | None]] = []
@@ -73,7 +73,7 @@ def named_elements(
         if any(names[: len(each)] == each for each in broken):
             continue
         elements = elements_of(names, scope.messages[scope.target])
-        if elements is not None and elements.array in lengths_in(others):
+        if elements is not None and elements.array in lengths_in(explicit):
             found.append((elements, rule.span))
         else:
             scope.problems.append(words.no_elements(rule.span, show_expr(rule.place)))

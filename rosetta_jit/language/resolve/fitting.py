@@ -1,4 +1,4 @@
-"""Values as the type of the place that a rule sets: what fits without a word, and what is reported."""
+"""Values in the type of the place that a rule sets: converted implicitly where nothing can be lost, else reported."""
 
 from __future__ import annotations
 

@@ -39,13 +39,13 @@ if TYPE_CHECKING:
 def type_component(item: model.Item, scope: Scope, type_expr: TypeExpr, type_index: TypeIndex) -> Expr | None:
     """One number of a group, by its position."""
     assert isinstance(item.index, model.Literal)
-    given = group_of(item.items)
-    assert given is not None
-    number = [each.names[0] for each in given.components].index(str(item.index.value))
+    of_items = group_of(item.items)
+    assert of_items is not None
+    number = [each.names[0] for each in of_items.components].index(str(item.index.value))
     if function_of(item.items) is not None:
         typed = type_group(item.items, scope, type_expr, type_index)
         return None if typed is None else typed[number]
-    found = components_of(item.items, given, scope, type_index)
+    found = components_of(item.items, of_items, scope, type_index)
     return None if found is None else type_expr(found[number], scope)
 
 
@@ -83,11 +83,11 @@ def _called(call: model.Call, function: GroupFunction, scope: Scope, type_expr: 
 
 def _argument(value: model.Expr, group: Group, scope: Scope, type_expr: TypeExpr, type_index: TypeIndex) -> list[Expr] | None:
     """The numbers of an argument, each in the unit that the function takes."""
-    given = group_of(value)
-    if given is not None and given != group:
-        scope.problems.append(words.other_group(value.span, given.name, group.name))
+    own = group_of(value)
+    if own is not None and own != group:
+        scope.problems.append(words.other_group(value.span, own.name, group.name))
         return None
-    if given is not None and function_of(value) is not None:
+    if own is not None and function_of(value) is not None:
         return type_group(value, scope, type_expr, type_index)
     found = components_of(value, group, scope, type_index)
     typed = [_typed(each, member, scope, type_expr) for each, member in zip(found or (), group.components, strict=False)]
@@ -128,7 +128,7 @@ def components_of(value: model.Expr, group: Group, scope: Scope, type_index: Typ
             return [component(value, number) for number in range(len(group.components))]
         case model.List(items):
             return _of_count([*items], len(items), group, value.span, scope)
-        case model.Given(name, (), Array(element)):
+        case model.Given(name, _, element, is_list=True):
             count = len(group.components)
             return [model.Given(name, (model.Literal(number, value.span),), element, value.span) for number in range(count)]
         case model.Path():

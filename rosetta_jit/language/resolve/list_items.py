@@ -13,7 +13,7 @@ from rosetta_jit.language.functions.texts import is_textual
 from rosetta_jit.language.limits import MAX_ITEMS
 from rosetta_jit.language.typed import BOOL, Access, Const, Given, IsText, Listed, Unary
 from rosetta_jit.model import expr as model
-from rosetta_jit.model.types import Bytes, String
+from rosetta_jit.model.types import Array, Bytes, String
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -66,7 +66,8 @@ def _given(expr: model.Given, scope: Scope, type_expr: TypeExpr) -> Expr | None:
     """What stands for a parameter."""
     arguments = [type_expr(argument, scope) for argument in expr.arguments]
     indices = [index for argument in arguments if argument is not None and (index := as_int64(argument)) is not None]
-    return Given(expr.name, tuple(indices), expr.type, expr.span) if len(indices) == len(arguments) else None
+    type_ = Array(expr.type) if expr.is_list else expr.type
+    return Given(expr.name, tuple(indices), type_, expr.span) if len(indices) == len(arguments) else None
 
 
 def compared_text(left: Expr, right: Expr, expr: model.Binary) -> Expr | None:

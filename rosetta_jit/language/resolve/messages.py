@@ -41,13 +41,13 @@ def checked_message(schema: Schema, name: str, span: Span | None, problems: list
     return None
 
 
-def scope_between(messages: dict[Side, Message], mapping: Mapping, others: UsableMappings, problems: list[Diagnostic]) -> Scope:
+def scope_between(messages: dict[Side, Message], mapping: Mapping, usable: UsableMappings, problems: list[Diagnostic]) -> Scope:
     """What the rules of a mapping that unpack can name."""
     holder, wire = (messages[side].schema for side in ("holder", "wire"))
     constants = constants_of(*((holder,) if holder is wire else (holder, wire)))
-    functions = signatures((mapping, *others.mappings()), problems)
+    functions = signatures((mapping, *usable.mappings()), problems)
     enums, rounds = enums_of(holder, wire), mapping.rounds
-    return Scope(messages, enums, constants, "holder", (), problems, set(), functions, others, rounds=rounds, is_old=mapping.is_old)
+    return Scope(messages, enums, constants, "holder", (), problems, set(), functions, usable, rounds=rounds, is_old=mapping.is_old)
 
 
 def _type_named(schema: Schema, name: str) -> Type | None:

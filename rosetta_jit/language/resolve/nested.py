@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 def nest(rule: model.Assignment, scope: Scope, rules_of: RulesOf) -> tuple[typed.Rule, ...] | None:
     """The rules that an assignment of messages stands for; None if it is none that a mapping makes."""
     via = rule.by if isinstance(rule.by, Via) else None
-    if via is None and not scope.others.by_type():
+    if via is None and not scope.usable.by_type():
         return None
     if not isinstance(rule.value, Path):
         if via is not None:
@@ -53,9 +53,9 @@ def nest(rule: model.Assignment, scope: Scope, rules_of: RulesOf) -> tuple[typed
     found = _imported(target, source, scope) if via is None else _named(via, target, source, scope)
     if found is None:
         return None if via is None else _left_out(place, origin, rule.span)
-    others = scope.others
-    others.uses.append(Use(*found, place, origin, rule.span))
-    return _used(others.uses[-1], None if via is None else via.depth, scope, rules_of)
+    usable = scope.usable
+    usable.uses.append(Use(*found, place, origin, rule.span))
+    return _used(usable.uses[-1], None if via is None else via.depth, scope, rules_of)
 
 
 def _ends(rule: model.Assignment, value: Path, scope: Scope) -> tuple[typed.Place, typed.Place] | None:
@@ -77,7 +77,7 @@ def _value_type(type_: Type, place: typed.Place, scope: Scope) -> Type:
 
 def _imported(target: Struct, source: Struct, scope: Scope) -> tuple[model.Mapping, Side] | None:
     """The mapping that is imported for two types, and which of its sides is the target."""
-    for each in scope.others.by_type():
+    for each in scope.usable.by_type():
         side = _side(each, target, source)
         if side is not None:
             return each, side
@@ -86,7 +86,7 @@ def _imported(target: Struct, source: Struct, scope: Scope) -> tuple[model.Mappi
 
 def _named(via: Via, target: Struct, source: Struct, scope: Scope) -> tuple[model.Mapping, Side] | None:
     """The mapping of a `via`, and which of its sides is the target."""
-    other = scope.others.named(via)
+    other = scope.usable.named(via)
     if other is None:
         return None
     side = _side(other, target, source)
@@ -112,20 +112,20 @@ def _left_out(place: typed.Place, origin: typed.Place, span: Span | None) -> tup
 
 def _used(use: Use, most: int | None, scope: Scope, rules_of: RulesOf) -> tuple[typed.Rule, ...]:
     """The rules of a mapping where it is used; ``most`` is how often it may be within itself, where that is said."""
-    name, span, others = use.mapping.source.name, use.span, scope.others
-    depth = others.using.count(name)
+    name, span, usable = use.mapping.source.name, use.span, scope.usable
+    depth = usable.using.count(name)
     if depth and (most is None or most > MAX_VIA_DEPTH):
         scope.problems.append(words.no_depth(span, name, MAX_VIA_DEPTH))
-    elif len(others.uses) > MAX_USES:
+    elif len(usable.uses) > MAX_USES:
         scope.problems.append(words.many_uses(span, MAX_USES))
         raise EnoughError
-    elif others.copied() > MAX_COPIED:
+    elif usable.copied() > MAX_COPIED:
         scope.problems.append(words.many_copies(span, MAX_COPIED))
         raise EnoughError
     elif most is not None and depth > most:
         return _too_deep(most, use.place, use.origin, span)
     else:
-        inner = replace(scope, others=replace(others, using=(*others.using, name)), suffix=f"~{len(others.uses)}")
+        inner = replace(scope, usable=replace(usable, using=(*usable.using, name)), suffix=f"~{len(usable.uses)}")
         return _at(use, inner, rules_of)
     return _left_out(use.place, use.origin, span)
 

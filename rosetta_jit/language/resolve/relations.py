@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 FIRST = Literal(0)
 
 
-def derived(mapping: Mapping, schema: Schema, others: UsableMappings, problems: list[Diagnostic]) -> Mapping:
+def derived(mapping: Mapping, schema: Schema, usable: UsableMappings, problems: list[Diagnostic]) -> Mapping:
     """The mapping with all rules of each direction in the block of that direction.
 
     Expressions whose names are wrong have no type; that is reported when the rules are typed.
@@ -41,7 +41,7 @@ def derived(mapping: Mapping, schema: Schema, others: UsableMappings, problems: 
 
     @cache
     def scope() -> Scope | None:
-        return _scope(mapping, schema, others)
+        return _scope(mapping, schema, usable)
 
     def typed(expr: Expr) -> Typed | None:
         known = scope()
@@ -73,12 +73,12 @@ def _arrivals(mapping: Mapping) -> Iterator[Call]:
                         pass
 
 
-def _scope(mapping: Mapping, schema: Schema, others: UsableMappings) -> Scope | None:
+def _scope(mapping: Mapping, schema: Schema, usable: UsableMappings) -> Scope | None:
     """What rules that unpack can name, in all loops; None where a side has no message."""
     holder, wire = (message_named(schema, name) for name in (mapping.holder_type, mapping.wire_type))
     if holder is None or wire is None:
         return None
-    found = scope_between({"holder": holder, "wire": wire}, mapping, others, [])
+    found = scope_between({"holder": holder, "wire": wire}, mapping, usable, [])
     return replace(found, locals=tuple(rule.variable for rule in every_rule(mapping.rules or ()) if isinstance(rule, For)))
 
 

@@ -78,11 +78,11 @@ class Resolved:
 
 
 def resolve(
-    mapping: model.Mapping, holder: Schema, wire: Schema, others: UsableMappings, state: Mapping[Side, Mapping[str, typed.StateVariable]]
+    mapping: model.Mapping, holder: Schema, wire: Schema, usable: UsableMappings, state: Mapping[Side, Mapping[str, typed.StateVariable]]
 ) -> Resolved | tuple[Diagnostic, ...]:
     """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message.
 
-    ``others`` are the mappings that its rules may use; ``state`` has its state variables, for the rules that fill each side.
+    ``usable`` are the mappings that its rules may use; ``state`` has its state variables, for the rules that fill each side.
     """
     problems: list[Diagnostic] = []
     holder_type = checked_message(holder, mapping.holder_type, mapping.holder_span, problems)
@@ -92,7 +92,7 @@ def resolve(
     wire_type = checked_message(wire, mapping.wire_type, mapping.wire_span, problems)
     if holder_type is None or wire_type is None:
         return tuple(problems)
-    scope = scope_between({"holder": holder_type, "wire": wire_type}, mapping, others, problems)
+    scope = scope_between({"holder": holder_type, "wire": wire_type}, mapping, usable, problems)
     try:
         unpack = _block(mapping.unpack_rules, replace(scope, state=state["holder"]))
         pack = _block(mapping.pack_rules, replace(scope, target="wire", state=state["wire"]))
@@ -121,14 +121,14 @@ class _Block:
             found = self.rest(rest, found, scope)
         return found
 
-    def rest(self, rule: model.Rest, others: tuple[typed.Rule, ...], scope: Scope) -> tuple[typed.Rule, ...]:
+    def rest(self, rule: model.Rest, explicit: tuple[typed.Rule, ...], scope: Scope) -> tuple[typed.Rule, ...]:
         """The rules, and what the fields that none of them reads, or sets, are said to be."""
         if rule.word == "ignore":
-            return (*others, *ignored(rule, others, scope))
-        others = elements_filled(others, scope)
-        fields, elements = defaulted(rule, others, self.broken, scope)
+            return (*explicit, *ignored(rule, explicit, scope))
+        explicit = elements_filled(explicit, scope)
+        fields, elements = defaulted(rule, explicit, self.broken, scope)
         made = [made for each in fields for made in self.made(each, scope) if made is not None]
-        return (*with_defaults(others, elements, scope), *made)
+        return (*with_defaults(explicit, elements, scope), *made)
 
     def rules(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[typed.Rule, ...]:
         for rule, behind in pairwise(rules):
@@ -140,12 +140,12 @@ class _Block:
         scope.problems.extend(about_rest.repeated_same_names(rule.span) for rule in same[1:])
         return lengths_first(found if not same else (*found, *self.same_names(same[0], found, scope)))
 
-    def same_names(self, rule: model.SameNames, others: tuple[typed.Rule, ...], scope: Scope) -> list[typed.Rule]:
+    def same_names(self, rule: model.SameNames, explicit: tuple[typed.Rule, ...], scope: Scope) -> list[typed.Rule]:
         """Rules for the fields of the message that no other rule sets, and that the other side has too."""
         origin, aim = (scope.messages[side].root for side in (scope.origin, scope.target))
         names = {field.name for field in origin.fields}
         excepted = [resolve_path(path, scope, type_index) for path in rule.but]
-        set_already = [field_names(place) for place in (*places_in(others), *excepted) if not isinstance(place, Broken)]
+        set_already = [field_names(place) for place in (*places_in(explicit), *excepted) if not isinstance(place, Broken)]
         around = len(field_names(scope.base(scope.target)))
         taken = {fields[around] for fields in (*set_already, *self.broken) if len(fields) > around}
         taken |= {step.name for each in rule.renames for step in each.place.steps[:1] if isinstance(step, expr.Member)}

@@ -37,11 +37,11 @@ def wrong_factors(rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
 def _of_assignment(place: Place, value: Expr) -> Iterator[Diagnostic]:
     origin, factor = _product(value)
     source = unit_at(origin) if origin is not None else None
-    if not isinstance(source, str) or _near(factor, 1.0):
+    if not isinstance(source, str) or _is_one(factor):
         return
     target = unit_at(place) or ANGLES.get(source)
     right = conversion(source, target) if isinstance(target, str) else None
-    if isinstance(right, tuple) and right[1] == 0 and right[0] > 0 and not _near(right[0], 1.0) and _near(factor * right[0], 1.0):
+    if isinstance(right, tuple) and right[1] == 0 and right[0] > 0 and not _is_one(right[0]) and _is_one(factor * right[0]):
         yield words.wrong_factor(value.span, factor, source, str(target), right[0])
 
 
@@ -62,5 +62,5 @@ def _product(value: Expr) -> tuple[Place | None, float]:
             return None, 1.0
 
 
-def _near(number: float, wanted: float) -> bool:
-    return math.isclose(abs(number), wanted, rel_tol=TOLERANCE)
+def _is_one(number: float) -> bool:
+    return math.isclose(abs(number), 1.0, rel_tol=TOLERANCE)

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.storage import Storage
 
-MAGIC = b"SQLite format 3\0"
 HEADER_BYTES, MOST_OF_PAGE = 100, 1 << 16
 """Of the file's header, and the size of a page that it writes as 1: https://www.sqlite.org/fileformat.html, section 1.3."""
 

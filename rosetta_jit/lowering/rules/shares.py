@@ -12,7 +12,8 @@ from rosetta_jit.model.layout import Number, Row, Span, Variant
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Scalar
-    from rosetta_jit.language.check.wires import Names, Share
+    from rosetta_jit.language.check.wire_needs import Names
+    from rosetta_jit.language.check.wire_shares import Share
     from rosetta_jit.lowering.codec.fields import HolderFields
     from rosetta_jit.model.initial_values import InitialValue
     from rosetta_jit.model.layout import Layout, Slot

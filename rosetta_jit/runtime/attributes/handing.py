@@ -1,4 +1,4 @@
-"""What hands over objects of other classes as bytes, in compiled code: an encoder's call for one of them, a decoder's `to`."""
+"""Compiled code that passes objects of other classes as bytes: when an encoder is called with one, and in a decoder's `to`."""
 
 from __future__ import annotations
 

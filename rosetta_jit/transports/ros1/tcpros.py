@@ -12,7 +12,7 @@ from __future__ import annotations
 import struct
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.transports.feeding import Between, Frames, ProtocolError
+from rosetta_jit.transports.feeding import Frames, ProtocolError
 from rosetta_jit.transports.limits import MAX_HEADER_BYTES
 
 if TYPE_CHECKING:
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from rosetta_jit.transports.feeding import Machine
 
 LENGTH = struct.Struct("<I")
-_BETWEEN = Between(4)
 
 
 def header(fields: Mapping[str, str]) -> bytes:

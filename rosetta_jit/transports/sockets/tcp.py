@@ -32,8 +32,8 @@ class Links:
         Of the end.
     machine
         What reads of a connection.
-    came, went
-        Are called in the loop's thread when a connection comes and goes.
+    went
+        Is called in the loop's thread when a connection goes.
     """
 
     def __init__(
@@ -44,7 +44,6 @@ class Links:
         *,
         listen: bool,
         went: Callable[[], object] = lambda: None,
-        again: bool = True,
     ) -> None:
         self.streams: tuple[Stream, ...] = ()
         self._counts = counts
@@ -52,14 +51,13 @@ class Links:
         self._went = went
         self._was_connected = False
         self._closed = False
-        self._again = again
         self.listener: Listener | None = None
         self.dialer: Dialer | None = None
         places = targets(address)
         if listen:
             self.listener = Listener(places[0], self._came)
         else:
-            self.dialer = Dialer(places, self._came, self._failed, again=again)
+            self.dialer = Dialer(places, self._came)
             loop().run(self.dialer.start)
 
     def close(self, linger: float) -> None:
@@ -98,13 +96,9 @@ class Links:
             self._counts.lose("closed before it was sent" if self._closed else "the peer went away", stream.unsent.total())
         elif stream.cut or why:
             self._counts.lose(why or "the connection ended in the middle of a message")
-        if self.dialer is not None and self._again and not self._closed:
+        if self.dialer is not None and not self._closed:
             self.dialer.lost()
         self._went()
-
-    def _failed(self, _: str) -> None:
-        if not self._again:
-            self._went()
 
 
 def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> None:

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from rosetta_jit.errors import DecodeError, EncodeError
 from rosetta_jit.frameworks.yarp.bottle import read, write
-from rosetta_jit.frameworks.yarp.infer import detect, read_any
+from rosetta_jit.frameworks.yarp.infer import read_any
 from rosetta_jit.frameworks.yarp.limits import MAX_NESTING
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4, YARP2012
 from rosetta_jit.frameworks.yarp.text import to_text
@@ -238,12 +238,12 @@ def test_codes_of_scalars_lie_in_the_masks_of_yarp():
 
 
 def test_detects_dialects():
-    assert detect(write(specialised([Value("float64", 0.5), Value("int32", 1)]), YARP3)) is YARP3
-    assert detect(write(specialised([Value("float32", 0.5)] * 3), YARP4)) is YARP4
-    assert detect(write(specialised([Value("string", b"ab")]), YARP2012)) is YARP2012
-    assert detect(write(specialised([Value("int32", 5)]), YARP4)) is YARP3
+    assert read_any(write(specialised([Value("float64", 0.5), Value("int32", 1)]), YARP3))[0] is YARP3
+    assert read_any(write(specialised([Value("float32", 0.5)] * 3), YARP4))[0] is YARP4
+    assert read_any(write(specialised([Value("string", b"ab")]), YARP2012))[0] is YARP2012
+    assert read_any(write(specialised([Value("int32", 5)]), YARP4))[0] is YARP3
     with pytest.raises(DecodeError):
-        detect(b"\0" * 64)
+        read_any(b"\0" * 64)
 
 
 WIDTHS = {"int8": 8, "int16": 16, "int32": 32, "int64": 64, "vocab32": 32}

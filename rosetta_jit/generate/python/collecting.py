@@ -1,4 +1,4 @@
-"""Between the rows of kernels and objects: an expression that makes one, and statements that take one apart."""
+"""Objects taken apart: statements that make their numbers locals, or parts of rows, and fill the lanes of arrays."""
 
 from __future__ import annotations
 
@@ -8,195 +8,24 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Writer
 from rosetta_jit.generate.python.classes import NUMPY, member_names
-from rosetta_jit.generate.python.expressions import CODES, Scope, flat_name, within
+from rosetta_jit.generate.python.expressions import CODES, flat_name, within
 from rosetta_jit.model.layout import WIDTH, Number, Row, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.model.layout import Member, Slot
-    from rosetta_jit.model.types import Field, Type
+    from rosetta_jit.model.layout import Slot
+    from rosetta_jit.model.types import Type
 
 MOST_AT_ONCE = 40
 """Numbers of an array of a fixed length that are packed by a function of its own."""
 
 OUTSIDE = 2
 """How deep the statements of `encode` are that stand in no loop."""
-
-_HOW = {"utf-8": "", "octets": '"utf-8", "surrogateescape"'}
-"""How texts are decoded: those that were checked, and others."""
-
-
-@dataclass(slots=True)
-class Make:
-    """Expressions for objects; ``names`` are the classes, ``reserved`` the lanes of which the kernel takes rows: others stay empty."""
-
-    unit: Unit
-    scope: Scope
-    names: Mapping[str, str]
-    reserved: frozenset[int]
-    depth: int = 0
-
-    def value(self, type_: Type, slot: Slot, lane: int, row: str) -> str:
-        """The value at a slot of a row."""
-        resolved = self.unit.schema.resolve(type_)
-        match resolved, slot:
-            case _, Number(offset, scalar):
-                text = self.scope.field(lane, row, offset, scalar)
-                return f"{text} != 0" if scalar == "bool" else text
-            case Struct(), Row():
-                return self.struct(resolved, slot, lane, row)
-            case Union(), Variant():
-                return self.union(resolved, slot, lane, row)
-            case Struct(), Span():
-                assert isinstance(type_, Ref)
-                return f"{self.row(type_, slot.lane, self._start(slot, lane, row))} if {self._count(slot, lane, row)} else None"
-            case ((String() | Bytes() | Array() | Map()), Span()):
-                return self.sequence(resolved, slot, lane, row)
-            case _:
-                raise AssertionError(type_)
-
-    def _start(self, slot: Span, lane: int, row: str) -> str:
-        return self.scope.field(lane, row, slot.offset, "i64")
-
-    def _count(self, slot: Span, lane: int, row: str) -> str:
-        return self.scope.field(lane, row, slot.offset + 8, "i64")
-
-    def struct(self, struct: Struct, slot: Row, lane: int, row: str) -> str:
-        given = [self.member(each, member, slot, lane, row) for each, member in zip(struct.fields, slot.members, strict=True)]
-        if slot.unknown is not None:
-            given.append(self._text("_bytes", slot.unknown, lane, row))
-        return f"{self.names[struct.name]}({', '.join(given)})"
-
-    def member(self, each: Field, member: Member, slot: Row, lane: int, row: str) -> str:
-        """The value of a field of the struct at a slot; it may be absent."""
-        if member.presence is None:
-            return self.value(each.type, member.slot, lane, row)
-        assert isinstance(each.type, Optional)
-        there = self.is_there(member.presence, slot, lane, row)
-        return f"({self.value(each.type.value, member.slot, lane, row)}) if {there} else None"
-
-    def is_there(self, presence: int, slot: Row, lane: int, row: str) -> str:
-        word, bit = divmod(presence, 64)
-        return f"{self.scope.field(lane, row, slot.offset + 8 * word, 'u64')} & {1 << bit}"
-
-    def union(self, union: Union, slot: Variant, lane: int, row: str) -> str:
-        which = self.scope.field(lane, row, slot.offset, "i64")
-        cases = [
-            f'("{each.name}", {self.value(each.type, member.slot, lane, row)}) if {which} == {number} else '
-            for number, (each, member) in enumerate(zip(union.cases, slot.members, strict=True), 1)
-        ]
-        return f"({''.join(cases)}None)"
-
-    def _text(self, function: str, slot: Span, lane: int, row: str) -> str:
-        return f"{function}({self.scope.view(slot.lane, '')}, data, {self._start(slot, lane, row)}, {self._count(slot, lane, row)})"
-
-    def sequence(self, type_: String | Bytes | Array | Map, slot: Span, lane: int, row: str) -> str:
-        known = self._direct(slot, lane)
-        if known is not None:
-            return known
-        start, count = self._start(slot, lane, row), self._count(slot, lane, row)
-        element = self.unit.layout.lanes[slot.lane].element
-        match type_:
-            case String("utf-16"):
-                return f"_text16({self.scope.view(slot.lane, '')}, {start}, {count})"
-            case String(encoding):
-                if slot.lane not in self.reserved:
-                    text = f"data[{start} : {start} - 1 - {count}].decode({_HOW[encoding]})"
-                    return f'{text} if {count} else ""'
-                return self._text("_text", slot, lane, row)
-            case Bytes():
-                return self._text("_bytes", slot, lane, row)
-            case Array() if isinstance(element, Number):
-                if WIDTH[element.scalar] == 1 and element.scalar != "bool":
-                    borrowed = self._text("_bytes", slot, lane, row)
-                    if self.unit.numpy:
-                        return f"np.array(bytearray({borrowed}), np.uint8).view(np.{NUMPY[element.scalar][0]})"
-                    return f'memoryview({borrowed}).cast("{CODES[element.scalar]}").tolist()'
-                numbers = f"{self.scope.view(slot.lane, CODES[element.scalar])}[{start} : {start} + {count}]"
-                if self.unit.numpy:
-                    return self._numbers(numbers, element.scalar)
-                numbers += ".tolist()"
-                return f"[*map(bool, {numbers})]" if element.scalar == "bool" else numbers
-            case Array(inner) if self._is_borrowed(inner, slot.lane):
-                assert isinstance(inner, String)
-                return self._texts(inner, slot, start, count)
-            case Array(inner):
-                return f"[{self._each(lambda index: self.row(inner, slot.lane, index), start, count)}]"
-            case Map(key, value):
-                assert isinstance(element, Row)
-                pair = [(each.type, member.slot) for each, member in zip(map_entry(key, value).fields, element.members, strict=True)]
-                return f"{{{self._each(lambda index: ': '.join(self.value(*each, slot.lane, index) for each in pair), start, count)}}}"
-
-    def _each(self, text: Callable[[str], str], start: str, count: str) -> str:
-        """The text of each element by the name of its index, in a comprehension."""
-        self.depth += 1
-        index = f"i_{self.depth}"
-        found = f"{text(index)} for {index} in range({start}, {start} + {count})"
-        self.depth -= 1
-        return found
-
-    def _numbers(self, numbers: str, scalar: str) -> str:
-        """An array of a list, or of a view of memory."""
-        return f"np.array({numbers}, np.{NUMPY[scalar][0]})" if self.unit.numpy else numbers
-
-    def _direct(self, slot: Span, lane: int) -> str | None:
-        """What is a list or a string already."""
-        known = self.scope.direct
-        element = self.unit.layout.lanes[slot.lane].element
-        if slot.lane in known.whole:
-            return self.scope.lanes.rows(slot.lane)
-        if slot.lane in known.appended:
-            rows = self.scope.lanes.rows(slot.lane)
-            return self._numbers(rows, element.scalar) if isinstance(element, Number) else rows
-        if slot.lane in known.elements and isinstance(element, Number):
-            texts = (self.scope.element(slot.lane, number) for number in range(len(known.elements[slot.lane])))
-            return self._numbers(f"[{', '.join(texts)}]", element.scalar)
-        return self.scope.text(lane, slot.offset) if (lane, slot.offset) in known.texts else None
-
-    def _is_borrowed(self, type_: Type, lane: int) -> bool:
-        """Whether elements are texts that all lie in the message."""
-        element = self.unit.layout.lanes[lane].element
-        if not isinstance(element, Span) or not isinstance(type_, String) or type_.encoding == "utf-16":
-            return False
-        return element.lane not in self.reserved
-
-    def _texts(self, type_: String, slot: Span, start: str, count: str) -> str:
-        rows = self.scope.view(slot.lane, "q")
-        parts = (f"{rows}[{f'{start} * 2' + offset} : ({start} + {count}) * 2 : 2]" for offset in ("", " + 1"))
-        return f'[data[begin : begin - 1 - size].decode({_HOW[type_.encoding]}) if size else "" for begin, size in zip({", ".join(parts)})]'
-
-    def row(self, type_: Type, lane: int, index: str) -> str:
-        """The object of a row; those of types that contain themselves are made by a function."""
-        if self.unit.layout.lanes[lane].links is not None:
-            return f"made_{self.scope.lanes.rows(lane)}({index})"
-        return self.value(type_, self.unit.layout.lanes[lane].element, lane, index)
-
-
-def arrays_of(unit: Unit) -> dict[int, Type]:
-    """The types of the elements of arrays by their lanes; not those of types that contain themselves."""
-    found: dict[int, Type] = {}
-    pending: list[tuple[Type, Slot]] = [(Ref(unit.type), unit.layout.root)]
-    while pending:
-        type_, slot = pending.pop()
-        match unit.schema.resolve(type_), slot:
-            case Struct(fields=fields), Row(members=members):
-                inner = [each.type.value if isinstance(each.type, Optional) else each.type for each in fields]
-                pending += zip(inner, (member.slot for member in members), strict=True)
-            case Union(cases=cases), Variant(members=members):
-                pending += zip((each.type for each in cases), (member.slot for member in members), strict=True)
-            case Array(element), Span(_, lane) if unit.layout.lanes[lane].links is None:
-                found[lane] = element
-                pending.append((element, unit.layout.lanes[lane].element))
-            case Map(key, value), Span(_, lane) if unit.layout.lanes[lane].links is None:
-                pending += [(map_entry(key, value), unit.layout.lanes[lane].element)]
-            case _:
-                pass
-    return found
 
 
 @dataclass(slots=True)

@@ -1,0 +1,51 @@
+"""The lanes of a unit: those of its holder, named and with the structs of their rows, and the hidden ones of a kernel."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.backends.base import Namespace
+from rosetta_jit.generate.c.accessors import words_of
+from rosetta_jit.generate.c.lanes import OWN_WORDS, Lane, Lanes
+from rosetta_jit.generate.c.rows import Structs, elements_of
+from rosetta_jit.generate.c.support import function_names
+from rosetta_jit.generate.c.words import RESERVED, of_unit
+from rosetta_jit.model.layout import UNKNOWN
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from rosetta_jit.generate.unit import Unit
+
+
+def own_lanes(unit: Unit) -> tuple[Structs, list[Lane]]:
+    """The holder's, and the structs of their rows."""
+    structs = Structs(unit.name, Namespace(RESERVED | words_of(unit) | {f"{unit.name}_source"}), {})
+    named = _named([lane.name.replace(UNKNOWN, "unknown") for lane in unit.layout.lanes], unit.name)
+    elements = elements_of(unit.layout, structs, tuple(name for name, _ in named))
+    return structs, [Lane(*names, lane.stride, element) for names, lane, element in zip(named, unit.layout.lanes, elements, strict=True)]
+
+
+def named_lanes(unit: Unit, reserved: frozenset[str]) -> Callable[[Sequence[int]], Lanes]:
+    """All of them for kernels whose rows take so many bytes each, called otherwise than what is reserved."""
+    own = [replace(each, identifier=f"{each.identifier}_lane") if each.identifier in reserved else each for each in own_lanes(unit)[1]]
+    return lambda strides: Lanes(unit.name, (*own, *hidden_lanes(strides[len(own) :])), len(own))
+
+
+def _named(names: Sequence[str], unit: str) -> list[tuple[str, str]]:
+    """For each lane the identifiers of its pointer and of its count: variables, which hide no type of the unit's and no function."""
+    scope = Namespace(RESERVED | OWN_WORDS | function_names() | of_unit(unit, names))
+    pointers = ["message" if number == 0 else scope.identifier(_unique(names, number)) for number in range(len(names))]
+    return [(pointer, scope.identifier(f"{pointer}\0used")) for pointer in pointers]
+
+
+def hidden_lanes(strides: Iterable[int]) -> list[Lane]:
+    """The lanes of a kernel that are not the holder's."""
+    return [Lane(f"scratch_{number}", f"scratch_{number}_used", stride, None) for number, stride in enumerate(strides)]
+
+
+def _unique(names: Sequence[str], number: int) -> str:
+    """The name of a lane; those that share one, as the rows of recursive structs may, are numbered."""
+    name = names[number] or "rows"
+    return name if names.count(names[number]) == 1 else f"{name}\0{number}"
