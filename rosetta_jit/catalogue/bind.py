@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error, shorten, warning
-from rosetta_jit.catalogue.resolve import CALLED, nearest, written_at
+from rosetta_jit.catalogue.mapping import CALLED, error, shorten, warning
+from rosetta_jit.catalogue.resolve import nearest, written_at
 
 if TYPE_CHECKING:
     from collections.abc import Collection

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error, shorten
-from rosetta_jit.catalogue.resolve import CALLED, nearest, written_at
+from rosetta_jit.catalogue.mapping import CALLED, error, shorten
+from rosetta_jit.catalogue.resolve import nearest, written_at
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -82,12 +83,11 @@ def _declared(span: Span | None) -> tuple[str, ...]:
     return (f"declared at {span.source.name}, line {line}",)
 
 
-EXAMPLES = {"any": "any(.a[] > 3)", "all": "all(.a[] > 3)", "count": "count(.a[] > 3)"}
-
-
 def not_of_each(span: Span | None, function: str) -> Diagnostic:
     """A reduction of what has no elements, or of several values."""
-    help_ = f"write `[]` behind the array: `{EXAMPLES.get(function, f'{function}(.a[])')}`"
+    given = re.fullmatch(rf"{function}\((\.[\w.]*\w)([^][\n]*)\)", written_at(span))
+    array, rest = (given[1], given[2]) if given else (".a", " > 3" if function in ("any", "all", "count") else "")
+    help_ = f"write `[]` behind the array: `{function}({array}[]{rest})`"
     return error("reduction", f"`{function}` takes one value of each element", span, help_=help_)
 
 

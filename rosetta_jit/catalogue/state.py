@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error, shorten, warning
-from rosetta_jit.catalogue.resolve import CALLED, nearest
+from rosetta_jit.catalogue.mapping import CALLED, error, shorten, warning
+from rosetta_jit.catalogue.resolve import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Collection
