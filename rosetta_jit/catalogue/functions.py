@@ -87,8 +87,15 @@ def not_of_each(span: Span | None, function: str) -> Diagnostic:
     """A reduction of what has no elements, or of several values."""
     given = re.fullmatch(rf"{function}\((\.[\w.]*\w)([^][\n]*)\)", written_at(span))
     array, rest = (given[1], given[2]) if given else (".a", " > 3" if function in ("any", "all", "count") else "")
+    rest = re.sub(rf"{re.escape(array)}(?![\w.\[])", f"{array}[]", rest)
     help_ = f"write `[]` behind the array: `{function}({array}[]{rest})`"
     return error("reduction", f"`{function}` takes one value of each element", span, help_=help_)
+
+
+def no_reduction(span: Span | None, function: str) -> Diagnostic:
+    """A condition behind what is no reduction's argument."""
+    help_ = "a reduction takes elements so, `mean(.a[] where .a[] > 0)`; a rule, `.a[] = f(.b[]) where .b[] > 0`"
+    return error("filter", f"`where` chooses among elements, and `{shorten(function)}` takes none", span, help_=help_)
 
 
 def in_order(span: Span | None, function: str) -> Diagnostic:
