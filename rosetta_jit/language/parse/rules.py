@@ -239,9 +239,10 @@ def read_expression(tree: Tree, context: Context) -> expr.Expr:
 
 def _call(tree: Tree, context: Context, span: Span) -> expr.Expr:
     """A call, or one number of the group that it gives."""
-    arguments = tuple(read_expression(argument, context) for argument in _trees(tree))
+    where = next((read_expression(_trees(each)[0], context) for each in _trees(tree) if each.data == "where"), None)
+    arguments = tuple(read_expression(argument, context) for argument in _trees(tree) if argument.data != "where")
     function, *members = (token for token in _tokens(tree) if token.type in {"NAME", "MEMBER"})
-    call = expr.Call(str(function), arguments, span)
+    call = expr.Call(str(function), arguments, span, where)
     return expr.Item(call, expr.Literal("".join(members)[1:].replace('"', ""), span), span) if members else call
 
 
