@@ -81,7 +81,9 @@ def test_a_default_of_the_elements_of_a_holder_is_ignored_to_pack(backend: str) 
     files = {
         "lab/msg/Spot.msg": "float64 x\n",
         "lab/msg/Spots.msg": "Spot[] spots\n",
-        "h.proto": 'syntax = "proto2"; message P { required double x = 1; required string note = 2; } message Out { repeated P spots = 1; }',
+        "h.proto": """syntax = "proto2";
+message P { required double x = 1; required string note = 2; }
+message Out { repeated P spots = 1; }""",
         "m.mapping": """import "lab/msg/Spots.msg"
 import "h.proto"
 data-holder: Out
