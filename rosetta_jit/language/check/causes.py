@@ -32,7 +32,7 @@ OF_CALLS = frozenset(("arguments", "group-arguments", "signal"))
 OF_GROUPS = frozenset(("no-group",))
 """Mistakes that leave open what several places are set to."""
 
-OF_CONDITIONS = frozenset(("undetermined-field", "alike-blocks"))
+OF_CONDITIONS = frozenset(("undetermined-field", "alike-blocks", "unknown-condition"))
 """Mistakes of packing about what a condition reads."""
 
 CLASHES = frozenset(("type-clash",))
