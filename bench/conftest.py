@@ -25,6 +25,7 @@ ORDER = (
     "lookup",
     "flags",
     "sums",
+    "reductions",
     "mapped",
     "bridges",
     "peers",

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests import mapping_examples
+
 ROOT = Path(__file__).resolve().parent.parent
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
@@ -35,6 +37,26 @@ def run_examples(document):
     names: dict[str, object] = {}
     for block in re.findall(r"```python\n(.*?)```", document.read_text(), re.DOTALL):
         exec(compile(block, str(document), "exec"), names)  # noqa: S102 - our own documents
+
+
+EXAMPLES = {
+    f"{path.name}-{number}": block
+    for path in DOCUMENTS
+    for number, block in enumerate(re.findall(r"```mapping\n(.*?)```", path.read_text("utf-8"), re.DOTALL))
+}
+
+
+@pytest.mark.parametrize("block", EXAMPLES.values(), ids=EXAMPLES)
+def test_mappings_do_what_is_shown_below_them(block):
+    mapping_examples.run(block)
+
+
+@pytest.mark.parametrize(("shown", "instead"), [("turns': 1.5", "turns': 2.5"), ("range .count", "range .turns"), ("540", "541")])
+def test_an_example_that_shows_something_else_is_noticed(shown, instead):
+    block = next(each for each in EXAMPLES.values() if "tick.mapping" in each).replace('"turns"', "'turns'")
+    assert shown in block
+    with pytest.raises(AssertionError):
+        mapping_examples.run(block.replace(shown, instead))
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="the example in C is compiled by gcc, which is not installed")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import shorten
-from rosetta_jit.catalogue.resolve import CALLED, nearest, written_at
+from rosetta_jit.catalogue.mapping import CALLED, shorten
+from rosetta_jit.catalogue.resolve import nearest, written_at
 from rosetta_jit.diagnostics import Mistake, error, warning
 
 if TYPE_CHECKING:

@@ -130,12 +130,14 @@ def length_without_elements(span: Span | None, path: str) -> Diagnostic:
     )
 
 
-def elements_without_length(span: Span | None, path: str) -> Diagnostic:
+def elements_without_length(span: Span | None, path: str, side: str, block: Block) -> Diagnostic:
+    both = f"`len({path}) <-> 3`" if side == "holder" else f'`reject "..." when len({path}) != 3`'
+    hint = f"say how many there are, in `rules:` for both directions: {both}" if block == "rules" else f"add `len({path}) = ...`"
     return error(
         "length-never-set",
         f"elements of `{path}` are set, its length is not",
         span,
-        help_=f'add `len({path}) = ...`; of the wire under `rules:`, `reject "..." when len({path}) != ...` says it for both directions',
+        help_=hint,
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.habits import for_member
+from rosetta_jit.catalogue.habits import for_member, path_before
 from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.resolve import did_you_mean, there_are
 from rosetta_jit.diagnostics import error
@@ -96,7 +96,10 @@ TURNED = "left of `<->` stands a place of the holder, right of it one of the wir
 
 
 def not_a_struct(span: Span | None, name: str, found: str) -> Diagnostic:
-    hint = "index it first: `[i]`" if found.startswith("an array") else f"leave out `.{shorten(name)}`"
+    array = path_before(span)
+    hint = f"leave out `.{shorten(name)}`"
+    if found.startswith("an array"):
+        hint = f"of each element: `{array}[].{shorten(name)}`; of one: `{array}[0].{shorten(name)}`"
     if found.startswith("an array") or found in ("text", "bytes"):
         hint = for_member(name, span) or hint
     return error("no-fields", f"`.{shorten(name)}` of {found}, which has no fields", span, f"this is {found}", help_=hint)
@@ -114,10 +117,11 @@ def not_indexable(span: Span | None, found: str, value: str = "") -> Diagnostic:
 
 
 def index_range(span: Span | None, index: int, length: int | None) -> Diagnostic:
+    array = path_before(span)
     has = "indices count from 0" if length is None else f"there are {length} elements, counted from 0"
     hint = "correct the index"
     if index < 0:
-        last = "`.a[len(.a) - 1]`" if length is None else f"{length - 1}"
+        last = f"`{array}[len({array}) - 1]`" if length is None else f"{length - 1}"
         hint = f"the last element is {last}"
     return error("index-range", f"index {index} is out of range", span, has, help_=hint)
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import shorten
-from rosetta_jit.catalogue.resolve import CALLED, nearest, written_at
+from rosetta_jit.catalogue.mapping import CALLED, shorten
+from rosetta_jit.catalogue.resolve import nearest, written_at
 from rosetta_jit.diagnostics import Mistake, error
 
 if TYPE_CHECKING:
@@ -76,12 +77,17 @@ def _declared(span: Span | None) -> tuple[str, ...]:
     return (f"declared at {span.source.name}, line {line}",)
 
 
-EXAMPLES = {"any": "any(.a[] > 3)", "all": "all(.a[] > 3)", "count": "count(.a[] > 3)"}
-
-
 def not_of_each(span: Span | None, function: str) -> Diagnostic:
-    help_ = f"write `[]` behind the array: `{EXAMPLES.get(function, f'{function}(.a[])')}`"
+    given = re.fullmatch(rf"{function}\((\.[\w.]*\w)([^][\n]*)\)", written_at(span))
+    array, rest = (given[1], given[2]) if given else (".a", " > 3" if function in ("any", "all", "count") else "")
+    rest = re.sub(rf"{re.escape(array)}(?![\w.\[])", f"{array}[]", rest)
+    help_ = f"write `[]` behind the array: `{function}({array}[]{rest})`"
     return error("reduction", f"`{function}` takes one value of each element", span, help_=help_)
+
+
+def no_reduction(span: Span | None, function: str) -> Diagnostic:
+    help_ = "a reduction takes elements so, `mean(.a[] where .a[] > 0)`; a rule, `.a[] = f(.b[]) where .b[] > 0`"
+    return error("filter", f"`where` chooses among elements, and `{shorten(function)}` takes none", span, help_=help_)
 
 
 def in_order(span: Span | None, function: str) -> Diagnostic:

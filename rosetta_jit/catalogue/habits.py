@@ -47,6 +47,9 @@ STATEMENTS = (
     "rounding:",
 )
 RULES = ("ignore", "default", "reject", "when", "for", "same names", "else", "end")
+LENGTHS = ("length", "size", "resize", "reserve", "count")
+"""What other languages call `len`."""
+
 BEHIND_VALUES = ("where", "if", "and", "or", "via")
 
 WORDS: Mapping[str, str] = MappingProxyType(
@@ -56,6 +59,9 @@ WORDS: Mapping[str, str] = MappingProxyType(
             ("var", "let", "const", "def"), "a value that several messages share is `state`; others are written where they are used"
         ),
         "map": "a rule begins with the place that it sets: `.a = .b`",
+        "if": "rules that depend on a condition stand in a block: `when condition`, the rules, `end`",
+        **dict.fromkeys(("raise", "throw", "assert", "error", "abort"), 'a message is refused by `reject "why" when condition`'),
+        **dict.fromkeys(("from", "include", "using", "require"), 'a file is imported by its name: `import "x.proto"`'),
     }
 )
 """Words of other languages at the beginning of a rule."""
@@ -125,7 +131,10 @@ def for_name(name: str, known: Collection[str]) -> str:
 
 def for_member(name: str, span: Span | None) -> str:
     """What there is instead of a member that arrays and texts have in other languages; empty where it is none."""
-    if span is None or name not in ("length", "size", "len", "count"):
-        return ""
-    found = re.search(r"\.[\w.\[\]]+$", span.source.text[max(0, span.start - 200) : span.start])
-    return f"`len({shorten(found[0]) if found else '.a'})` is how many it has"
+    return f"`len({path_before(span)})` is how many it has" if span is not None and name in ("length", "size", "len", "count") else ""
+
+
+def path_before(span: Span | None) -> str:
+    """The path that a step or an index goes on from, as it is written; `.a` where it cannot be told."""
+    found = None if span is None else re.search(r"(\.[\w.\[\]]*\w\]?)[.\[]?$", span.source.text[max(0, span.start - 200) : span.start])
+    return shorten(found[1]) if found else ".a"

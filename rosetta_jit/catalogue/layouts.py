@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.habits import for_function
@@ -156,11 +157,13 @@ two_orders = Mistake(
 )
 
 
-def no_count(span: Span | None, path: str, whole: str = "") -> Diagnostic:
-    """Elements that nothing says the number of; ``whole`` is an array that is assigned to each of them."""
-    help_ = f"set it: `len({path}) = 3`"
+def no_count(span: Span | None, path: str, whole: str = "", rule: Span | None = None) -> Diagnostic:
+    """Elements that nothing says the number of; ``whole`` is an array that the rule reads as a whole."""
+    written = "" if rule is None else shorten(rule.source.text[rule.start : rule.end])
+    help_ = f"set it: `len({path}) {'<->' if '<->' in written else '='} 3`"
     if whole:
-        help_ = f"`{whole}[]` is each of the elements there: `{path}[] = {whole}[]`"
+        meant = re.sub(rf"{re.escape(whole)}(?![\w.\[])", f"{whole}[]", written)
+        help_ = f"`{whole}[]` is each of the elements there: `{meant}`"
     return error("no-count", f"nothing says how many elements `{path}` has", span, help_=help_)
 
 

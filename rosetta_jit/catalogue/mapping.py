@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue.spelling import closest, shorten
 from rosetta_jit.catalogue.unexpected import instead
 from rosetta_jit.diagnostics import Mistake, error, warning
+from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
 
 EXPECTATIONS = (
     ("INTEGER", "a value"),
@@ -41,6 +41,9 @@ EXPECTATIONS = (
 )
 """Token kind → how a person calls what may stand there, in the order in which it is listed."""
 
+CALLED = {"double": "float64", "float": "float32", "int": "int32", "long": "int64", "byte": "uint8", "boolean": "bool", "text": "string"}
+"""What other languages call the types of numbers."""
+
 WORDS = {
     kind: kind.strip("_").lower()
     for kind in (
@@ -58,10 +61,32 @@ STARTS_RULE = frozenset({"START"})
 
 
 def unexpected(span: Span, kind: str, expected: frozenset[str]) -> Diagnostic:
+    if (second := _second_value(span, kind, expected)) is not None:
+        return second
     found = span.source.text[span.start : span.end]
     name = "the end of the file" if kind == "$END" else f"`{shorten(found)}`"
     message = f"expected {_listed(_expected(expected))}, found {name}"
     return error("syntax", message, span, "not expected here", help_=_help(span, kind, expected))
+
+
+def _second_value(span: Span, kind: str, expected: frozenset[str]) -> Diagnostic | None:
+    """The report of a rule that ends with a second value: it stands where the next rule's place would, and so is noticed late."""
+    if kind not in ("START", "FOR", "WHEN", "IGNORE", "DEFAULT", "REJECT", "_SAME") or not expected & {"RELATES", "EQUAL"}:
+        return None
+    text = span.source.text
+    line = text[: span.start].rstrip()
+    start = line.rfind("\n") + 1
+    found = re.search(r"=[^=\n]*\S[ \t]+(\.\w[\w.\[\]]*)$", line[start:]) or re.search(r"<->[^\n]*\S[ \t]+(\.\w[\w.\[\]]*)$", line[start:])
+    if found is None or "\n" not in text[len(line) : span.start]:
+        return None
+    place = Span(span.source, start + found.start(1), start + found.end(1))
+    cast = re.search(r"\(([A-Za-z]\w*)\)[ \t]*$", line[start : place.start])
+    help_ = (
+        f"a number becomes one of another type so: `{CALLED.get(cast[1], cast[1])}({found[1]})`"
+        if cast
+        else "an operator, or a line, is missing before it"
+    )
+    return error("syntax", f"expected an operator or a rule, found `{shorten(found[1])}`", place, "a second value", help_=help_)
 
 
 def _help(span: Span, kind: str, expected: frozenset[str]) -> str:

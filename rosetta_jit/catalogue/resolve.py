@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.habits import for_function, for_name
+from rosetta_jit.catalogue.habits import for_function, for_name, path_before
 from rosetta_jit.catalogue.limits import MAX_NAMES, MAX_QUOTED
 from rosetta_jit.catalogue.mapping import shorten
-from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.spelling import closest, most_like
 from rosetta_jit.diagnostics import Mistake, error, note, warning
 
 if TYPE_CHECKING:
@@ -29,9 +29,12 @@ def did_you_mean(name: str, known: Collection[str]) -> str:
     return f"did you mean `{found}`?" if found else ""
 
 
-def there_are(what: str, known: Collection[str]) -> tuple[str, ...]:
-    """What there is to choose from, as a note."""
-    names = [shorten(name) for name in sorted(known)[:MAX_NAMES]]
+def there_are(what: str, known: Collection[str], name: str = "") -> tuple[str, ...]:
+    """What there is to choose from, as a note; where it is too much, what is like a name that was written."""
+    shown = sorted(known)
+    if name and len(shown) > MAX_NAMES:
+        shown = sorted(most_like(name, shown, MAX_NAMES))
+    names = [shorten(each) for each in shown[:MAX_NAMES]]
     more = ", ..." if len(known) > MAX_NAMES else ""
     return (f"{what}: {', '.join(names)}{more}",) if names else (f"{what}: none",)
 
@@ -42,7 +45,7 @@ def unknown_type(span: Span | None, name: str, known: Collection[str]) -> Diagno
         f"no import declares a type `{shorten(name)}`",
         span,
         "not declared",
-        notes=there_are("declared", known),
+        notes=there_are("declared", known, name),
         help_=did_you_mean(name, known) or "import the file that declares it",
     )
 
@@ -78,8 +81,14 @@ def length_not_settable(span: Span | None, found: str) -> Diagnostic:
     return error("length-fixed", f"the length of {found} cannot be set", span, "here", help_="assign it as a whole, or remove the rule")
 
 
-def unknown_name(span: Span | None, name: str, known: Collection[str], members: Collection[str] = ()) -> Diagnostic:
-    """A name that is no loop variable and no constant; what it ends with may be one of the ``members`` of the message."""
+def unknown_name(
+    span: Span | None, name: str, known: Collection[str], members: Collection[str] = (), *, owner: str = "", loops: Sequence[str] = ()
+) -> Diagnostic:
+    """A name that is no loop variable and no constant.
+
+    What it ends with may be one of the ``members`` of the message, or a constant of the type ``owner``; ``loops`` are the variables of the
+    loops around.
+    """
     last = re.split(r"[./:]", name)[-1]
     if last in members and last not in known:
         message = f"there is no loop variable or constant `{shorten(name)}`, but a field `{shorten(last)}`"
@@ -90,15 +99,33 @@ def unknown_name(span: Span | None, name: str, known: Collection[str], members: 
         f"there is no loop variable or constant `{shorten(name)}`",
         span,
         "not known here",
-        notes=there_are("known", known),
-        help_=for_name(name, known) or _as_declared(name, known) or did_you_mean(name, known) or _how_named(name),
+        notes=there_are("known", known, name),
+        help_=for_name(name, known)
+        or _as_declared(name, known, owner)
+        or _of_loops(name, loops)
+        or did_you_mean(name, known)
+        or _how_named(name),
     )
 
 
-def _as_declared(name: str, known: Collection[str]) -> str | None:
-    """How a constant of that name is written."""
+def is_compared(span: Span | None) -> bool:
+    """Whether a name is compared with something: then it is probably a constant of the message that is read."""
+    text = "" if span is None else span.source.text
+    if span is None:
+        return False
+    before, behind = text[max(0, span.start - 10) : span.start], text[span.end : span.end + 10]
+    return re.search(r"[=!]=\s*$", before) is not None or re.match(r"\s*[=!]=", behind) is not None
+
+
+def _of_loops(name: str, loops: Sequence[str]) -> str:
+    """The variable of the loop that a short name may stand for."""
+    return f"the variable of this loop is `{loops[-1]}`" if loops and len(name) == 1 else ""
+
+
+def _as_declared(name: str, known: Collection[str], owner: str = "") -> str | None:
+    """How a constant of that name is written: that of the message, or of a type within it, before others."""
     ends = tuple(f"{mark}{name}" for mark in (".", "::"))
-    declared = next((each for each in sorted(known) if each.endswith(ends)), None)
+    declared = next((each for each in sorted(known, key=lambda each: (not each.startswith(owner), each)) if each.endswith(ends)), None)
     return None if declared is None else f"a constant is written with the type that declares it: `{declared}`"
 
 
@@ -124,9 +151,15 @@ def unknown_function(span: Span | None, name: str, known: Collection[str]) -> Di
         "unknown-function",
         f"there is no function `{shorten(name)}`",
         span,
-        notes=there_are("functions", known),
-        help_=for_function(name) or did_you_mean(name, known),
+        notes=there_are("functions", known, name),
+        help_=for_function(name) or _as_type(name, known) or did_you_mean(name, known),
     )
+
+
+def _as_type(name: str, known: Collection[str]) -> str:
+    """How a conversion to an enum of that name is written; empty where there is none."""
+    declared = next((each for each in sorted(known) if each.endswith((f".{name}", f"::{name}", f"/{name}"))), None)
+    return "" if declared is None else f"an enum is written with what declares it: `{declared}(...)`"
 
 
 def arguments(span: Span | None, function: str, expected: str, found: int) -> Diagnostic:
@@ -174,10 +207,6 @@ def unlike_names(span: Span | None, name: str, wire: str, holder: str, line: str
 def no_number(span: Span | None, source: str, target: str, how: str) -> Diagnostic:
     help_ = f"say that its number is meant: {how.replace('...', written_at(span))}"
     return error("lossy-conversion", f"{source} is no {target} by itself", span, f"this is {source}", help_=help_)
-
-
-CALLED = {"double": "float64", "float": "float32", "int": "int32", "long": "int64", "byte": "uint8", "boolean": "bool", "text": "string"}
-"""What other languages call the types of numbers."""
 
 
 def written_at(span: Span | None) -> str:
@@ -245,8 +274,8 @@ def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
 def integer_needed(span: Span | None, what: str, found: str) -> Diagnostic:
     hint = f"convert it: `int64({written_at(span)})`" if found in {"uint64", "float32", "float64"} else ""
     if found == "text":
-        key = written_at(span)
-        hint = f"`.a[.key = {key}]` is the element that has this key, `.a[.keys[] = {key}]` one of an array with its keys beside"
+        key, array = written_at(span), path_before(span)
+        hint = f"`{array}[.key = {key}]` is the element with that key, `{array}[.keys[] = {key}]` one of an array with its keys beside"
     return error("integer-needed", f"{what} is an integer, not {found}", span, f"this is {found}", help_=hint)
 
 
@@ -285,11 +314,14 @@ def condition_needed(span: Span | None, found: str) -> Diagnostic:
     return error("condition", f"a condition is true or false, this is {found}", span, f"this is {found}", help_=hint)
 
 
-def not_comparable(span: Span | None, operator: str, left: str, right: str) -> Diagnostic:
+def not_comparable(span: Span | None, operator: str, left: str, right: str, constant: str = "") -> Diagnostic:
+    """Two values that no comparison relates; ``constant`` is one whose name is the text."""
     hint = "texts are compared with a text in quotes, by `==` or `!=`" if "text" in {left, right} else "convert one of them first"
     others = {left, right} - {"text"}
     if len(others) == 1 and others.pop().startswith(("int", "uint", "float")):
         hint = "make both of them texts, `text(x)`, or both numbers, `number(x)`"
+    if constant:
+        hint = f"`{constant}` is the constant of this name"
     if operator == "==" and left.startswith("an array of") and span is not None and span.source.text[: span.start].rstrip().endswith("["):
         hint = f"an element is told by its key with one `=`: `[{written_at(span).replace('==', '=', 1)}]`"
     return error("not-comparable", f"`{operator}` does not compare {left} with {right}", span, help_=hint)

@@ -15,6 +15,13 @@ NEAR = 3
 """How many names that are like the one written are looked at."""
 
 
+FEW = 5
+"""How many names are shown where none is like the one written."""
+
+LIKE = 0.6
+"""From how much on a name is like another one, of 1 for the same."""
+
+
 def closest(name: str, known: Iterable[str]) -> str | None:
     """The name most like the one written, in whatever case, if one is like it. However many and long they are, the work is bounded.
 
@@ -28,6 +35,25 @@ def closest(name: str, known: Iterable[str]) -> str | None:
     near = get_close_matches(written, candidates, NEAR) or get_close_matches(written.casefold(), list(folded), NEAR)
     near.sort(key=lambda each: each[:1].casefold() != written[:1].casefold())
     return folded.get(written.casefold()) or (folded.get(near[0].casefold()) if near else None)
+
+
+def most_like(name: str, known: list[str], most: int) -> list[str]:
+    """Of names those that are like the one written, as a whole or in their last part, the likest first; where none is, the shortest."""
+    from difflib import SequenceMatcher
+
+    candidates = [each for each in islice(known, MAX_CANDIDATES) if len(each) <= MAX_COMPARED]
+    matcher = SequenceMatcher(a="", b=name[:MAX_COMPARED].casefold(), autojunk=False)
+
+    def likeness(each: str) -> float:
+        found = 0.0
+        for part in (each, each.rpartition(".")[2]):
+            matcher.set_seq1(part.casefold())
+            found = max(found, matcher.ratio())
+        return found
+
+    alike = sorted((-likeness(each), each) for each in candidates)
+    near = [each for much, each in alike if -much >= LIKE]
+    return near[:most] or sorted(candidates, key=lambda each: (len(each), each))[:FEW]
 
 
 def shorten(name: str) -> str:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import shorten
-from rosetta_jit.catalogue.resolve import CALLED, nearest
+from rosetta_jit.catalogue.mapping import CALLED, shorten
+from rosetta_jit.catalogue.resolve import nearest
 from rosetta_jit.diagnostics import error, warning
 
 if TYPE_CHECKING:

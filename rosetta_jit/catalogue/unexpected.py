@@ -123,6 +123,8 @@ def _of_bracket(place: _Place) -> str:
         return f"a bracket is not closed: `{open_}` is missing before"
     if open_ and "COMMA" in expected and place.kind in STARTS_VALUE and not habits.ITEMS.get(found):
         return "a comma is missing before it"
+    if found in BRACKETS.values() and "FOR" in expected and before:
+        return f"no bracket is open that `{found}` closes: leave it out"
     if found in BRACKETS.values() and before.endswith(","):
         return "leave out the comma before it"
     if "RSQB" in expected and found == ":":
@@ -158,7 +160,11 @@ def _of_statement(place: _Place) -> str:
     if before.startswith("reject") and (found == "if" or ("STRING" in expected and found == "when")):
         return '`reject "why" when condition`'
     if "STRING" in expected and place.kind != "UNCLOSED" and (word := re.search(r"(?<![\w.])(import|via)$", before)):
-        return f'write `{word[1]} "{shorten(place.ahead.strip())}"`'
+        return f'write `{word[1]} "{shorten(place.ahead.strip().strip("<>;"))}"`'
+    if not before and place.kind in ("IF", "FROM") and found in habits.WORDS:
+        return habits.WORDS[found]
+    if place.kind == "START" and "IMPORT" in expected and "FOR" not in expected:
+        return "rules stand behind `rules:`, or behind `unpack-rules:` or `pack-rules:`"
     if found == "state" and "IMPORT" in expected:
         return "a state variable has a type: `state n: int64 = 0`"
     return _of_colon(place) if expected == frozenset(("COLON",)) or place.ahead.startswith("[") else ""
@@ -185,6 +191,8 @@ def _of_word(place: _Place) -> str:
         return "a rule with `[]` holds for each element: `.a[] = f(.b[])`"
     if place.kind != "NAME":
         return ""
+    if place.found in habits.LENGTHS and "FOR" in place.expected and place.ahead[len(place.found) :].startswith("("):
+        return "a length is set by `len`: `len(.a)`"
     known = habits.WORDS_BEHIND_VALUES if place.is_behind_value and place.before else habits.WORDS
     return known.get(place.found, "") or _misspelt(place)
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import reduce
+from functools import partial, reduce
 from typing import TYPE_CHECKING
 
 from rosetta_jit.functions.forms import binary_of, unary_of
-from rosetta_jit.functions.reductions import EXTREMES, lower_extreme
+from rosetta_jit.functions.reductions import EXTREMES, extreme_of, lower_extreme
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Unary
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language.conversions import FLOAT64
@@ -108,7 +108,12 @@ FUNCTIONS = (
             NOT_FOLLOWED,
             (BOUNDS, EXTREMES),
             units=Units(keeps=True, joins=True),
-            reduction=Reduction(Numbers(ANY), lower_extreme, of_nothing=f"there is no value, so none is the {which}"),
+            reduction=Reduction(
+                Numbers(ANY),
+                lower_extreme,
+                of_nothing=f"there is no value, so none is the {which}",
+                unchosen=partial(extreme_of, above=name == "min"),
+            ),
         )
         for name, which, fold in (("min", "least", _fold_min), ("max", "largest", _fold_max))
     ),

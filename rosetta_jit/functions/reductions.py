@@ -11,7 +11,7 @@ from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Select
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import FLOAT64, bounds
-from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Reduction, Row, Units
+from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Reduction, Row, Units, nothing
 from rosetta_jit.language.typed import BOOL, INT64
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.codec.fields import scalar_name
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.lowering.elements import Elements
     from rosetta_jit.model import expr as model
+    from rosetta_jit.model.types import Type
 
 NUMBERS = Numbers((INT64, Float(32), FLOAT64))
 
@@ -41,6 +42,11 @@ CONDITIONS = Row(
     "elements",
     "`any(c[])`, `all(c[])`, `count(c[])`",
     ("conditions", "whether one holds, whether each does: bool; how many do: int64. Of none: false, true, 0"),
+)
+CHOSEN = Row(
+    "elements",
+    "`sum(x[] where c[])`, `mean(x[] where c[])`, …",
+    ("the same, and a condition", "the same of the elements for which the condition holds; the others are not computed"),
 )
 BITS = Row("elements", "`xor(n[])`", ("integers", "int64: exclusive or of all, 0 of none"))
 
@@ -100,7 +106,7 @@ def _lower_blocks(elements: Elements) -> Expr:
 
 def _lower_mean(elements: Elements) -> Expr:
     total = _lower_sum(elements)
-    return Binary("div", total, Convert("f64", elements.count))
+    return Binary("div", total, Convert("f64", elements.taken))
 
 
 def lower_extreme(elements: Elements) -> Expr:
@@ -120,10 +126,15 @@ def _bound(elements: Elements, *, above: bool) -> Const:
     """A number of the type of the values that none of them is above, or below."""
     type_ = elements.reduce.value.type
     assert isinstance(type_, Int | Float)
-    scalar = scalar_name(scalar_of(type_))
+    return Const(scalar_name(scalar_of(type_)), extreme_of(type_, above=above))
+
+
+def extreme_of(type_: Type, *, above: bool) -> int | float:
+    """The number of a type that no other one is above, or below."""
     if isinstance(type_, Float):
-        return Const(scalar, math.inf if above else -math.inf)
-    return Const(scalar, bounds(type_)[1 if above else 0])
+        return math.inf if above else -math.inf
+    assert isinstance(type_, Int)
+    return bounds(type_)[1 if above else 0]
 
 
 def _lower_joined(operator: Literal["and", "or"], elements: Elements) -> Expr:
@@ -153,6 +164,11 @@ def _lower_xor(elements: Elements) -> Expr:
     return found
 
 
+def _true(_type: Type) -> bool:
+    """What a condition counts as where every one has to hold."""
+    return True
+
+
 # --- records -------------------------------------------------------------------------------------------------------------
 
 
@@ -167,12 +183,12 @@ FUNCTIONS = (
         "mean", rows=(MEAN,), units=Units(keeps=True), reduction=Reduction(Numbers((FLOAT64,)), _lower_mean, of_nothing="there is no value")
     ),
     *(
-        of_each(name, rows=(CONDITIONS,), operation="predicate assignment", reduction=Reduction(None, lower, gives))
-        for name, lower, gives in (
-            ("any", partial(_lower_joined, "or"), BOOL),
-            ("all", partial(_lower_joined, "and"), BOOL),
-            ("count", _lower_count, INT64),
+        of_each(name, rows=(CONDITIONS,), operation="predicate assignment", reduction=Reduction(None, lower, gives, unchosen=other))
+        for name, lower, gives, other in (
+            ("any", partial(_lower_joined, "or"), BOOL, nothing),
+            ("all", partial(_lower_joined, "and"), BOOL, _true),
+            ("count", _lower_count, INT64, nothing),
         )
     ),
-    of_each("xor", rows=(BITS,), reduction=Reduction(Numbers((INT64,)), _lower_xor)),
+    of_each("xor", rows=(BITS, CHOSEN), reduction=Reduction(Numbers((INT64,)), _lower_xor)),
 )

@@ -14,6 +14,7 @@ from functools import cache
 from typing import TYPE_CHECKING, cast
 from typing import Literal as OneOf
 
+from rosetta_jit.model.types import Float, Int
 from rosetta_jit.startup import entry_points
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.language.typed import Expr
     from rosetta_jit.model import expr as model
-    from rosetta_jit.model.types import Float, Int, Type
+    from rosetta_jit.model.types import Type
 
     Solved = tuple[model.Expr, model.Expr]
     """An argument of a call, and what it must be."""
@@ -110,6 +111,17 @@ class Texts:
     optional: int = 0
 
 
+def nothing(type_: Type) -> bool | int | float:
+    """False, or 0: what changes no sum, and no count."""
+    match type_:
+        case Float():
+            return 0.0
+        case Int():
+            return 0
+        case _:
+            return False
+
+
 @dataclass(frozen=True, slots=True)
 class Reduction:
     """Of many values, which an expression with `[]` has: `sum(.a[] * 2)`.
@@ -122,12 +134,15 @@ class Reduction:
         What it becomes in a kernel. It takes the elements (`rosetta_jit.lowering.elements`) and gives a kernel expression.
     of_nothing
         What is wrong with no value at all: the text of an error of kind ``range``. Empty where the function has a result for it.
+    unchosen
+        A value of a type that changes no result: what elements count as that ``where`` leaves out.
     """
 
     signature: Numbers | None
     lower: Callable[..., object]
     gives: Type | None = None
     of_nothing: str = ""
+    unchosen: Callable[[Type], bool | int | float] = nothing
 
 
 @dataclass(frozen=True, slots=True)

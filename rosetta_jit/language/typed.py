@@ -200,7 +200,8 @@ class Reduce:
     """What a function makes of the values that ``value`` has for each ``variable`` from 0 to before ``count``, in this order.
 
     Where a condition of ``refused`` holds the message is rejected, with the text beside it. Of no values some functions have no result,
-    which is an error of kind ``range``, unless this is not ``required``: then it is any number.
+    which is an error of kind ``range``, unless this is not ``required``: then it is any number. ``chosen`` is how many of the values are
+    taken; those that are not are what adds nothing to the others.
     """
 
     function: str
@@ -210,6 +211,7 @@ class Reduce:
     type: Type
     refused: tuple[tuple[Expr, str], ...] = ()
     required: bool = True
+    chosen: Reduce | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
 
 

@@ -23,7 +23,7 @@ def operands(expr: typed.Expr) -> tuple[typed.Expr, ...]:
         case typed.Search(place, _, condition):
             return (*indices(place), condition)
         case typed.Reduce(_, _, count, value, _, refused):
-            return (count, value, *(condition for condition, _ in refused))
+            return (count, value, *(condition for condition, _ in refused), *(() if expr.chosen is None else (expr.chosen,)))
         case typed.Unary(_, operand) | typed.Convert(operand):
             return (operand,)
         case typed.Binary(_, left, right) | typed.Nearest(left, check=right):
@@ -56,7 +56,9 @@ def rebuilt(expr: typed.Expr, change: Callable[[typed.Expr], typed.Expr]) -> typ
             return replace(expr, place=placed(place, change), condition=change(condition))
         case typed.Reduce(_, _, count, value, _, refused):
             changed = tuple((change(condition), why) for condition, why in refused)
-            return replace(expr, count=change(count), value=change(value), refused=changed)
+            chosen = None if expr.chosen is None else change(expr.chosen)
+            assert chosen is None or isinstance(chosen, typed.Reduce)
+            return replace(expr, count=change(count), value=change(value), refused=changed, chosen=chosen)
         case typed.Unary(_, operand) | typed.Convert(operand):
             return replace(expr, operand=change(operand))
         case typed.Binary(_, left, right):

@@ -36,6 +36,11 @@ class Elements:
         """The writer that takes the statements."""
         return self.values.writer
 
+    @property
+    def taken(self) -> Expr:
+        """How many elements are taken, of those that there are."""
+        return self.count if self.reduce.chosen is None else self.values.of(self.reduce.chosen)
+
     @contextmanager
     def each(self) -> Generator[Expr]:
         """Around what is done with each value, from the first to the last."""

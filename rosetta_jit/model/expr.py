@@ -140,11 +140,15 @@ class Binary:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """``function(argument, ...)``: a conversion (``float32(x)``) or a function of the language (``radians(x)``)."""
+    """``function(argument, ...)``: a conversion (``float32(x)``) or a function of the language (``radians(x)``).
+
+    ``where`` is the condition by which a reduction takes elements: ``mean(.a[] where .a[] > 0)``.
+    """
 
     function: str
     arguments: tuple[Expr, ...]
     span: Span | None = field(default=None, compare=False, repr=False)
+    where: Expr | None = None
 
 
 @dataclass(frozen=True, slots=True)

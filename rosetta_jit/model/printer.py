@@ -70,7 +70,8 @@ def show_expr(value: expr.Expr) -> str:
             word = "!=" if operator == "differs" else operator  # as near as a text comes to it
             return f"({show_expr(left)} {word} {show_expr(right)})"
         case expr.Call(function, arguments):
-            return f"{function}({', '.join(map(_argument, arguments))})"
+            where = "" if value.where is None else f" where {show_expr(value.where)}"
+            return f"{function}({', '.join(map(_argument, arguments))}{where})"
         case expr.Choice() if (subject := _subject(value)) is not None:
             entries = [f"{show_expr(key.right)} = {show_expr(each)}" for key, each in value.cases if isinstance(key, expr.Binary)]
             return f"table({show_expr(subject)}) {{ {', '.join([*entries, _last(value)])} }}"

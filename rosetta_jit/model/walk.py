@@ -53,7 +53,8 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
         case Binary(left=left, right=right):
             return replace(expr, left=change(left), right=change(right))
         case Call(arguments=arguments):
-            return replace(expr, arguments=tuple(map(change, arguments)))
+            where = None if expr.where is None else change(expr.where)
+            return replace(expr, arguments=tuple(map(change, arguments)), where=where)
         case Choice(cases, otherwise):
             pairs = tuple((change(condition), change(value)) for condition, value in cases)
             pieces = tuple(map(change, expr.pieces))

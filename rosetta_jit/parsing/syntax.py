@@ -24,12 +24,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Recovery:
-    """Where to go on: token kind → a kind that is shifted only where such a token may begin something."""
+    """Where to go on: token kind → a kind that is shifted only where such a token may begin something.
+
+    Blocks begin with a token of ``opens``; with one of ``mistaken``, first in its line, by mistake.
+    """
 
     starts: Mapping[str, str]
     only_first_in_line: frozenset[str]
     opens: frozenset[str]
     closes: str
+    mistaken: frozenset[str] = frozenset()
 
 
 Describe = Callable[[Span, str, frozenset[str]], "Diagnostic"]
@@ -67,6 +71,7 @@ def parse_tokens(
             start = token.start_pos
             problems.append(describe(Span(source, start, start + len(token)), token.type, parser.accepted()))
             skipping = True
+            lost += token.type in recovery.mistaken and _is_first(token, source)
             if len(problems) == MAX_ERRORS:
                 return problems
     return _finish(parser, source, problems, describe, skipping=skipping)
@@ -103,8 +108,13 @@ def _starts(tokens: list[Token], position: int, recovery: Recovery, source: Sour
     token = tokens[position]
     if token.type not in recovery.only_first_in_line or position == 0:
         return token.type in recovery.starts
-    between = source.text[tokens[position - 1].end_pos : token.start_pos]
-    return "\n" in between
+    return _is_first(token, source)
+
+
+def _is_first(token: Token, source: Source) -> bool:
+    """Whether nothing but blanks stands before a token in its line."""
+    line = source.text.rfind("\n", 0, token.start_pos) + 1
+    return not source.text[line : token.start_pos].strip()
 
 
 def _rewind(parser: Parser, kind: str, opens: frozenset[str]) -> int | None:

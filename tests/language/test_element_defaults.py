@@ -74,3 +74,26 @@ def test_elements_beside_that_no_key_names(backend: str) -> None:
     packed = made.pack(elbow=1.0, wrist=2.0, speed=3.0)
     assert packed == {"name": ["elbow", "wrist"], "position": [1.0, 2.0], "velocity": [0.0, 3.0]}
     assert made.unpack(**packed) == {"elbow": 1.0, "wrist": 2.0, "speed": 3.0}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_default_of_the_elements_of_a_holder_is_ignored_to_pack(backend: str) -> None:
+    files = {
+        "lab/msg/Spot.msg": "float64 x\n",
+        "lab/msg/Spots.msg": "Spot[] spots\n",
+        "h.proto": """syntax = "proto2";
+message P { required double x = 1; required string note = 2; }
+message Out { repeated P spots = 1; }""",
+        "m.mapping": """import "lab/msg/Spots.msg"
+import "h.proto"
+data-holder: Out
+wire-schema: lab/msg/Spots
+rules:
+  .spots[].x <-> .spots[].x
+  default .spots[].note
+""",
+    }
+    decode, encode = (made("m.mapping", schema=files, backend=backend) for made in (rj.Decoder, rj.Encoder))
+    message = encode(encode.holder_type.from_dict({"spots": [{"x": 1.5, "note": "lost"}, {"x": -2.0, "note": ""}]}))
+    assert decode(message).to_dict() == {"spots": [{"x": 1.5, "note": ""}, {"x": -2.0, "note": ""}]}
+    assert [loss.place for loss in decode.mapping.laws.holders.losses] == [".spots[].note"]

@@ -90,6 +90,65 @@ def test_of_floats(backend):
             assert bits(found) == bits(FLOATS[expression](array)), (expression, array)
 
 
+CHOSEN = {
+    "sum(.a[] where .ok[])": added,
+    "mean(.a[] * 2 where .ok[])": lambda a: added([each * 2 for each in a]) / len(a),
+    "min(.a[] where .ok[])": lambda a: extreme(min, a),
+    "max(-.a[] where .ok[])": lambda a: extreme(max, [-each for each in a]),
+    "mean(.a[] - mean(.a[] where .ok[]) where .ok[])": lambda a: added([each - added(a) / len(a) for each in a]) / len(a),
+}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.filterwarnings("ignore:invalid value")
+def test_of_the_elements_for_which_a_condition_holds(backend):
+    run = decoder(set_to(".a", CHOSEN), backend)
+    rng = random.Random(11)
+    for array in (*ARRAYS, [rng.gauss(0, 1e3) for _ in range(99)]):
+        taken = [rng.random() < 0.6 for _ in array]
+        taken[rng.randrange(len(array))] = True
+        chosen = [each for each, is_taken in zip(array, taken, strict=True) if is_taken]
+        for expression, found in zip(CHOSEN, run(a=array, ok=taken)["a"], strict=True):
+            assert bits(found) == bits(CHOSEN[expression](chosen)), (expression, array, taken)
+
+
+COUNTED = {
+    "count(.i[] > 2 where .n[] != 0)": lambda i, n: sum(1 for each, by in zip(i, n, strict=True) if by and each > 2),
+    "sum(.i[] % .n[] where .n[] != 0)": lambda i, n: sum(math.fmod(each, by) for each, by in zip(i, n, strict=True) if by),
+    "xor(.i[] where index() % 2 == 1)": lambda i, _: np.bitwise_xor.reduce(i[1::2]) if len(i) > 1 else 0,
+    "int64(any(.i[] / .n[] > 2 where .n[] != 0))": lambda i, n: any(int(each / by) > 2 for each, by in zip(i, n, strict=True) if by),
+    "int64(all(.i[] / .n[] > 2 where .n[] != 0))": lambda i, n: all(int(each / by) > 2 for each, by in zip(i, n, strict=True) if by),
+    "min(.i[] where .i[] > -100)": lambda i, _: min(each for each in i if each > -100),
+    "max(.n[] + .i[] where .i[] > -100)": lambda i, n: max(each + by for each, by in zip(i, n, strict=True) if each > -100),
+}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_elements_that_are_left_out_are_not_computed(backend):
+    """A division by 0 of one that the condition leaves out is no error."""
+    run = decoder(set_to(".m", COUNTED), backend)
+    rng = random.Random(5)
+    for size in (1, 2, 7, 50):
+        i, n = ([rng.randrange(-9, 9) for _ in range(size)] for _ in range(2))
+        assert run(i=i, n=n)["m"] == [int(each(i, n)) for each in COUNTED.values()]
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_of_no_element_for_which_a_condition_holds(backend):
+    run = decoder([".x = mean(.a[] where .a[] > 0)", ".n = count(.a[] > 1 where .a[] > 0)"], backend)
+    assert run(a=[-1.0, 3.0, 5.0]) == {**run(a=[3.0, 5.0]), "x": 4.0, "n": 2}
+    for array in ([], [-1.0, 0.0]):
+        refused("range", ".x", "there is no value", run, a=array)
+    refused("rejected", ".x", "different lengths", decoder([".x = mean(.a[] where .ok[])"], backend), a=[1.0], ok=[])
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_elements_of_each_round_by_a_condition(backend):
+    rules = ["len(.a) = len(.rows)", "for i from 0 to len(.rows)", "  .a[i] = sum(.rows[i].cells[] where .rows[i].cells[] > .b[i])", "end"]
+    found = decoder(rules, backend)(rows=[{"name": "", "cells": [1.0, 2.0, 4.0]}, {"name": "", "cells": [8.0]}], b=[1.5, 9.0])
+    assert found["a"] == [6.0, 0.0]
+
+
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_of_elements_that_may_not_be_there(backend):
     run = decoder([".x = sum(.a[0 to 3 by 2])"], backend)

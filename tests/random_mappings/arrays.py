@@ -93,15 +93,18 @@ class Arrays:
         return Rules(operator.format(made.text, "." + place), evaluate)
 
     def reduced(self, name: str, type_: str) -> Rules:
-        """A reduction that is the same in each round of a loop, beside what is not."""
+        """A reduction that is the same in each round of a loop, beside what is not; half of them take elements by a condition."""
         made, of_floats = self.of_each(type_), type_ == "float64"
+        array, least = "xs" if of_floats else "ks", self.rng.choice([None, None, -1, 1])
+        where = "" if least is None else f" where .{array}[] > {least}"
         function = self.rng.choice(["sum", "min", "max", "mean"] if of_floats else ["sum", "min", "max", "count", "xor"])
-        text = f"{function}({made.text} > 0)" if function == "count" else f"{function}({made.text})"
+        text = f"{function}({made.text}{' > 0' if function == 'count' else ''}{where})"
         limit = self.rng.choice([0, 2])
 
         def evaluate(fields: Fields) -> list[Any]:
             zero = 0.0 if of_floats else 0
-            return [reduced(function, made.evaluate(fields), zero) if k > limit else zero for k in fields["ks"]]
+            taken = {**fields, array: [each for each in fields[array] if least is None or each > least]}
+            return [reduced(function, made.evaluate(taken), zero) if k > limit else zero for k in fields["ks"]]
 
         zero = "0.0" if of_floats else "0"
         return Rules(f".{name}[] = {text} if .ks[] > {limit} else {zero}", evaluate)

@@ -180,8 +180,9 @@ def _of_elements(expr: typed.Search | typed.Reduce) -> Polynomial:
     match expr:
         case typed.Search(place, _, condition):
             return atom(f"in {shown_shape(place.steps)}", *_indices(place.steps), polynomial_of(condition))
-        case typed.Reduce(function, _, count, value):
-            return atom(f"{function} of each", polynomial_of(count), polynomial_of(value))
+        case typed.Reduce(function, _, count, value, chosen=chosen):
+            of_chosen = () if chosen is None else (polynomial_of(chosen),)
+            return atom(f"{function} of each", polynomial_of(count), polynomial_of(value), *of_chosen)
         case _:
             assert_never(expr)
 

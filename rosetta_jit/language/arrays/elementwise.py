@@ -208,14 +208,18 @@ class _Expansion:
         if known is not None:
             return known, [check for total in given for check in _unless_equal(total, known, rule.span)]
         if not given:
-            is_array = isinstance(rule.value, Path) and isinstance(self.type_of(rule.value), Array)
-            no_count = words.no_count(rule.place.span, show_expr(target.array), show_expr(rule.value) if is_array else "")
+            no_count = words.no_count(rule.place.span, show_expr(target.array), self.whole_array(rule), rule.span)
             raise LayoutError(words.open_end(rule.place.span) if is_open else no_count)
         checks = [check for total in given[1:] for check in _unless_equal(total, given[0], rule.span)]
         if is_open:
             return given[0], checks
         lengths[target.array] = given[0]
         return given[0], [SetLength(target.array, given[0], rule.span), *checks]
+
+    def whole_array(self, rule: Assignment) -> str:
+        """An array that a rule for each element reads as a whole; empty where it reads none."""
+        paths = (each for each in parts(rule.value) if isinstance(each, Path))
+        return next((show_expr(each) for each in paths if isinstance(self.type_of(each), Array)), "")
 
     def known_count(self, target: View, lengths: Lengths) -> Expr | None:
         """What a slice, another rule or the type says of the number of elements that are set."""

@@ -17,7 +17,6 @@ from rosetta_jit.catalogue import groups, layouts
 from rosetta_jit.language.both_ways.array_relations import with_layouts
 from rosetta_jit.language.both_ways.branches import asked_of_holder, facts_of, test_between
 from rosetta_jit.language.both_ways.checks import agreement, checks_of, guard
-from rosetta_jit.language.both_ways.elements import ignored_elements
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solve
 from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.learning import learn
@@ -27,6 +26,7 @@ from rosetta_jit.language.folding import folded
 from rosetta_jit.language.function import written
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_BLOCKS
+from rosetta_jit.model.element_rules import ignored_elements, ignoring
 from rosetta_jit.model.expr import Binary, Call, Coerced, Item, Len, List, Literal, Path
 from rosetta_jit.model.mapping import (
     Arranged,
@@ -129,7 +129,7 @@ class Packing:
             case Ignore(place, span):
                 return (Default(place, span),)
             case Default(place, span):
-                return (Ignore(place, span),)
+                return (ignoring(place, span),)
             case Arranged():
                 return self.arranged(rule, loops)
             case Rest(word, span):

@@ -32,14 +32,20 @@ OF_CALLS = frozenset(("arguments", "group-arguments", "signal"))
 OF_GROUPS = frozenset(("no-group",))
 """Mistakes that leave open what several places are set to."""
 
-OF_CONDITIONS = frozenset(("undetermined-field", "alike-blocks"))
+OF_CONDITIONS = frozenset(("undetermined-field", "alike-blocks", "unknown-condition"))
 """Mistakes of packing about what a condition reads."""
 
 CLASHES = frozenset(("type-clash",))
 """Mistakes after which another field is probably meant."""
 
-OF_TYPES = frozenset(("type-clash", "lossy-conversion"))
+OF_TYPES = frozenset(("type-clash", "lossy-conversion", "unit", "operand", "text-needed", "not-comparable"))
 """Mistakes that each direction of a relation reports in its own words."""
+
+OF_OPERANDS = frozenset(("operand", "text-needed"))
+"""Mistakes of an operator, which a relation of one field repeats at the place of another one that it checks."""
+
+OF_WHOLE = frozenset(("never-set",))
+"""Mistakes of a direction as a whole, which may follow from a mistake in a rule."""
 
 DERIVED = frozenset(("not-comparable",))
 """Mistakes of the checks that relations of one field make of each other."""
@@ -76,12 +82,13 @@ def causes(problems: list[Diagnostic], relations: list[Span]) -> list[Diagnostic
     names = [each.span for each in problems if each.code in OF_NAMES and each.span is not None]
     found: list[Diagnostic] = []
     wrong: set[int] = set()
+    said: set[tuple[str, str]] = set()
     for each in _once(problems, relations):
         if (each.code == "unknown-name" and _quoted(each) in undeclared) or (each.code in UNUSED and _quoted(each) in misnamed):
             continue
-        if each.code in OF_CONDITIONS and any(_is_within(name, each.span) for name in names):
-            continue
         relation = _relation(each, relations)
+        if each.code in OF_CONDITIONS and (relation in misread - {None} or any(_is_within(name, each.span) for name in names)):
+            continue
         if relation is not None and each.severity == "error":
             if (each.code in OF_INVERSES and relation in named) or (each.code in OF_TYPES and relation in wrong):
                 continue
@@ -89,10 +96,30 @@ def causes(problems: list[Diagnostic], relations: list[Span]) -> list[Diagnostic
                 continue
             if each.code in OF_OTHERS and any(other is not None for other in misread):
                 continue
+            if each.code in OF_OPERANDS and _is_place(each, relations[relation]) and (each.code, each.message) in said:
+                continue
             if each.code not in OF_INVERSES:
                 wrong.add(relation)
+            said.add((each.code, each.message))
         found.append(each)
     return found
+
+
+def rules_first(problems: list[Diagnostic], relations: list[Span]) -> list[Diagnostic]:
+    """Without the fields of the wire that a wrong relation would set if it were right: those called as the place to its left."""
+    wrong = {_relation(each, relations) for each in problems if each.severity == "error" and each.code not in OF_WHOLE}
+    meant = {place for number in wrong if number is not None for place in _places(relations[number])}
+    return [each for each in problems if each.code not in OF_WHOLE or "of the wire" not in each.message or _quoted(each) not in meant]
+
+
+def _places(relation: Span) -> list[str]:
+    """What stands to the left of a relation."""
+    return [each.strip() for each in relation.source.text[relation.start : relation.end].partition("<->")[0].split(",")]
+
+
+def _is_place(problem: Diagnostic, relation: Span) -> bool:
+    """Whether a report is about what stands to the left of a relation."""
+    return problem.span is not None and problem.span.start == relation.start
 
 
 def _once(problems: list[Diagnostic], relations: list[Span]) -> Iterator[Diagnostic]:

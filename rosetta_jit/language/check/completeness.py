@@ -186,7 +186,7 @@ class _Checker:
             return
         extent = _extent(type_, lengths)
         if extent is None:
-            self.problems.append(words.elements_without_length(elements[0].span, where.text))
+            self.problems.append(words.elements_without_length(elements[0].span, where.text, self.missing.side, self.missing.block))
         elif elements:
             self.elements(where, element_type(type_), extent, elements)
         elif extent.length.constant() != 0:

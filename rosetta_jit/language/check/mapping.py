@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.catalogue.state import in_used
 from rosetta_jit.errors import MappingError
-from rosetta_jit.language.check.causes import causes, relations_of, unclear
+from rosetta_jit.language.check.causes import OF_WHOLE, causes, relations_of, rules_first, unclear
 from rosetta_jit.language.check.completeness import Missing, check_complete
 from rosetta_jit.language.check.default_counts import defaulted_counts
 from rosetta_jit.language.check.discriminators import discriminators_of
@@ -99,7 +99,7 @@ def check(
     Raises
     ------
     MappingError
-        Everything that is wrong with the mapping and with what it imports, in the order of the text.
+        Everything that is wrong with the mapping and with what it imports, in the order of the text; behind that, what no rule sets.
     """
     texts = _read(mapping, Imports(mapping.source, front_ends, search, reading or Reading()), parameters)
     state: Dictionary[Side, Dictionary[str, StateVariable]] = {side: texts.state.variables(side) for side in SIDES}
@@ -166,7 +166,8 @@ def _wrong(texts: _Texts, resolved: Resolved) -> list[Diagnostic]:
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in set_again(block.rules)]
     again = {each.span for each in problems if each.code == "set-twice"}
     problems += [each for each in (_of_wires(resolved) if mapping.wires else ()) if each.span not in again]
-    return problems + [in_used(other.state[0].span, other.source.name) for other in texts.others.mappings() if other.state]
+    problems += [in_used(other.state[0].span, other.source.name) for other in texts.others.mappings() if other.state]
+    return rules_first(problems, relations)
 
 
 def _of_wires(resolved: Resolved) -> list[Diagnostic]:
@@ -177,7 +178,8 @@ def _of_wires(resolved: Resolved) -> list[Diagnostic]:
 
 def _error(problems: Sequence[Diagnostic]) -> MappingError:
     """All that is wrong; what would have been made of the rest does not matter then."""
-    return MappingError(_sorted([each for each in problems if each.severity != "note"]))
+    shown = _sorted([each for each in problems if each.severity != "note"])
+    return MappingError(tuple(sorted(shown, key=lambda each: each.code in OF_WHOLE)))
 
 
 def _with_import(problem: Diagnostic, mapping: Mapping, imports: Imports) -> Diagnostic:

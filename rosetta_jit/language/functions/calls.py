@@ -13,6 +13,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal, cast
 
+from rosetta_jit.catalogue import functions as function_words
 from rosetta_jit.catalogue import groups, layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language import conversions
@@ -61,6 +62,12 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
     if function is None:
         known = {*INTEGERS, *FLOATS, *names(), *group_functions(), *ARGUMENTS, "bool", "has", "index", *scope.enums, *scope.functions}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
+        return None
+    if expr.where is not None and function.reduction is None:
+        scope.problems.append(function_words.no_reduction(expr.span, expr.function))
+        return None
+    if function.reduction is not None and expr.where is not None:
+        scope.problems.append(function_words.not_of_each(expr.span, expr.function))
         return None
     if function.reduction is not None and callable(function.signature):
         return function.signature(expr, [], scope)  # it has no `[]`, and what else is wrong with its argument follows from that

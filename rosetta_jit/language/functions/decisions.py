@@ -15,6 +15,7 @@ from rosetta_jit.language.functions.texts import comparison, is_textual, type_pi
 from rosetta_jit.language.limits import MAX_CASES, MAX_COMPARED
 from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Choice, Const, IsText, Unary
 from rosetta_jit.language.units.conversion import check_agree
+from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, String
 
 if TYPE_CHECKING:
@@ -69,11 +70,20 @@ def type_comparison(expr: model.Binary, scope: Scope, type_expr: TypeExpr, texts
         return found
     found = _comparison(expr, left, right)
     if found is None:
-        scope.problems.append(words.not_comparable(expr.span, expr.operator, describe(left.type), describe(right.type)))
+        constant = _named(expr, scope)
+        scope.problems.append(words.not_comparable(expr.span, expr.operator, describe(left.type), describe(right.type), constant))
     elif isinstance(found, IsText) and len(found.text.encode()) > MAX_COMPARED:
         scope.problems.append(words.long_text(expr.span, MAX_COMPARED))
         return None
     return found if not isinstance(found, IsText) or expr.operator == "==" else Unary("not", found, BOOL, expr.span)
+
+
+def _named(expr: model.Binary, scope: Scope) -> str:
+    """The constant of the message whose name a text in quotes is, beside what is no text; empty where there is none."""
+    texts = [each.value for each in (expr.left, expr.right) if isinstance(each, Literal) and isinstance(each.value, str)]
+    owner = scope.messages[scope.origin].root.name
+    known = (each for each in scope.constants.full if each.startswith(owner)) if len(texts) == 1 else ()
+    return next((each for each in known if each.endswith(f".{texts[0]}")), "")
 
 
 def _comparison(expr: model.Binary, left: Expr, right: Expr) -> Expr | None:

@@ -73,7 +73,7 @@ def _told_apart(tokens: Iterator[Token]) -> Iterator[Token]:
             kind = "NAME"
         if kind in ONLY_BEHIND and kinds[1] not in ONLY_BEHIND[kind]:
             kind = "NAME"
-        if kind in {"STATE", "SET_STATE"} and kinds[1] == "COLON" and kinds[0] not in BLOCKS:
+        if kind in {"STATE", "SET_STATE"} and (kinds[1] == "SLASH" or (kinds[1] == "COLON" and kinds[0] not in BLOCKS)):
             kind = "NAME"
         kinds = kinds[1], kind
         yield token if kind == token.type else token.of_kind(kind)
@@ -94,7 +94,9 @@ def _recovery() -> Recovery:
         "END",
     )
     starts = {kind: kind for kind in statements} | dict.fromkeys(RULES, "FOR")
-    return Recovery(starts, frozenset(RULES) - {"FOR"}, opens=frozenset({"FOR", "WHEN"}), closes="END")
+    return Recovery(
+        starts, frozenset(RULES) - {"FOR"} | {"IMPORT"}, opens=frozenset({"FOR", "WHEN"}), closes="END", mistaken=frozenset({"IF"})
+    )
 
 
 def _too_many(tokens: list[Token], source: Source) -> Diagnostic | None:

@@ -7,19 +7,18 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.language.limits import MAX_DIGITS
 from rosetta_jit.language.parse.templates import pieces_of
 from rosetta_jit.model import expr
+from rosetta_jit.model.element_rules import ignoring
 from rosetta_jit.model.mapping import (
     Arranged,
     Assign,
     Default,
     For,
-    Ignore,
     Parameter,
     Reject,
     Relation,
@@ -121,20 +120,7 @@ def _left_alone(tree: Tree, context: Context, span: Span) -> Rule:
     paths = [_path(each, context.origin if is_ignored else context.target, context) for each in _trees(tree)]
     if not paths:
         return Rest("ignore" if is_ignored else "default", span)
-    return _ignored(paths[0], span, 0) if is_ignored else Default(paths[0], span)
-
-
-def _ignored(path: expr.Path, span: Span, depth: int) -> Rule:
-    """A field that is ignored; of each element, in a loop over all of them."""
-    number = next((number for number, step in enumerate(path.steps) if isinstance(step, expr.Each)), None)
-    if number is None:
-        return Ignore(path, span)
-    variable = f"each{depth or ''}"
-    element = replace(
-        path, steps=(*path.steps[:number], expr.Index(expr.Name(variable), path.steps[number].span), *path.steps[number + 1 :])
-    )
-    array = replace(path, steps=path.steps[:number])
-    return For(variable, expr.Literal(0, span), expr.Len(array, span), (_ignored(element, span, depth + 1),), span)
+    return ignoring(paths[0], span) if is_ignored else Default(paths[0], span)
 
 
 def _same_names(tree: Tree, context: Context, span: Span) -> SameNames:
@@ -239,9 +225,10 @@ def read_expression(tree: Tree, context: Context) -> expr.Expr:
 
 def _call(tree: Tree, context: Context, span: Span) -> expr.Expr:
     """A call, or one number of the group that it gives."""
-    arguments = tuple(read_expression(argument, context) for argument in _trees(tree))
+    where = next((read_expression(_trees(each)[0], context) for each in _trees(tree) if each.data == "where"), None)
+    arguments = tuple(read_expression(argument, context) for argument in _trees(tree) if argument.data != "where")
     function, *members = (token for token in _tokens(tree) if token.type in {"NAME", "MEMBER"})
-    call = expr.Call(str(function), arguments, span)
+    call = expr.Call(str(function), arguments, span, where)
     return expr.Item(call, expr.Literal("".join(members)[1:].replace('"', ""), span), span) if members else call
 
 

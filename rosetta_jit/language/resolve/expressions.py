@@ -138,7 +138,9 @@ def _unnamed(expr: model.Name, several: list[str], scope: Scope) -> Diagnostic:
     if expr.name in members_of(origin.root, origin.schema):
         return fields.undotted_field(expr.span, expr.name)
     known = {*scope.locals, *scope.state, *CONSTANTS, *scope.constants.full}
-    return words.unknown_name(expr.span, expr.name, known, members_of(origin.root, origin.schema))
+    members = members_of(origin.root, origin.schema)
+    owner = origin.root.name if words.is_compared(expr.span) else ""
+    return words.unknown_name(expr.span, expr.name, known, members, owner=owner, loops=scope.locals)
 
 
 def _length(expr: model.Len, scope: Scope) -> Expr | None:

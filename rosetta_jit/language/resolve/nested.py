@@ -97,12 +97,14 @@ def _named(via: Via, target: Struct, source: Struct, scope: Scope) -> tuple[mode
 
 
 def _side(mapping: model.Mapping, target: Struct, source: Struct) -> Side | None:
-    names = mapping.holder_type, mapping.wire_type
-    if mapping.unpack_rules and same_name(names[0], target.name) and same_name(names[1], source.name):
-        return "holder"
-    if mapping.pack_rules and same_name(names[1], target.name) and same_name(names[0], source.name):
-        return "wire"
-    return None
+    """Which side of a mapping the target is; where both have one name, as a type of ROS 1 and of ROS 2, that which is written like it."""
+    sides: tuple[tuple[Side, bool, str, str], ...] = (
+        ("holder", bool(mapping.unpack_rules), mapping.holder_type, mapping.wire_type),
+        ("wire", bool(mapping.pack_rules), mapping.wire_type, mapping.holder_type),
+    )
+    fitting = [each for each in sides if each[1] and same_name(each[2], target.name) and same_name(each[3], source.name)]
+    fitting.sort(key=lambda each: each[2] != target.name)
+    return fitting[0][0] if fitting else None
 
 
 def _left_out(place: typed.Place, origin: typed.Place, span: Span | None) -> tuple[typed.Rule, ...]:

@@ -6,6 +6,7 @@ each element.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import functions as words
@@ -18,7 +19,7 @@ from rosetta_jit.language.conversions import as_int64
 from rosetta_jit.language.function import written
 from rosetta_jit.language.functions.calls import type_numbers
 from rosetta_jit.language.functions.decisions import is_condition, type_condition
-from rosetta_jit.language.typed import INT64, Call, Const, Local, Reduce
+from rosetta_jit.language.typed import INT64, Call, Choice, Const, Local, Reduce
 from rosetta_jit.model.expr import Binary, Each, Name
 
 if TYPE_CHECKING:
@@ -38,13 +39,18 @@ def type_reduction(call: model.Call, scope: Scope, type_expr: TypeExpr) -> Reduc
     function, name = written(call.function), f"(element{sum(name.startswith('(') for name in scope.locals)})"
     assert function is not None
     assert function.reduction is not None
+    asked = () if call.where is None else (call.where,)
     try:
-        views = {source: view_of(source) for source in dict.fromkeys(sources_in(call.arguments[0]))}
+        views = {
+            source: view_of(source) for source in dict.fromkeys(each for part in (*call.arguments, *asked) for each in sources_in(part))
+        }
         elements: dict[model.Expr, model.Expr] = {source: _element(view, name, call) for source, view in views.items()}
     except LayoutError as error:
         scope.problems.append(error.problem)
         return None
-    value = type_expr(substituted(call.arguments[0], elements, Name(name)), scope.inside(name, Const(0, INT64)))
+    within = scope.inside(name, Const(0, INT64))
+    value = type_expr(substituted(call.arguments[0], elements, Name(name)), within)
+    conditions = [type_condition(substituted(each, elements, Name(name)), within, type_expr) for each in asked]
     first, *others = [view.total for view in views.values()]
     count = type_expr(first, scope)
     refused = [each for view in views.values() for each in view.refused]
@@ -53,10 +59,19 @@ def type_reduction(call: model.Call, scope: Scope, type_expr: TypeExpr) -> Reduc
     known = tuple((condition, why) for condition, why in checks if condition is not None)
     number = None if count is None else as_int64(count)
     found = None if value is None else _taken(function, function.reduction, value, call, scope)
-    if found is None or number is None or len(known) < len(checks):
+    if found is None or number is None or len(known) < len(checks) or None in conditions:
         return None
     type_ = function.reduction.gives or found.type
-    return Reduce(function.name, Local(name + scope.suffix), number, found, type_, known, span=call.span)
+    reduce = Reduce(function.name, Local(name + scope.suffix), number, found, type_, known, span=call.span)
+    return next((_chosen(reduce, function.reduction, condition) for condition in conditions if condition is not None), reduce)
+
+
+def _chosen(reduce: Reduce, reduction: Reduction, condition: Expr) -> Reduce:
+    """A reduction of the elements for which a condition holds: the others count as what changes nothing, and are not computed."""
+    value = reduce.value
+    other = Const(reduction.unchosen(value.type), value.type, reduce.span)
+    chosen = Reduce("count", reduce.variable, reduce.count, condition, INT64, span=reduce.span)
+    return replace(reduce, value=Choice(((condition, value),), other, "", value.type, reduce.span), chosen=chosen)
 
 
 def _element(view: View, name: str, call: model.Call) -> model.Expr:

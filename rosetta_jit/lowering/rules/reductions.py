@@ -34,7 +34,7 @@ def reduced(reduce: typed.Reduce, values: Evaluation) -> Expr:
     for condition, why in reduce.refused:
         values.reject(why, when=values.of(condition))
     if reduction.of_nothing:
-        is_some = Compare("gt", values.of(reduce.count), index(0))
+        is_some = Compare("gt", values.of(reduce.chosen or reduce.count), index(0))
         values.writer.expect(is_some, "range", values.where, reduction.of_nothing, line=values.line)
     return values.of(replace(reduce, required=False, refused=()))
 

@@ -156,3 +156,28 @@ def test_differences_are_said():
     assert back.differences[2] == "`.header.stamp.sec`: int32 becomes uint32, and a value that does not fit is refused"
     assert back.differences[-1] == "`.uv_coordinates` is left out, and refused where it is not zero or empty"
     assert rj.Bridge.of("sensor_msgs/msg/Imu", decode={"encoding": "cdr"}, encode={"encoding": "cdr2"}).differences == ()
+
+
+@pytest.mark.parametrize("backend", ["python", "llvm", "interpreter"])
+def test_the_shipped_mapping_does_what_a_bridge_without_one_does(backend):
+    """Both types have one name, so that the mappings within it are found by how theirs are written."""
+    there, _ = bridges("sensor_msgs/Imu", "python")
+    decode, encode = rj.Decoder("ros2/imu.mapping", backend=backend), rj.Encoder("ros2/imu.mapping", backend=backend)
+    write = rj.Encoder.of("sensor_msgs/Imu", encoding="ros1", backend="python")
+    numbers = np.random.default_rng(3)
+    for seconds in (0, 1, 1_700_000_000, 2**31 - 1):
+        axes = [dict(zip("xyz", numbers.normal(size=3).tolist(), strict=True)) for _ in range(2)]
+        values = {
+            "header": {"seq": 0, "stamp": {"secs": seconds, "nsecs": 999_999_999}, "frame_id": "imu_link"},
+            "orientation": dict(zip("xyzw", numbers.normal(size=4).tolist(), strict=True)),
+            "orientation_covariance": numbers.normal(size=9).tolist(),
+            "angular_velocity": axes[0],
+            "linear_acceleration": axes[1],
+        }
+        newer = bytes(encode(encode.holder_type.from_dict(values)))
+        assert newer == bytes(there(write(values)))
+        assert bytes(write(decode(newer))) == bytes(write(values))
+    laws = decode.mapping.laws
+    assert (laws.messages.kind, [loss.place for loss in laws.holders.losses]) == ("exact", [".header.seq"])
+    with pytest.raises(rj.EncodeError, match=r"stamp"):
+        encode(encode.holder_type.from_dict({**values, "header": {"stamp": {"secs": 2**31, "nsecs": 0}}}))

@@ -1,16 +1,28 @@
-"""`ignore .a[].b` in both directions: a loop over the elements when unpacking, and `default .a[].b` when packing."""
+"""`ignore .a[].b`, which is a loop over the elements of what is read, and is `default .a[].b` of what is set."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.model.expr import Each, Index, Len, Name
+from rosetta_jit.model.expr import Each, Index, Len, Literal, Name
 from rosetta_jit.model.mapping import For, Ignore
 
 if TYPE_CHECKING:
     from rosetta_jit.model.expr import Path
     from rosetta_jit.model.mapping import Rule
+    from rosetta_jit.source import Span
+
+
+def ignoring(path: Path, span: Span | None, depth: int = 0) -> Rule:
+    """The rule for a field that is ignored; of each element, in a loop over all of them."""
+    number = next((number for number, step in enumerate(path.steps) if isinstance(step, Each)), None)
+    if number is None:
+        return Ignore(path, span)
+    variable = f"each{depth or ''}"
+    element = replace(path, steps=(*path.steps[:number], Index(Name(variable), path.steps[number].span), *path.steps[number + 1 :]))
+    array = replace(path, steps=path.steps[:number])
+    return For(variable, Literal(0, span), Len(array, span), (ignoring(element, span, depth + 1),), span)
 
 
 def ignored_elements(rule: Rule) -> Path | None:
