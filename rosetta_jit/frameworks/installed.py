@@ -49,14 +49,15 @@ class Readers:
     def owner(self, file: str) -> Framework | None:
         """The framework whose IDL a file is; None if no front end reads it.
 
-        Of several that read such files, it is the one that the request names, or that has its encoding, or whose ``files`` the name
-        matches, or the first.
+        Of several that read such files, it is the one among whose shipped definitions it lies (``idl/ros1/std_msgs/Header.msg``), that the
+        request names, that has its encoding, or whose ``files`` the name matches, or the first.
         """
         readers = [each for each in self.frameworks.values() if each.reads(file)]
+        shipped = [each for each in readers if f"/idl/{each.name}/" in f"/{file}"]
         named = [each for each in readers if each.name == self.framework]
         encoding = [each for each in readers if self.encoding in each.encodings]
         matching = [each for each in readers if each.claims(file)]
-        return next(iter([*named, *encoding, *matching, *readers]), None)
+        return next(iter([*shipped, *named, *encoding, *matching, *readers]), None)
 
     def find(self, file: str) -> FrontEnd | None:
         """The front end of a file, or None."""
