@@ -34,9 +34,20 @@ _LIMITS = [
     for bits in (8, 16, 32, 64)
     for end in ("MIN", "MAX", "C")
 ]
-_OTHERS = ["SIZE_MAX", "INTPTR_MIN", "INTPTR_MAX", "UINTPTR_MAX", "INTMAX_MIN", "INTMAX_MAX", "UINTMAX_MAX", "PTRDIFF_MIN", "PTRDIFF_MAX"]
+_OTHERS = [
+    "FLT_EVAL_METHOD",
+    "FLT_RADIX",
+    "SIZE_MAX",
+    "INTPTR_MIN",
+    "INTPTR_MAX",
+    "UINTPTR_MAX",
+    "INTMAX_MIN",
+    "INTMAX_MAX",
+    "UINTMAX_MAX",
+    "PTRDIFF_MIN",
+    "PTRDIFF_MAX",
+]
 _FLOATS = [f"{kind}_{what}" for kind in ("FLT", "DBL") for what in ("MAX", "MIN", "EPSILON", "DIG", "MANT_DIG", "MAX_EXP", "MIN_EXP")]
-_FLOATS += ["FLT_EVAL_METHOD", "FLT_RADIX"]
 
 _OF_FILES = ("HAS_ORDER", "IN_ORDER_le", "IN_ORDER_be", "TEXT")
 """Macros of the files themselves, besides those that begin with the unit's name."""

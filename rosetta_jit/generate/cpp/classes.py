@@ -16,9 +16,12 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.unit import Unit
     from rosetta_jit.model.types import Type
 
-OF_SOURCES = frozenset({"failure", "fill", "gather", "measured", "reach", "report", "source", "state", "written"})
-OF_SOURCES |= {f"{role}_{what}" for role in ("decode", "encode", "size", "borrow") for what in ("message", "sites")}
-NOT_CLASSES = OF_SOURCES | {"codec", "holder", "std", "rosetta_jit", "memory"}
+_OF_KERNELS = {f"{role}_{what}" for role in ("decode", "encode", "size", "borrow") for what in ("message", "sites")}
+NOT_CLASSES = (
+    _OF_KERNELS
+    | frozenset({"failure", "fill", "gather", "measured", "reach", "report", "source", "state", "written"})
+    | {"codec", "holder", "std", "rosetta_jit", "memory"}
+)
 """What no class may be called: what the header has besides, and the source, whose names stand in the same namespace."""
 
 
