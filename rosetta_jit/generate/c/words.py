@@ -47,6 +47,7 @@ _OTHERS = [
     "PTRDIFF_MIN",
     "PTRDIFF_MAX",
 ]
+_OF_FLOATS = ("FLT_EVAL_METHOD", "FLT_RADIX")
 _FLOATS = [f"{kind}_{what}" for kind in ("FLT", "DBL") for what in ("MAX", "MIN", "EPSILON", "DIG", "MANT_DIG", "MAX_EXP", "MIN_EXP")]
 
 _OF_FILES = ("HAS_ORDER", "IN_ORDER_le", "IN_ORDER_be", "TEXT")

@@ -17,11 +17,8 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Type
 
 _OF_KERNELS = {f"{role}_{what}" for role in ("decode", "encode", "size", "borrow") for what in ("message", "sites")}
-NOT_CLASSES = (
-    _OF_KERNELS
-    | frozenset({"failure", "fill", "gather", "measured", "reach", "report", "source", "state", "written"})
-    | {"codec", "holder", "std", "rosetta_jit", "memory"}
-)
+_OF_SOURCES = {"failure", "fill", "gather", "measured", "reach", "report", "source", "state", "written"}
+NOT_CLASSES = frozenset({"codec", "holder", "std", "rosetta_jit", "memory", *_OF_SOURCES, *_OF_KERNELS})
 """What no class may be called: what the header has besides, and the source, whose names stand in the same namespace."""
 
 
