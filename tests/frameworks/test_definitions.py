@@ -45,11 +45,10 @@ def pool_of(data):
 
 def without_units(plain):
     """Units are said by an option of ours, which is not carried."""
-    for name, *rest in plain["declared"].items():
-        fields = rest[0][2]
-        for each in fields if rest[0][0] == "struct" else ():
-            each[3], each[9] = None, []
-        plain["declared"][name] = rest[0]
+    for declared in plain["declared"].values():
+        for each in declared.get("fields", ()):
+            each.pop("unit", None)
+            each.pop("part_units", None)
     return plain
 
 

@@ -244,7 +244,7 @@ def loaded_in_c(request) -> Loaded:
         size=made.size if role == "encode" else None,
         size_sites=made.sites,
         borrow=request.borrow,
-        told=header["told"],
+        asks_host=header["asks_host"],
         limit=header["limit"],
     )
 

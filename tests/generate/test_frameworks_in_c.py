@@ -13,10 +13,9 @@ from tests.generate.driver import needs_gcc
 
 ROOT = Path(__file__).resolve().parents[2]
 FRAMEWORKS = ("yarp", "protobuf", "ros", "omg", "lcm", "orocos")
-FOLDERS = [*(f"frameworks/{name}" for name in FRAMEWORKS), "operations"]
+FOLDERS = [*(pytest.param(f"frameworks/{name}", marks=pytest.mark.campaign) for name in FRAMEWORKS), "operations"]
 
 
-@pytest.mark.campaign
 @needs_gcc
 @pytest.mark.parametrize("folder", FOLDERS)
 def test_they_pass(folder):
