@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from functools import lru_cache
 from itertools import accumulate
+from pathlib import Path
 
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -41,6 +42,13 @@ class Span:
     def __str__(self) -> str:
         line, column = self.source.line_column(self.start)
         return f"{self.source.name}:{line}:{column}"
+
+
+def shipped_folders() -> tuple[Path, ...]:
+    """The IDL files and mappings of the package: in its data folder when installed, else those of the checkout."""
+    package = Path(__file__).parent
+    root = package / "share" if (package / "share").is_dir() else package.parent
+    return (root / "idl", root / "mappings")
 
 
 @lru_cache(maxsize=8)

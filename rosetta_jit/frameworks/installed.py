@@ -6,6 +6,7 @@ from functools import cache
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.model.types import name_parts
+from rosetta_jit.source import shipped_folders
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.entry_points import offered
 from rosetta_jit.startup.garbage import imported
@@ -22,6 +23,12 @@ GROUP = "rosetta_jit.frameworks"
 
 OURS = ("yarp", "protobuf", "ros1", "corba", "ros2", "lcm", "orocos")
 """Folders beside this file with a `framework.FRAMEWORK`. Of several that read files of a suffix, the first does if nothing else decides."""
+
+
+@cache
+def _definitions() -> str:
+    """Where the shipped definitions lie, each framework's in a folder of its name."""
+    return str(shipped_folders()[0])
 
 
 @cache
@@ -53,7 +60,7 @@ class Readers:
         request names, that has its encoding, or whose ``files`` the name matches, or the first.
         """
         readers = [each for each in self.frameworks.values() if each.reads(file)]
-        shipped = [each for each in readers if f"/idl/{each.name}/" in f"/{file}"]
+        shipped = [each for each in readers if file.startswith(f"{_definitions()}/{each.name}/")]
         named = [each for each in readers if each.name == self.framework]
         encoding = [each for each in readers if self.encoding in each.encodings]
         matching = [each for each in readers if each.claims(file)]

@@ -7,9 +7,10 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import ReportError
-from rosetta_jit.language.imports.search import refusal, shipped_folders
+from rosetta_jit.language.imports.search import refusal
 from rosetta_jit.model.types import name_parts
 from rosetta_jit.pipeline.limits import MAX_FILES, MAX_GUESSES, MAX_READ
+from rosetta_jit.source import shipped_folders
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -19,7 +19,7 @@ from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.language.limits import MAX_FILE_BYTES, MAX_LISTED_FILES, MAX_TEXT_BYTES
-from rosetta_jit.source import Source
+from rosetta_jit.source import Source, shipped_folders
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
 
@@ -193,13 +193,6 @@ def _is_absolute(name: str) -> bool:
 def _lies_in(name: str, folders: tuple[Path, ...]) -> bool:
     """Whether an absolute path names something in one of some folders."""
     return any(Path(name).is_relative_to(place) for folder in folders for place in (folder.absolute(), folder.resolve()))
-
-
-def shipped_folders() -> tuple[Path, ...]:
-    """The IDL files and mappings of the package: in its data folder when installed, else those of the checkout."""
-    package = Path(__file__).parents[2]
-    root = package / "share" if (package / "share").is_dir() else package.parent
-    return (root / "idl", root / "mappings")
 
 
 def _is_file(path: Path) -> bool:
