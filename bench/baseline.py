@@ -16,7 +16,7 @@ FOLDER = Path(__file__).resolve().parent / "baseline"
 KEPT = 3
 """How many runs there are at most; the oldest goes."""
 
-CPU = ("brand_raw", "count")
+CPU = ("brand_raw", "family", "model", "count")
 MACHINE = ("system", "python_implementation", "python_version")
 ROW = ("what", "at_most", "unit", "against")
 

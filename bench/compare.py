@@ -121,16 +121,22 @@ def main(given: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("old", type=Path, nargs="+", help="a run's JSON; several of one version tell how much runs vary")
     parser.add_argument("new", type=Path, help="the JSON of the run that is judged")
-    parser.add_argument("--same-machine", action="store_true", help="end with 0 where the old runs are of another machine")
+    parser.add_argument(
+        "--same-machine", action="store_true", help="leave out old runs of other machines, and end with 0 where none is left"
+    )
     asked = parser.parse_args(given)
     try:
         olds, new = [read(path) for path in asked.old], read(asked.new)
     except RunError as error:
         print(f"bench.compare: {error}", file=sys.stderr)
         return 2
-    if asked.same_machine and (other := _other_machine(olds, new)):
-        print(f"not compared with runs of {other}")
-        return 0
+    if asked.same_machine:
+        others = {run.about["machine"] for run in olds} - {new.about["machine"]}
+        olds = [run for run in olds if run.about["machine"] not in others]
+        if others:
+            print(f"not compared with runs of {', '.join(sorted(others))}")
+        if not olds:
+            return 0
     before = together([run.report.rows for run in olds])
     found = changes(before, new.report.rows)
     compared = [each for each in found if each.is_comparable]
@@ -138,11 +144,6 @@ def main(given: Sequence[str] | None = None) -> int:
     for remark in remarks(olds[-1], before, new, found):
         print(remark)
     return int(any(each.is_regression for each in compared))
-
-
-def _other_machine(olds: Iterable[Run], new: Run) -> str:
-    """What another kind of machine an old run was made on; empty where there is none."""
-    return next((run.about["machine"] for run in olds if run.about["machine"] != new.about["machine"]), "")
 
 
 if __name__ == "__main__":

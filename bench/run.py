@@ -69,8 +69,14 @@ def surroundings(run: Mapping[str, Any]) -> dict[str, str]:
         "when": run["datetime"],
         "commit": str(run["commit_info"].get("id", "unknown")) + (" and changes" if run["commit_info"].get("dirty") else ""),
         "run": "quick: few and short rounds" if ours["quick"] else "full",
-        "machine": f"{cpu.get('brand_raw', machine.get('processor', ''))}, {cpu.get('count', '?')} processors",
+        "machine": _machine(cpu, machine.get("processor", "")),
         "system": f"{machine['system']} {machine['release']}",
         "Python": f"{machine['python_implementation']} {machine['python_version']}",
         **ours["versions"],
     }
+
+
+def _machine(cpu: Mapping[str, Any], name: str) -> str:
+    """The kind of processor: of one brand there are several."""
+    generation = f" (family {cpu['family']}, model {cpu['model']})" if cpu.get("family") is not None else ""
+    return f"{cpu.get('brand_raw', name)}{generation}, {cpu.get('count', '?')} processors"

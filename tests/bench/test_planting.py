@@ -90,7 +90,12 @@ def test_runs_of_other_machines_are_not_compared(tmp_path, capsys):
     assert compare.main([str(old), str(new)]) == 1
     assert compare.main(["--same-machine", str(old), str(new)]) == 0
     assert "not compared with runs of" in capsys.readouterr().out
-    assert compare.main(["--same-machine", str(old), str(written(new, [runs.row("a", 9.0)]))]) == 1
+    same = written(tmp_path / "same.json", [runs.row("a", 9.0)])
+    assert compare.main(["--same-machine", str(old), str(same)]) == 1
+    assert compare.main(["--same-machine", str(new), str(old), str(same)]) == 1
+    slow["machine_info"]["cpu"] |= {"count": 2, "family": 26, "model": 2}
+    new.write_text(json.dumps(slow))
+    assert compare.main(["--same-machine", str(old), str(new)]) == 0
 
 
 def written(path, rows):
