@@ -36,12 +36,12 @@ def compiled(compiler: str, folder: Path, name: str, *options: str) -> Path:
 
 
 def driver(folder: Path, name: str, compiler: str = "gcc", options: tuple[str, ...] = SANITIZED) -> Path:
-    """The program around a unit."""
+    """The program around a unit, which must not give a compiler cause to complain."""
     made = folder / f"{name}.{compiler}"
     words = [f'-DHEADER="{name}.h"', f"-DUNIT={name}"]
     sources = [MAIN, folder / f"{name}.c", "-lm"]
     done = subprocess.run(
-        [compiler, "-std=c11", *options, f"-I{folder}", *words, "-o", made, *sources], capture_output=True, text=True, check=False
+        [compiler, *STRICT, *options, f"-I{folder}", *words, "-o", made, *sources], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
     return made
@@ -56,7 +56,7 @@ def driver_of_object(folder: Path, name: str, compiler: str = "gcc", options: tu
     words = [f'-DHEADER="{name}.h"', f"-DUNIT={name}"]
     sources = [MAIN, calls, folder / f"{name}.o", "-lm"]
     done = subprocess.run(
-        [compiler, "-std=c11", *options, f"-I{folder}", *words, "-o", made, *sources], capture_output=True, text=True, check=False
+        [compiler, *STRICT, *options, f"-I{folder}", *words, "-o", made, *sources], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
     return made

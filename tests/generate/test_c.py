@@ -387,3 +387,17 @@ def test_capacities_are_what_the_schema_bounds():
     text = generated(TORSO, "c", ("decode",), "torso")["torso.h"]
     assert "#define TORSO_ANGLES_ROWS 3 " in text
     assert Path("torso.h").name in generated(TORSO, "c", ("decode",), "torso")
+
+
+def test_lanes_of_one_field_are_told_apart():
+    """By what they hold, whatever other fields there are: their names are those of constants, too."""
+    schema = "string[] name\nstring name_bytes\nPart[] parts\n===\nMSG: a/Part\nstring[] name\n"
+    text = generated(type_request("decode", "a/B", {"encoding": "ros1", "schema": schema}), "c", BOTH, "unit")["unit.h"]
+    assert re.findall(r"#ifndef UNIT_(\w+)_ROWS", text) == [
+        "NAME",
+        "NAME_BYTES_2",
+        "NAME_BYTES",
+        "PARTS",
+        "PARTS_NAME",
+        "PARTS_NAME_BYTES",
+    ]

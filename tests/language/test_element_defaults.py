@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 import rosetta_jit as rj
 from tests.language.pairs import BACKENDS, pair
+from tests.random_mappings.fields import written
 
 POINTS = '("points" (:list (:bottle ("x" :double) ("y" :double) ("label" :string)))) ("n" :int)'
 
@@ -97,3 +100,32 @@ rules:
     message = encode(encode.holder_type.from_dict({"spots": [{"x": 1.5, "note": "lost"}, {"x": -2.0, "note": ""}]}))
     assert decode(message).to_dict() == {"spots": [{"x": 1.5, "note": ""}, {"x": -2.0, "note": ""}]}
     assert [loss.place for loss in decode.mapping.laws.holders.losses] == [".spots[].note"]
+
+
+NUMBERS = {
+    "lab/msg/Part.msg": "int8 a\nfloat64 b\nInner c\nint16 d\n",
+    "lab/msg/Inner.msg": "int16 e\nint64 f\n",
+    "lab/msg/Parts.msg": "Part[] parts\nfloat64 x\n",
+    "h.proto": 'syntax = "proto3"; message H { repeated int32 d = 1; double x = 2; }',
+    "m.mapping": """import "lab/msg/Parts.msg"
+import "h.proto"
+data-holder: H
+wire-schema: lab/msg/Parts
+rules:
+  .d[] <-> .parts[].d
+  .x <-> .x
+  ignore rest
+""",
+}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(("encoding", "order"), [("ros1", None), ("cdr", "big"), ("cdr2", "little")])
+def test_every_byte_of_a_message_is_written(encoding: str, order: Any, backend: str) -> None:
+    """Also where rules work on the message in place, and the numbers of an element are left alone, and those beside them."""
+    encode = rj.Encoder("m.mapping", schema=NUMBERS, encoding=encoding, byte_order=order, backend=backend)
+    message = written(encode, {"d": [1, -2, 3], "x": 0.5})
+    read = rj.Decoder.of("lab/msg/Parts", schema=NUMBERS, imports=["lab/msg/Parts.msg"], encoding=encoding, backend="interpreter")
+    nothing = {"a": 0, "b": 0.0, "c": {"e": 0, "f": 0}}
+    parts = [{**nothing, "d": number} for number in (1, -2, 3)]
+    assert read(message).to_dict() == {"parts": parts, "x": 0.5}

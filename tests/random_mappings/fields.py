@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,18 @@ from tests.random_mappings.meaning import INTEGERS, TEXTS, Fields, Value
 
 if TYPE_CHECKING:
     import random
+
+    import rosetta_jit as rj
+
+
+def written(encode: rj.Encoder, values: dict[str, Any]) -> bytes:
+    """The message of values, every byte of which is written: what a buffer had before does not show."""
+    holder = encode.holder_type.from_dict(values)
+    message = bytes(encode(holder))
+    buffer = bytearray(b"\xa5" * len(message))
+    assert encode.into(holder, buffer) == len(message)
+    assert buffer == message
+    return message
 
 
 def some_value(rng: random.Random, type_: str) -> Value:

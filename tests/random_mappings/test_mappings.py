@@ -9,7 +9,7 @@ import pytest
 
 import rosetta_jit as rj
 from tests.random_mappings.arrays import Arrays, some_arrays
-from tests.random_mappings.fields import plain, some_fields
+from tests.random_mappings.fields import plain, some_fields, written
 from tests.random_mappings.meaning import LEAVES, Refused
 from tests.random_mappings.values import Maker
 
@@ -32,7 +32,7 @@ def runner(files, direction, backend, out="ros1", functions=None):
         return lambda fields: decode(write(write.holder_type.from_dict(fields))).to_dict()
     encode = rj.Encoder("m.mapping", schema=files, backend=backend, functions=functions or {}, **OPTIONS[out])
     read = rj.Decoder.of("t/Out", **common, **OPTIONS[out])
-    return lambda fields: read(encode(encode.holder_type.from_dict(fields))).to_dict()
+    return lambda fields: read(written(encode, fields)).to_dict()
 
 
 def mapping(files, rules, direction):

@@ -13,7 +13,7 @@ from tests.language.test_random_laws import is_near
 from tests.random_mappings.blocks import Relations
 from tests.random_mappings.defaults import defaulted, demanded
 from tests.random_mappings.digits import digits, divided, moment, taken_apart
-from tests.random_mappings.fields import plain
+from tests.random_mappings.fields import plain, written
 from tests.random_mappings.flags import flags, joined
 from tests.random_mappings.meaning import Refused
 from tests.random_mappings.message_types import Kind, Message
@@ -43,15 +43,20 @@ def relations(rng: random.Random, names: tuple[str, str]) -> tuple[Side, Side, l
     if "yarp" not in "".join(names):  # whose inner structs have no names
         made.more += (via,)
     parts = [made.part() for _ in range(rng.randrange(1, 7))]
+    return *sides(rng, names, parts), parts
+
+
+def sides(rng: random.Random, names: tuple[str, str], parts: list[Part]) -> tuple[Side, Side]:
+    """The types that have the fields of all relations, in any order."""
     kinds: list[dict[str, Kind]] = [{}, {}]
     for part in parts:
         kinds[0] |= part.wire
         kinds[1] |= part.holder
-    sides = [
+    src, dst = (
         Message(name, {each: fields[each] for each in rng.sample(list(fields), len(fields))})
         for name, fields in zip(["Src", "Dst"], kinds, strict=True)
-    ]
-    return Side(wire, sides[0]), Side(holder, sides[1]), parts
+    )
+    return Side(WIRES[names[0]], src), Side(WIRES[names[1]], dst)
 
 
 def mappings(src: Side, dst: Side, parts: list[Part]) -> dict[str, str]:
@@ -138,7 +143,7 @@ def check_relations(seed: int, names: tuple[str, str], backends: list[str]) -> N
         return found[0]
 
     def encoded(values: dict[str, Any]) -> Any:
-        found = [said(lambda values, encode=encode: bytes(encode(encode.holder_type.from_dict(values))), values) for encode in encoders]
+        found = [said(lambda values, encode=encode: written(encode, values), values) for encode in encoders]
         assert all(each == found[0] or shown(each) == shown(found[0]) for each in found), (seed, names, backends, found, files)
         return found[0]
 

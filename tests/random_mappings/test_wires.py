@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from tests.random_mappings.fields import plain
+from tests.random_mappings.fields import plain, written
 from tests.random_mappings.meaning import LEAVES, Refused
 from tests.random_mappings.message_types import CONSTANTS, Array, Enum, Kind, Message, Scalar, leaves, presences, seen, some
 from tests.random_mappings.rules import Filler, Rules
@@ -119,7 +119,7 @@ def runner(files: dict[str, str], src: Side, dst: Side, direction: str, backend:
         return lambda fields: decode(write(write.holder_type.from_dict(fields))).to_dict()
     encode = rj.Encoder("m.mapping", schema=files, backend=backend, **dst.wire.options, **dst.wire.written)
     read = rj.Decoder.of(dst.type_name, schema=files, imports=list(dst.files), backend="interpreter", **dst.wire.options)
-    return lambda fields: read(encode(encode.holder_type.from_dict(fields))).to_dict()
+    return lambda fields: read(written(encode, fields)).to_dict()
 
 
 def outcome(run: Callable[[dict[str, Any]], dict[str, Any]], fields: dict[str, Any]) -> Any:

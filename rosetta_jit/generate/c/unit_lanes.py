@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import count
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace
@@ -11,18 +12,19 @@ from rosetta_jit.generate.c.lanes import OWN_WORDS, Lane, Lanes
 from rosetta_jit.generate.c.rows import Structs, elements_of
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.words import RESERVED, of_unit
-from rosetta_jit.model.layout import UNKNOWN
+from rosetta_jit.model.layout import UNKNOWN, Number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from rosetta_jit.generate.unit import Unit
+    from rosetta_jit.model.layout import Lane as LayoutLane
 
 
 def own_lanes(unit: Unit) -> tuple[Structs, list[Lane]]:
     """The holder's, and the structs of their rows."""
     structs = Structs(unit.name, Namespace(RESERVED | words_of(unit) | {f"{unit.name}_source"}), {})
-    named = _named([lane.name.replace(UNKNOWN, "unknown") for lane in unit.layout.lanes], unit.name)
+    named = _named(_told_apart(unit.layout.lanes), unit.name)
     elements = elements_of(unit.layout, structs, tuple(name for name, _ in named))
     return structs, [Lane(*names, lane.stride, element) for names, lane, element in zip(named, unit.layout.lanes, elements, strict=True)]
 
@@ -36,16 +38,24 @@ def named_lanes(unit: Unit, reserved: frozenset[str]) -> Callable[[Sequence[int]
 def _named(names: Sequence[str], unit: str) -> list[tuple[str, str]]:
     """For each lane the identifiers of its pointer and of its count: variables, which hide no type of the unit's and no function."""
     scope = Namespace(RESERVED | OWN_WORDS | function_names() | of_unit(unit, names))
-    pointers = ["message" if number == 0 else scope.identifier(_unique(names, number)) for number in range(len(names))]
+    pointers = ["message" if number == 0 else scope.identifier(name) for number, name in enumerate(names)]
     return [(pointer, scope.identifier(f"{pointer}\0used")) for pointer in pointers]
+
+
+def _told_apart(lanes: Sequence[LayoutLane]) -> list[str]:
+    """For each lane another name: an array of texts is ``name``, what its elements consist of ``name_bytes``."""
+    own = [lane.name.replace(UNKNOWN, "unknown") or ("rows" if number else "") for number, lane in enumerate(lanes)]
+    found, taken = list[str](), set(own)
+    for lane, name in zip(lanes, own, strict=True):
+        if name in found:
+            wanted = f"{name}_bytes" if isinstance(lane.element, Number) and lane.element.scalar == "u8" else f"{name}_elements"
+            name = next(each for number in count(1) if (each := wanted if number == 1 else f"{wanted}_{number}") not in taken)  # noqa: PLW2901
+            taken.add(name)
+        found.append(name)
+    return found
 
 
 def hidden_lanes(strides: Iterable[int]) -> list[Lane]:
     """The lanes of a kernel that are not the holder's."""
     return [Lane(f"scratch_{number}", f"scratch_{number}_used", stride, None) for number, stride in enumerate(strides)]
 
-
-def _unique(names: Sequence[str], number: int) -> str:
-    """The name of a lane; those that share one, as the rows of recursive structs may, are numbered."""
-    name = names[number] or "rows"
-    return name if names.count(names[number]) == 1 else f"{name}\0{number}"

@@ -85,9 +85,11 @@ class Runner:
                     assert_never(rule)
 
     def leave(self, place: typed.Place, values: Values) -> None:
-        """Leave a place as it is; what the schema requires is there."""
+        """Leave a place as it is, which is 0 or empty; what the schema requires is there."""
         last = place.steps[-1]
-        if isinstance(last, typed.FieldStep) and last.field.required and isinstance(self.target, HolderSide):
+        if isinstance(self.target, WireSide):
+            self.target.clear(place, values)
+        elif isinstance(last, typed.FieldStep) and last.field.required:
             self.target.appear(place, values)
 
     def branch(self, rules: tuple[typed.Rule, ...], values: Values) -> Block:

@@ -92,6 +92,13 @@ class WireSide:
             region, at = self.element(key, indices, values)
             self.writer.emit(Store(at, converted(value, region.scalar), ">" if region.order == ">" else "<"))
 
+    def clear(self, place: typed.Place, values: Evaluation) -> None:
+        """Numbers of an element, for which the walk has left room, are 0; it has written those outside arrays."""
+        key, indices = wire_key(place)
+        for each in [each for each in self.root.found.regions if indices and each[: len(key)] == key]:
+            region, at = self.element(each, indices, values)
+            self.writer.emit(Store(at, Const(region.scalar, 0), ">" if region.order == ">" else "<"))
+
     def is_open(self, place: typed.Place) -> bool:
         """Whether the walk has left room for the bytes of a field, and not copied them."""
         return (*wire_key(place)[0], EACH) in self.root.found.regions
