@@ -58,4 +58,3 @@ def _told_apart(lanes: Sequence[LayoutLane]) -> list[str]:
 def hidden_lanes(strides: Iterable[int]) -> list[Lane]:
     """The lanes of a kernel that are not the holder's."""
     return [Lane(f"scratch_{number}", f"scratch_{number}_used", stride, None) for number, stride in enumerate(strides)]
-
