@@ -10,7 +10,9 @@ encode(angles)                          # bytes
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import os
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Unpack
 
 from rosetta_jit.errors import (
     AddressError,
@@ -32,10 +34,6 @@ from rosetta_jit.errors import (
 )
 
 if TYPE_CHECKING:
-    import os
-    from collections.abc import Callable, Iterable, Mapping
-    from typing import Unpack
-
     from rosetta_jit.api.bridges import Bridge
     from rosetta_jit.api.options import Options
     from rosetta_jit.api.programs import Decoder, Encoder

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -16,9 +18,6 @@ except ImportError:
     raise MissingPackage("logs on Dask take its package: pip install 'rosetta-jit[dask]'") from None
 
 if TYPE_CHECKING:
-    import os
-    from collections.abc import Iterable
-
     from dask.dataframe import DataFrame
 
     from rosetta_jit.logs.moments import Moment

@@ -6,14 +6,13 @@ function, or a `Mistake` where the place is all that differs.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.terminal import TAB_CELLS, cells, printable
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rosetta_jit.source import Span
 
 MAX_LINE = 160

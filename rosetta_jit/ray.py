@@ -6,6 +6,8 @@ which it is filtered are not read.
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -22,9 +24,6 @@ except ImportError:
     raise MissingPackage("logs on Ray take its package: pip install 'rosetta-jit[ray]'") from None
 
 if TYPE_CHECKING:
-    import os
-    from collections.abc import Iterable, Iterator, Sequence
-
     import pyarrow as pa
     from ray.data import Dataset
     from ray.data.expressions import Expr

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import lzma
 import struct
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, BinaryIO, cast
 
 from rosetta_jit.catalogue import recording as words
@@ -18,7 +19,6 @@ from rosetta_jit.file_errors import named
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
 MAX_MESSAGE_BYTES = 256 * 1024 * 1024

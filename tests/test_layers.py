@@ -330,6 +330,41 @@ def is_for_types(node):
     return isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
 
 
+def test_imports_for_types_alone_stand_apart_where_that_saves_loading():
+    """Under TYPE_CHECKING is what a module would not load otherwise, and what is there for type checkers alone. All else has one place."""
+    graph = {module: loaded(path) & modules().keys() | {module.rpartition(".")[0]} - {module} for module, path in modules().items()}
+    wrong = [
+        f"{path.relative_to(PACKAGE.parent)}:{node.lineno} imports {alias.name} for types alone"
+        for module, path in modules().items()
+        for node in for_types(path)
+        if isinstance(node, ast.ImportFrom) and str(node.module).startswith("rosetta_jit")
+        for alias in node.names
+        for target in [target_of(node, alias)]
+        if target in reach(graph, module) and alias.name not in names_for_types(modules()[target]) and alias.asname != alias.name
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def loaded(path):
+    """What a module loads when it is imported: the modules, and the packages that they are in."""
+    whole = set(top_level(path))
+    return whole | {each[:at] for each in whole for at, letter in enumerate(each) if letter == "."}
+
+
+def for_types(path):
+    """Statements of a module that are under TYPE_CHECKING."""
+    return [statement for node in parsed(path).body if is_for_types(node) for statement in node.body]
+
+
+@cache
+def names_for_types(path):
+    """Names that a module has for type checkers alone."""
+    stored = {
+        each.id for node in for_types(path) for each in ast.walk(node) if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)
+    }
+    return stored | {alias.asname or alias.name for node in for_types(path) if isinstance(node, ast.ImportFrom) for alias in node.names}
+
+
 def test_nothing_is_imported_in_a_circle():
     """Also by imports inside functions and under TYPE_CHECKING: who reads a module need not have read one that needs it."""
     graph = {module: {target for target, _ in imported(path)} & modules().keys() - {module} for module, path in modules().items()}
@@ -354,5 +389,10 @@ def top_level(path):
             case ast.Import():
                 yield from (alias.name.removeprefix("rosetta_jit.") for alias in node.names)
             case ast.ImportFrom(module=str(module)) if module.startswith("rosetta_jit"):
-                short = module.removeprefix("rosetta_jit").lstrip(".")
-                yield from (f"{short}.{alias.name}".lstrip(".") if is_module(module, alias.name) else short for alias in node.names)
+                yield from (target_of(node, alias) for alias in node.names)
+
+
+def target_of(node, alias):
+    """The module of ours that a name is imported from, or that it names."""
+    short = node.module.removeprefix("rosetta_jit").lstrip(".")
+    return f"{short}.{alias.name}".lstrip(".") if is_module(node.module, alias.name) else short

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal, Self, TypedDict, Unpack, cast
 
 from rosetta_jit.api.loading import answer, interpreted_kernel, library, sites_of
-from rosetta_jit.api.options import request_of, type_request
+from rosetta_jit.api.options import Options, request_of, type_request
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import from_plain
@@ -18,9 +19,6 @@ from rosetta_jit.runtime.registers import Kept
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.api.options import Options
     from rosetta_jit.pipeline.bridge import BridgeBuild
     from rosetta_jit.pipeline.stages import StageName
     from rosetta_jit.pipeline.transcoding import TranscodingBuild

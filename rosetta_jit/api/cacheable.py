@@ -5,13 +5,12 @@ Such a program is compiled whenever it is made. A note in the cache says so, and
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.runtime.cache.names import request_name
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
-
     from rosetta_jit.pipeline.request import GivenFunction, Request
     from rosetta_jit.runtime.cache.kernels import Cache
 

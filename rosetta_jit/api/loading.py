@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, suppress
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rosetta_jit.api import cacheable as certainty
 from rosetta_jit.kernel.entries import HOST, ON_DEMAND
@@ -15,10 +16,6 @@ from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.allowed import ForeignCodeError
 from rosetta_jit.runtime.on_demand import Place
 from rosetta_jit.startup.garbage import seldom_collected
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-    from contextlib import AbstractContextManager
 
 RECENT = 8
 """How many programs of the cache are kept loaded though nobody uses them, for who makes the same one again and again."""

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import Any, TypedDict
 
-from rosetta_jit.pipeline.request import GivenFunction, Request, plain_parameters
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-
-    from rosetta_jit.pipeline.request import Backend, ByteOrder, Direction
+from rosetta_jit.pipeline.request import Backend, ByteOrder, Direction, GivenFunction, Request, plain_parameters
 
 
 class Options(TypedDict, total=False):

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self, Unpack
 
 from rosetta_jit.api.loading import answer, interpreted_kernel, is_as_before, library, sites_of
-from rosetta_jit.api.options import request_of, type_request
+from rosetta_jit.api.options import Options, request_of, type_request
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.base import manners_of
 from rosetta_jit.kernel.entries import SYMBOLS
@@ -18,7 +19,7 @@ from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import callable_class, public_class
 from rosetta_jit.runtime.decoder import DecoderBase
 from rosetta_jit.runtime.encoder import EncoderBase
-from rosetta_jit.runtime.holder import holder_class_of
+from rosetta_jit.runtime.holder import Holder, holder_class_of
 from rosetta_jit.runtime.looks.described import DescribedProgram
 from rosetta_jit.runtime.on_demand import OnDemand
 from rosetta_jit.runtime.program import Loaded
@@ -27,14 +28,10 @@ from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.api.options import Options
     from rosetta_jit.frameworks.definitions import Definition
     from rosetta_jit.pipeline.build import Build
     from rosetta_jit.pipeline.checked_mapping import CheckedMapping
     from rosetta_jit.pipeline.stages import StageName
-    from rosetta_jit.runtime.holder import Holder
 
 
 class _Made:

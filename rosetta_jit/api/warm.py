@@ -6,24 +6,19 @@ import os
 import sys
 import threading
 import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import replace
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rosetta_jit.api.programs import program_of
 from rosetta_jit.errors import ReportError
-from rosetta_jit.pipeline.request import Request, plain_parameters
+from rosetta_jit.pipeline.request import Direction, Request, plain_parameters
 from rosetta_jit.runtime.attributes.code import make_ready
 from rosetta_jit.runtime.decoder import complete
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-
-    from rosetta_jit.pipeline.request import Direction
 
 SUFFIX = ".mapping"
 LEAST = 4

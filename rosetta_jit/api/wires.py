@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack
 
 from rosetta_jit.api.options import Options, request_of
 from rosetta_jit.api.programs import Decoder, Encoder, program_of
 from rosetta_jit.kernel.state import VALID
+from rosetta_jit.pipeline.request import Direction, Request
 from rosetta_jit.runtime.arrivals import ages
+from rosetta_jit.runtime.holder import Holder
 from rosetta_jit.runtime.program import shared_of, wires_of
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from _typeshed import ReadableBuffer as Buffer
 
     from rosetta_jit.pipeline.checked_mapping import CheckedMapping
-    from rosetta_jit.pipeline.request import Direction, Request
-    from rosetta_jit.runtime.holder import Holder
 
 _Program = TypeVar("_Program", Decoder, Encoder)
 

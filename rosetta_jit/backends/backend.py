@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rosetta_jit.kernel.host import Functions
     from rosetta_jit.kernel.ir import Kernel
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import field
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Advance, Block, For, If, Kernel, Stmt, Switch, While
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Generator, Iterator
 
 MAX_IDENTIFIER = 60
 """Longer names from schemas are cut."""

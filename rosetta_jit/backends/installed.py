@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 from rosetta_jit.backends.backend import Backend
 from rosetta_jit.startup.entry_points import offered
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 GROUP = "rosetta_jit.backends"
 """The entry-point group in which packages offer backends of their own: a `Backend` each."""

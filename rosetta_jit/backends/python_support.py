@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, MutableSequence, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,8 +10,6 @@ import numpy as np
 from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, GROW, GROW_LANE, GROW_ROWS, INDEX_WORDS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, MutableSequence, Sequence
-
     State = np.ndarray[tuple[int], np.dtype[np.int64]]
     Bytes = bytes | bytearray | memoryview
     Registers = MutableSequence[int]

@@ -3,28 +3,22 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rosetta_jit.bridge.announcing import announced
-from rosetta_jit.bridge.configuration import read
+from rosetta_jit.bridge.configuration import Configuration, Route, Rpc, Translation, read
 from rosetta_jit.bridge.patterns import is_pattern
-from rosetta_jit.bridge.translating import Unchanged, differences, translator, translator_of
+from rosetta_jit.bridge.translating import Translator, Unchanged, differences, translator, translator_of
 from rosetta_jit.catalogue import bridge as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import AddressError, BridgeError, RosettaError
-from rosetta_jit.transports.address import parse, settle
+from rosetta_jit.source import Span
+from rosetta_jit.transports.address import Address, parse, settle
+from rosetta_jit.transports.base import Transport
 from rosetta_jit.transports.installed import installed
 from rosetta_jit.transports.opening import COMMON
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.bridge.configuration import Configuration, Route, Rpc, Translation
-    from rosetta_jit.bridge.translating import Translator
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
-    from rosetta_jit.transports.address import Address
-    from rosetta_jit.transports.base import Transport
 
 
 def checked(path: str) -> Configuration:

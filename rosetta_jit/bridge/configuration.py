@@ -12,20 +12,17 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import Any, Literal, cast
 
 from rosetta_jit.bridge.limits import MAX_QUEUE
 from rosetta_jit.bridge.toml_spans import TomlSpans, place_of_syntax
 from rosetta_jit.catalogue import bridge as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import BridgeError
 from rosetta_jit.source import Source
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
 
 LEAST, MOST = 1e-6, 1e9
 

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
+from collections.abc import Sequence
 from operator import add
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rosetta_jit.bridge.limits import MAX_CAUSES
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 OTHERS = "other causes"
 SUB = 8

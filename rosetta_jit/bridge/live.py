@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
+from collections.abc import Callable, Mapping
 from time import monotonic, perf_counter_ns
 from typing import TYPE_CHECKING
 
@@ -16,8 +17,6 @@ from rosetta_jit.errors import MessageError, TransportError
 from rosetta_jit.transports.limits import MAX_QUEUE_BYTES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     from rosetta_jit.bridge.configuration import Route
     from rosetta_jit.bridge.translating import Translator
     from rosetta_jit.transports.base import Bytes, Caller, Sink

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.bridge.limits import MAX_ASKING
@@ -11,8 +12,6 @@ from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.http_server import Handler, QuestionServer
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
     Snapshot = Callable[[], list[dict[str, Any]]]
 
 PREFIX = "rosetta_jit_bridge"

@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.bridge.announcing import announced, served, wanted
-from rosetta_jit.bridge.configuration import Route
+from rosetta_jit.bridge.configuration import Configuration, Route, Rpc
 from rosetta_jit.bridge.limits import MAX_CLOSING, MAX_FOUND, MAX_OPENING
 from rosetta_jit.bridge.live import LINGER_S, Inlet, LiveRoute
 from rosetta_jit.bridge.patterns import is_pattern, matching, place_to_list
 from rosetta_jit.bridge.services import LiveService
 from rosetta_jit.bridge.translating import translator, translator_of
 from rosetta_jit.errors import RosettaError
+from rosetta_jit.transports.base import Message, Source
+from rosetta_jit.transports.end import End
 from rosetta_jit.transports.opening import call, names, publish, serve, subscribe
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
-
-    from rosetta_jit.bridge.configuration import Configuration, Rpc
-    from rosetta_jit.transports.base import Bytes, Message, Source
-    from rosetta_jit.transports.end import End
+    from rosetta_jit.transports.base import Bytes
 
     Live = LiveRoute | LiveService
     Key = tuple[str, tuple[tuple[str, str], ...]]

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.bridge.counting import RouteCounts
 from rosetta_jit.errors import MessageError, TransportError
-from rosetta_jit.transports.base import ANSWER_FAILED
+from rosetta_jit.transports.base import ANSWER_FAILED, Caller, Message, Server
 
 if TYPE_CHECKING:
     from rosetta_jit.bridge.configuration import Rpc
     from rosetta_jit.bridge.live import Say
     from rosetta_jit.bridge.translating import Translator
-    from rosetta_jit.transports.base import Caller, Message, Server
 
 
 class LiveService:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import json
 import math
 import threading
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     from rosetta_jit.api.bridges import Bridge
     from rosetta_jit.api.programs import Encoder
     from rosetta_jit.api.wires import Decoders

@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Collection
 
 from rosetta_jit.catalogue.mapping import CALLED, shorten
 from rosetta_jit.catalogue.resolve import nearest, written_at
-from rosetta_jit.diagnostics import Mistake, error, warning
-
-if TYPE_CHECKING:
-    from collections.abc import Collection
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error, warning
+from rosetta_jit.source import Span
 
 
 def missing(span: Span | None, name: str) -> Diagnostic:

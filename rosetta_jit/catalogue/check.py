@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from rosetta_jit.catalogue.mapping import shorten
-from rosetta_jit.diagnostics import Mistake, error, warning
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
-
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error, warning
+from rosetta_jit.source import Span
 
 BEYOND = "indices count from 0 and stay below the length: correct the index, or the length"
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.spelling import closest
-from rosetta_jit.diagnostics import error
+from rosetta_jit.diagnostics import Diagnostic, error
 
 if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
 EXAMPLE = 'write `crc(.data, "CRC-32")`, or `crc(slice(.data, 0, 8), "CRC-16/MODBUS")`'

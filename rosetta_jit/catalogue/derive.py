@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from rosetta_jit.catalogue.limits import MAX_PLACES
 from rosetta_jit.catalogue.mapping import shorten
-from rosetta_jit.diagnostics import Mistake, error
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
-
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error
+from rosetta_jit.source import Span
 
 OTHER_PARTS = "the text has another number of parts than the mapping reads"
 """Why a message is refused that would come back with other parts."""

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Collection
 
 from rosetta_jit.catalogue.resolve import nearest
-from rosetta_jit.diagnostics import error
-
-if TYPE_CHECKING:
-    from collections.abc import Collection
-
-    from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.diagnostics import Diagnostic, error
 
 
 def unknown_type(name: str, known: Collection[str]) -> Diagnostic:

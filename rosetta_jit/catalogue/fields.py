@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.habits import for_member, path_before
 from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.resolve import did_you_mean, there_are
-from rosetta_jit.diagnostics import error
+from rosetta_jit.diagnostics import Diagnostic, error
+from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.expr import Member
-    from rosetta_jit.source import Span
 
 KINDS = {"parameter": "a parameter", "state": "a state variable", "for": "a loop variable"}
 """What a name without a dot is declared by, and what it is then."""

@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
-from rosetta_jit.diagnostics import Mistake, error
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error
 
 
 def unknown_language(name: str, known: Sequence[str]) -> Diagnostic:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.spelling import shorten
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
-
     from rosetta_jit.source import Span
 
 SIGNS = (

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.resolve import written_at
-from rosetta_jit.diagnostics import error
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
+from rosetta_jit.diagnostics import Diagnostic, error
+from rosetta_jit.source import Span
 
 FORMS = {
     "compress": '`compress(pixels, "png", width, height, channels)`, and behind it a level or quality',

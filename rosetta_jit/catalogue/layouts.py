@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
 
 from rosetta_jit.catalogue.habits import for_function
 from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.spelling import closest
-from rosetta_jit.diagnostics import Mistake, error
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
-
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error
+from rosetta_jit.source import Span
 
 FORMS = {
     "reversed": "`reversed(array)` or `reversed(array, group)`",

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
 
 from rosetta_jit.catalogue.spelling import closest
-from rosetta_jit.diagnostics import error, warning
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.diagnostics import Diagnostic, error, warning
 
 _READ = "what is whole is read"
 

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.spelling import closest, shorten
 from rosetta_jit.catalogue.unexpected import instead
-from rosetta_jit.diagnostics import Mistake, error, warning
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error, warning
 from rosetta_jit.source import Span
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rosetta_jit.diagnostics import Diagnostic
 
 EXPECTATIONS = (
     ("INTEGER", "a value"),

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.diagnostics import error
+from rosetta_jit.diagnostics import Diagnostic, error
 
 if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.spelling import closest
-from rosetta_jit.diagnostics import Mistake, error, note
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error, note
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
 

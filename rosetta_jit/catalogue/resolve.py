@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Sequence
 
 from rosetta_jit.catalogue.habits import for_function, for_name, path_before
 from rosetta_jit.catalogue.limits import MAX_NAMES, MAX_QUOTED
 from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.spelling import closest, most_like
-from rosetta_jit.diagnostics import Mistake, error, note, warning
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error, note, warning
+from rosetta_jit.source import Span
 
 
 def nearest(name: str, known: Collection[str]) -> str | None:

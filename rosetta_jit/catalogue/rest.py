@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from rosetta_jit.catalogue.limits import MAX_REST
 from rosetta_jit.catalogue.mapping import shorten
-from rosetta_jit.diagnostics import Mistake, error, note
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error, note
+from rosetta_jit.source import Span
 
 
 def no_same_names(span: Span | None, target: str, origin: str) -> Diagnostic:

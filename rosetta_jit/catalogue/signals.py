@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.catalogue.mapping import shorten
-from rosetta_jit.diagnostics import error
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
+from rosetta_jit.diagnostics import Diagnostic, error
+from rosetta_jit.source import Span
 
 HOW = 'write its start bit, length, byte order and sign as a DBC file does: `"7|16@0+"`'
 

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import islice
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.limits import MAX_CANDIDATES, MAX_COMPARED
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
 
 NEAR = 3
 """How many names that are like the one written are looked at."""

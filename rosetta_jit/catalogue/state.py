@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Collection
 
 from rosetta_jit.catalogue.mapping import CALLED, shorten
 from rosetta_jit.catalogue.resolve import nearest
-from rosetta_jit.diagnostics import error, warning
-
-if TYPE_CHECKING:
-    from collections.abc import Collection
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
+from rosetta_jit.diagnostics import Diagnostic, error, warning
+from rosetta_jit.source import Span
 
 
 def unknown(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Sequence
 
 from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.resolve import did_you_mean, nearest, there_are, written_at
-from rosetta_jit.diagnostics import Mistake, error
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error
+from rosetta_jit.source import Span
 
 KINDS = {
     "text": "a text",

@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.resolve import written_at
-from rosetta_jit.diagnostics import error, warning
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
-
+from rosetta_jit.diagnostics import Diagnostic, error, warning
+from rosetta_jit.source import Span
 
 UNITS = "units are pint's: `degree`, `radian`, `m`, `mm`, `s`, `N*m`, `degC`; correct the schema"
 ANGLES = ("degree", "degrees", "deg", "radian", "radians", "rad")

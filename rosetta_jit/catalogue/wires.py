@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.resolve import nearest
-from rosetta_jit.diagnostics import Mistake, error
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
-
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error
+from rosetta_jit.source import Span
 
 nameless = Mistake(
     "wire-name", "of several wires each has a name", "no name", help="give each wire a name: `wire-schema velocity: geometry_msgs/Twist`"

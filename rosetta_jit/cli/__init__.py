@@ -11,7 +11,8 @@ import codecs
 import io
 import os
 import sys
-from typing import TYPE_CHECKING, cast
+from collections.abc import Callable, Sequence
+from typing import cast
 
 from rosetta_jit.cli import (
     bridge,
@@ -36,9 +37,6 @@ from rosetta_jit.cli import (
     stubs,
 )
 from rosetta_jit.cli import compile as compile_
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
 
 COMMANDS = (
     demo,

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-from argparse import ArgumentTypeError
+from argparse import ArgumentParser, ArgumentTypeError, Namespace
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol, cast
 
 from rosetta_jit.pipeline.request import plain_parameters
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
-    from collections.abc import Callable
-
     from rosetta_jit.api.options import Options
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import gc
 import json
 import os
@@ -15,8 +16,6 @@ from rosetta_jit.cli.arguments import Commands, add_command
 from rosetta_jit.diagnostics import to_json
 
 if TYPE_CHECKING:
-    import argparse
-
     from rosetta_jit.bridge.configuration import Configuration
     from rosetta_jit.bridge.metrics import MetricsServer
 

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import sys
 from dataclasses import asdict
-from typing import TYPE_CHECKING
 
 from rosetta_jit.cli import compile as ahead
 from rosetta_jit.cli.arguments import Commands, add_command
-
-if TYPE_CHECKING:
-    import argparse
 
 SUMMARY = "Look at the cache of compiled kernels (info), check it (verify), empty it (clear), or compile into it ahead (warm)."
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import argparse
+from collections.abc import Iterator
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -10,9 +12,6 @@ from rosetta_jit.cli.logs import add_decoding, add_log, add_selection, log_of, o
 from rosetta_jit.terminal import printable
 
 if TYPE_CHECKING:
-    import argparse
-    from collections.abc import Iterator
-
     from rosetta_jit.logs.log import Log, Message
 
 

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import sys
 from collections import Counter
 from contextlib import suppress
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.cli.arguments import Commands, add_command, add_mappings
 from rosetta_jit.diagnostics import Diagnostic, render_all, to_json
 from rosetta_jit.errors import ReportError
 from rosetta_jit.terminal import printable
-
-if TYPE_CHECKING:
-    import argparse
 
 MAX_LISTED = 1_000
 """Diagnostics of one mapping that are listed as JSON; more are counted."""

@@ -6,6 +6,8 @@ indices) says where each row begins. Fields of nested types have dotted names; l
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -14,9 +16,6 @@ from rosetta_jit.cli.values import dump
 from rosetta_jit.file_errors import named
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-    from pathlib import Path
-
     from rosetta_jit.runtime.holder import Holder
 
     Array = np.ndarray[tuple[int, ...], np.dtype[np.generic]]

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import sys
 import time
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_parameters, encoding_of, parameters_of
+from rosetta_jit.pipeline.request import Direction
 from rosetta_jit.terminal import printable
 
 if TYPE_CHECKING:
-    import argparse
-
     from rosetta_jit.api.warm import Warmed
-    from rosetta_jit.pipeline.request import Direction
 
 SUMMARY = "Compile mappings and types in both directions and keep the kernels in the cache."
 

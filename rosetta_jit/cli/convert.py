@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from argparse import ArgumentTypeError
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
@@ -11,9 +13,6 @@ from rosetta_jit.cli.arguments import Commands, add_command
 from rosetta_jit.cli.logs import add_decodings, add_log, add_selection, channels_of, log_of, one_topic, progress, show
 
 if TYPE_CHECKING:
-    import argparse
-    from collections.abc import Callable, Sequence
-
     from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.converting.rejected import Rejected
     from rosetta_jit.logs.converting.routes import Route

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,9 +13,6 @@ from rosetta_jit.cli.inputs import add_topic, decoders_of
 from rosetta_jit.errors import DecodeError
 
 if TYPE_CHECKING:
-    import argparse
-    from collections.abc import Iterator
-
     from rosetta_jit.runtime.holder import Holder
 
 

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rosetta_jit.cli.arguments import Commands, add_command
-
-if TYPE_CHECKING:
-    import argparse
 
 
 def add(commands: Commands) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from typing import TYPE_CHECKING
 
@@ -10,8 +11,6 @@ from rosetta_jit.cli.logs import add_log, add_search_path, log_of, progress
 from rosetta_jit.diagnostics import render, to_json
 
 if TYPE_CHECKING:
-    import argparse
-
     from rosetta_jit.logs.log import Log
 
 

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
-from typing import TYPE_CHECKING
 
 from rosetta_jit.cli.arguments import Commands, add_command
-
-if TYPE_CHECKING:
-    import argparse
 
 
 def add(commands: Commands) -> None:

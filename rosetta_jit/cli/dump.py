@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import argparse
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping_or_type, add_parameters, add_wire, options_of
 from rosetta_jit.cli.inputs import add_topic, channel_of, program_of
 from rosetta_jit.pipeline.stages import STAGES
-
-if TYPE_CHECKING:
-    import argparse
 
 
 def add(commands: Commands) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 from rosetta_jit.catalogue import values as words
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, add_parameters, add_wire, options_of
@@ -12,10 +14,6 @@ from rosetta_jit.cli.values import load
 from rosetta_jit.errors import ReportError
 from rosetta_jit.file_errors import named
 from rosetta_jit.recording import Message, is_recording, read_file, write_recording
-
-if TYPE_CHECKING:
-    import argparse
-    from collections.abc import Iterator
 
 
 def add(commands: Commands) -> None:

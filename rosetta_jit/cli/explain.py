@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import shutil
 from dataclasses import asdict, replace
@@ -12,8 +13,6 @@ from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_m
 from rosetta_jit.file_errors import named
 
 if TYPE_CHECKING:
-    import argparse
-
     from rosetta_jit.explain.content import Explanation
 
 

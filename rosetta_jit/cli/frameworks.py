@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from typing import TYPE_CHECKING
 
 from rosetta_jit.cli.arguments import Commands, add_command
 
 if TYPE_CHECKING:
-    import argparse
-
     from rosetta_jit.frameworks.base import Framework
     from rosetta_jit.frameworks.features import Table
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+import argparse
 import re
+from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_parameters, add_wire, encoding_of, parameters_of, wire_of
 from rosetta_jit.file_errors import named, whole
+from rosetta_jit.pipeline.request import Request
 
 if TYPE_CHECKING:
-    import argparse
-    from collections.abc import Mapping
-
     from rosetta_jit.api.options import Options
-    from rosetta_jit.pipeline.request import Request
 
 DIRECTIONS = ("decode", "encode", "borrow")
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+import argparse
+from typing import cast
 
 from rosetta_jit.cli.arguments import Commands, add_command
 from rosetta_jit.cli.inputs import add_topic, encoded_messages_of
-
-if TYPE_CHECKING:
-    import argparse
 
 
 def add(commands: Commands) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from typing import TYPE_CHECKING
 
@@ -10,8 +11,6 @@ from rosetta_jit.cli.logs import add_log, log_of
 from rosetta_jit.terminal import printable
 
 if TYPE_CHECKING:
-    import argparse
-
     from rosetta_jit.logs.log import Log
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import argparse
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -9,9 +11,6 @@ from rosetta_jit.cli.arguments import options_of
 from rosetta_jit.recording import Message, is_recording, read_messages
 
 if TYPE_CHECKING:
-    import argparse
-    from collections.abc import Iterator
-
     from rosetta_jit.api.options import Options
     from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.log import Log

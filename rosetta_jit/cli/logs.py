@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import sys
-from argparse import ArgumentTypeError
+from argparse import ArgumentParser, ArgumentTypeError, Namespace
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
-    from collections.abc import Callable, Generator
+from rosetta_jit.diagnostics import Diagnostic
 
-    from rosetta_jit.diagnostics import Diagnostic
+if TYPE_CHECKING:
     from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.log import Log
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import sys
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_mappings
 from rosetta_jit.terminal import columns, printable
 
 if TYPE_CHECKING:
-    import argparse
-    from collections.abc import Mapping
-
     from rosetta_jit.explain.operations import Operation, Uses
 
 LEGEND = "both: in both directions   unpack: from the wire to the holder   pack: from the holder to the wire   -: not used"

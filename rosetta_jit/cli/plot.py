@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import argparse
 import shutil
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -12,9 +14,6 @@ from rosetta_jit.cli.logs import add_decoding, add_log, add_times, log_of, targe
 from rosetta_jit.terminal import printable
 
 if TYPE_CHECKING:
-    import argparse
-    from collections.abc import Sequence
-
     from rosetta_jit.logs.curves import Curve
 
 PICTURES = (".png", ".svg", ".pdf")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import sys
 from dataclasses import asdict
@@ -11,8 +12,6 @@ from typing import TYPE_CHECKING, cast
 from rosetta_jit.cli.arguments import Commands, add_command, add_mappings, add_parameters, encoding_of, parameters_of
 
 if TYPE_CHECKING:
-    import argparse
-
     from rosetta_jit.explain.proof import Judge, MappingProof
 
 

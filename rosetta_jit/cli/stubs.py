@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from dataclasses import replace
 from keyword import iskeyword
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_parameters, parameters_of
-
-if TYPE_CHECKING:
-    import argparse
 
 
 def add(commands: Commands) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -9,7 +10,6 @@ import numpy as np
 from rosetta_jit.file_errors import named
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     Angles = np.ndarray[tuple[int, ...], np.dtype[np.float32]]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
@@ -16,9 +18,6 @@ from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
     from rosetta_jit.demo.pictures import Angles, RstImage
     from rosetta_jit.runtime.holder import Holder
 

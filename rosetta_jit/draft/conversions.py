@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.language.conversions import FLOAT64, describe, same, widens
 from rosetta_jit.language.units.dimensions import conversion
-from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, String
+from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, String, Type
 
 if TYPE_CHECKING:
     from rosetta_jit.draft.leaves import Leaf
-    from rosetta_jit.model.types import Type
 
 ANGLES = {("degree", "radian"): "radians", ("radian", "degree"): "degrees"}
 

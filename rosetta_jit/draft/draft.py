@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
 
 from rosetta_jit.catalogue import draft as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.draft.leaves import leaves_of, with_units
 from rosetta_jit.draft.limits import MAX_ROUNDS
 from rosetta_jit.draft.rules import decisions
@@ -15,20 +16,14 @@ from rosetta_jit.language.check.mapping import check
 from rosetta_jit.language.imports.declarations import Imports, merge, read_imports
 from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parse.mapping import parse
+from rosetta_jit.language.parse.unit_file import UnitFile
 from rosetta_jit.language.parse.unit_file import parse as parse_units
 from rosetta_jit.language.scope import Message
 from rosetta_jit.language.units.side_files import annotated
-from rosetta_jit.model.types import Struct, same_name
+from rosetta_jit.model.mapping import Mapping
+from rosetta_jit.model.types import Schema, Struct, same_name
 from rosetta_jit.pipeline.similar_types import similar_types
 from rosetta_jit.source import Source
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.parse.unit_file import UnitFile
-    from rosetta_jit.model.mapping import Mapping
-    from rosetta_jit.model.types import Schema
 
 NAME = "draft.mapping"
 

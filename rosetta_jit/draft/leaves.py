@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.draft.limits import MAX_DEPTH, MAX_LEAVES
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Struct
+from rosetta_jit.language.scope import Message
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, String, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.model.types import Field, Type
 
 Names = tuple[str, ...]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.draft.conversions import kind
@@ -9,8 +10,6 @@ from rosetta_jit.draft.words import GENERIC, alike, shared, tokens
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from rosetta_jit.draft.leaves import Leaf
 
     Group = tuple[tuple[str, ...], tuple[int | None, ...]]

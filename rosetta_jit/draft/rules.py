@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,14 +12,11 @@ from rosetta_jit.draft.pairs import FAMILIES, around, fit, pairs
 from rosetta_jit.draft.words import shared, tokens
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.language.units.dimensions import conversion
-from rosetta_jit.model.types import Bytes, Enum, Float, Int
+from rosetta_jit.model.types import Bytes, Enum, Float, Int, Type
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.draft.leaves import Leaf
-    from rosetta_jit.model.types import Type
 
 
 GUESS = 0.25

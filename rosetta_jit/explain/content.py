@@ -8,10 +8,12 @@ Direction   = Line*, Loss*, Refusal*, cost                            unpack: wi
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import islice
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import ReportError
 from rosetta_jit.explain.cost import Cost, cost_of
 from rosetta_jit.explain.limits import MAX_RULES
@@ -24,19 +26,14 @@ from rosetta_jit.language.check.mapping import Checked, check
 from rosetta_jit.language.imports.search import SearchPath
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.language.places import rules_within, shown_fields, shown_names
+from rosetta_jit.language.scope import Message
+from rosetta_jit.language.typed import Rule
 from rosetta_jit.language.untouched import unread, unset
+from rosetta_jit.model.expr import Side as SideName
+from rosetta_jit.model.mapping import Mapping
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Rule
-    from rosetta_jit.model.expr import Side as SideName
-    from rosetta_jit.model.mapping import Mapping
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,19 +8,17 @@ several attempts the first. Operations are those on values: where a value lies i
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import field, replace
 from functools import reduce
 from types import MappingProxyType
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.explain.counts import count_text, factored, named_counts
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.shape import operands
 from rosetta_jit.kernel.terms import END, type_of
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
 
 
 @dataclass(frozen=True, slots=True)

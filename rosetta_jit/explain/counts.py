@@ -7,17 +7,14 @@ number that a message or a holder said of an array is named by the field that th
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.explain.limits import MAX_COUNT_DEPTH, MAX_COUNT_TEXT
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.printer import SYMBOL
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.shape import statements
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
 
 ROUNDS = "round of a loop"
 """How often a loop runs of which no more is known."""

@@ -3,30 +3,38 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import PurePath
-from typing import TYPE_CHECKING
 
-from rosetta_jit.explain.nodes import by_span, names_of, places, span_of
+from rosetta_jit.explain.nodes import Key, by_span, names_of, places, span_of
 from rosetta_jit.explain.notes import Note, notes
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import shown_fields
-from rosetta_jit.model.expr import Index, Literal, Member, Path
-from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, SameNames, SetLength, SetState, Via, When
+from rosetta_jit.language.typed import Place, Rule
+from rosetta_jit.language.uses import Use
+from rosetta_jit.model.expr import Expr, Index, Literal, Member, Path, Side
+from rosetta_jit.model.mapping import (
+    Arranged,
+    Assign,
+    Assignment,
+    Default,
+    For,
+    Ignore,
+    Mapping,
+    Reject,
+    SameNames,
+    SetLength,
+    SetState,
+    Via,
+    Way,
+    When,
+)
+from rosetta_jit.model.mapping import Rule as Untyped
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.walk import every_rule
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.explain.nodes import Key
-    from rosetta_jit.language.typed import Place, Rule
-    from rosetta_jit.language.uses import Use
-    from rosetta_jit.model.expr import Expr, Side
-    from rosetta_jit.model.mapping import Assignment, Mapping, Way
-    from rosetta_jit.model.mapping import Rule as Untyped
-    from rosetta_jit.source import Span
 
 Names = tuple[str, ...]
 

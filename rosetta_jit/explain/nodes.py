@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import fields, is_dataclass
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 from rosetta_jit.language import typed
+from rosetta_jit.language.typed import Place, Rule
+from rosetta_jit.model.expr import Side
 from rosetta_jit.model.walk import rules_in
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from rosetta_jit.language.typed import Place, Rule
-    from rosetta_jit.model.expr import Side
-    from rosetta_jit.source import Span
+from rosetta_jit.source import Span
 
 NODES = (typed.__name__.rpartition(".")[0], typed.Assign.__module__)
 """Where the classes of nodes are; types, fields and spans are elsewhere."""

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from rosetta_jit.explain.nodes import nodes, places
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe, rounded_constant
 from rosetta_jit.language.function import functions
+from rosetta_jit.language.typed import Change, ConversionRule, Rule
 from rosetta_jit.language.units.conversion import shown, unit_of
-from rosetta_jit.language.units.unit_at import unit_at
+from rosetta_jit.language.units.unit_at import Unit, unit_at
 from rosetta_jit.model.types import Float, Int
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.language.typed import Change, ConversionRule, Rule
-    from rosetta_jit.language.units.unit_at import Unit
 
 HOW: dict[ConversionRule, str] = {
     "widen": "without loss",

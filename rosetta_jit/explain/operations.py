@@ -7,7 +7,8 @@ What only a whole rule shows (elements in another order, a generated value, a mo
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Literal, get_args
+from collections.abc import Iterable, Iterator
+from typing import Literal, TypeGuard, get_args
 
 from rosetta_jit.explain.nodes import names_of, nodes, places
 from rosetta_jit.frameworks.installed import Readers, installed
@@ -16,14 +17,9 @@ from rosetta_jit.language.check.mapping import check
 from rosetta_jit.language.function import Operation, functions
 from rosetta_jit.language.imports.search import SearchPath
 from rosetta_jit.language.parse.mapping import parse
+from rosetta_jit.language.typed import Expr, Place, Rule
 from rosetta_jit.model.expr import COMPARISONS, LOGIC
 from rosetta_jit.model.types import Array, Bytes, Float, Int, String
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from typing import TypeGuard
-
-    from rosetta_jit.language.typed import Expr, Place, Rule
 
 OPERATIONS: tuple[Operation, ...] = get_args(Operation)
 

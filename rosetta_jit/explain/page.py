@@ -5,20 +5,16 @@ Every text of the mapping and of its schemas is escaped, and the page forbids sc
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from html import escape
 from pathlib import Path
 from string import Template
-from typing import TYPE_CHECKING
 
 from rosetta_jit.diagnostics import render
+from rosetta_jit.explain.content import Direction, Explanation, Side
 from rosetta_jit.explain.limits import MAX_LINKS
+from rosetta_jit.explain.lines import Line, Names
 from rosetta_jit.explain.phrases import cost, heading, kind, loss, missing, shown
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rosetta_jit.explain.content import Direction, Explanation, Side
-    from rosetta_jit.explain.lines import Line, Names
 
 ROW, HEAD = 26, 38
 """Heights of a field and of a side's head, in pixels; the template's styles use them too."""

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from rosetta_jit.explain.content import KernelCost
+from rosetta_jit.explain.content import Direction, Explanation, KernelCost, Loss
+from rosetta_jit.explain.cost import Cost
 from rosetta_jit.explain.limits import MAX_LOOPS, MAX_TEXT
+from rosetta_jit.explain.rows import Row
 from rosetta_jit.terminal import printable
-
-if TYPE_CHECKING:
-    from rosetta_jit.explain.content import Direction, Explanation, Loss
-    from rosetta_jit.explain.cost import Cost
-    from rosetta_jit.explain.rows import Row
 
 
 def shown(text: str) -> str:

@@ -3,35 +3,25 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import groupby, repeat
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.errors import ReportError
-from rosetta_jit.kernel.ir import SetField
+from rosetta_jit.kernel.ir import Kernel, SetField
 from rosetta_jit.kernel.printer import statement_text
-from rosetta_jit.kernel.proof.record import Record
+from rosetta_jit.kernel.proof.prove import Procedure
+from rosetta_jit.kernel.proof.record import Obligation, Record
 from rosetta_jit.kernel.proof.verify import VerificationError, verify
-from rosetta_jit.model.layout import Row, Variant
+from rosetta_jit.model.layout import Layout, Row, Slot, Variant
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request, plain_parameters
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.terminal import columns, printable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.model.layout import Layout, Slot
-
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
-
-    from rosetta_jit.kernel.ir import Kernel
     from rosetta_jit.kernel.proof.opinion import Opinion
-    from rosetta_jit.kernel.proof.prove import Procedure
-    from rosetta_jit.kernel.proof.record import Obligation
-    from rosetta_jit.model.layout import Layout
 
     Judge = Callable[[Iterable[Obligation]], Iterator[Opinion]]
     Known = dict[Kernel, tuple[tuple["Owed", ...], str]]

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import islice
-from typing import TYPE_CHECKING
 
 from rosetta_jit.explain.limits import MAX_FIELD_DEPTH, MAX_FIELDS
 from rosetta_jit.language.places import shown_names
+from rosetta_jit.language.scope import Message
 from rosetta_jit.model.printer import show_expr, show_type, show_way
-from rosetta_jit.model.types import Array, Optional, Struct, Union
+from rosetta_jit.model.types import Array, Field, Optional, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.model.types import Field, Type
 
 
 @dataclass(frozen=True, slots=True)

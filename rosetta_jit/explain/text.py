@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import zip_longest
-from typing import TYPE_CHECKING
 
 from rosetta_jit.diagnostics import render
+from rosetta_jit.explain.content import Direction, Explanation, Side
+from rosetta_jit.explain.lines import Line
 from rosetta_jit.explain.phrases import cost, heading, kind, loss, missing, shown
 from rosetta_jit.terminal import cells, columns, cut, padded, wrapped
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.explain.content import Direction, Explanation, Side
-    from rosetta_jit.explain.lines import Line
 
 NARROWEST = 40
 

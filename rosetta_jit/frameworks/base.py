@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field
 from fnmatch import fnmatch
 from typing import TYPE_CHECKING, Literal, Protocol, cast
 
-from rosetta_jit.model.types import name_parts
+from rosetta_jit.model.types import Schema, Struct, name_parts
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
-
     from rosetta_jit.frameworks.definitions import Definition
     from rosetta_jit.frameworks.probe import Probes
-    from rosetta_jit.model.types import Schema, Struct
     from rosetta_jit.parsing.idl import FrontEnd
     from rosetta_jit.runtime.holder import Manners
     from rosetta_jit.wire.codec import Encoding

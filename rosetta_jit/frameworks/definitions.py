@@ -8,11 +8,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.model.serial import to_plain
-from rosetta_jit.model.types import Ref
+from rosetta_jit.model.types import Declaration, Ref, Schema, Struct
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.types import Declaration, Schema, Struct
     from rosetta_jit.source import Source
 
 

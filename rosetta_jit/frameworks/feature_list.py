@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator, Mapping
 
 from rosetta_jit.model import types
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.layout import recursive_structs
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 Arrived = Callable[[types.Struct, types.Schema], bool]
 """Whether a model shows the feature that its struct was written for."""

@@ -9,20 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.base import Choices
+from rosetta_jit.frameworks.base import Choices, Framework
 from rosetta_jit.frameworks.feature_list import FEATURES
-from rosetta_jit.frameworks.probe import Probe
+from rosetta_jit.frameworks.probe import Probe, Probes
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.types import Ref, Schema, Struct, name_parts
 from rosetta_jit.source import Source
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.frameworks.base import Framework
-    from rosetta_jit.frameworks.probe import Probes
 
 State = Literal["yes", "read", "gap", "none"]
 

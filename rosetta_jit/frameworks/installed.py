@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, cast
 
@@ -12,8 +13,6 @@ from rosetta_jit.startup.entry_points import offered
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
     from rosetta_jit.frameworks.base import Framework
     from rosetta_jit.parsing.idl import FrontEnd
 

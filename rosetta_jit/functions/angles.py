@@ -4,21 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.functions.forms import binary_of, unary_of
-from rosetta_jit.kernel.ir import Binary, Const
+from rosetta_jit.kernel.ir import Binary, Const, Expr
 from rosetta_jit.kernel.terms import type_of
-from rosetta_jit.language.affine_steps import rounded, turned
+from rosetta_jit.language.affine_steps import Value, rounded, turned
 from rosetta_jit.language.conversions import FLOAT64
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Affine, Function, Numbers, Row, Units
+from rosetta_jit.language.typed import Call
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.model import expr as model
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language.affine_steps import Value
-    from rosetta_jit.language.typed import Call
-    from rosetta_jit.lowering.evaluation import Evaluation
 
 OF_ONE, OF_TWO = Numbers((FLOAT64,)), Numbers((FLOAT64,), (2, 2), "two numbers")
 TRIGONOMETRY = Row(

@@ -2,32 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import Literal
 
 from rosetta_jit.catalogue import checksums as words
-from rosetta_jit.kernel.ir import Binary, Const, Convert, Lookup
+from rosetta_jit.kernel.ir import Binary, Const, Convert, Expr, Local, Lookup
 from rosetta_jit.language import typed
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
 from rosetta_jit.language.functions.texts import argument
+from rosetta_jit.language.scope import Scope
 from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.values import placed_of, quoted
-from rosetta_jit.lowering.texts.views import parameters, scanning
-from rosetta_jit.lowering.writer import MESSAGE, Contract
+from rosetta_jit.lowering.texts.views import View, parameters, scanning
+from rosetta_jit.lowering.writer import MESSAGE, Contract, Writer
+from rosetta_jit.model import expr as model
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Int
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from typing import Literal
-
-    from rosetta_jit.kernel.ir import Expr, Local
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.lowering.texts.views import View
-    from rosetta_jit.lowering.writer import Writer
-    from rosetta_jit.model import expr as model
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from rosetta_jit.kernel.ir import HostValue
+from rosetta_jit.kernel.ir import Expr, HostValue
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Row
-from rosetta_jit.language.typed import INT64
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language.typed import Call
-    from rosetta_jit.lowering.evaluation import Evaluation
+from rosetta_jit.language.typed import INT64, Call
+from rosetta_jit.lowering.evaluation import Evaluation
 
 NOTHING = Numbers((INT64,), (0, 0), "no values")
 OF_MESSAGES = Row(

@@ -5,8 +5,6 @@ rgb_of yuv_of (bytes, encoding, width, height [, step])
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.catalogue import images as words
 from rosetta_jit.functions.images import bytes_of, makes_bytes, typed_integers
 from rosetta_jit.kernel.ir import Wire
@@ -14,16 +12,13 @@ from rosetta_jit.kernel.terms import add
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
+from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.lowering.colours import ENCODINGS, HALVED, PACKED, Picture, to_rgb, to_yuv
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.views import View, sound
+from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Bytes, String
-
-if TYPE_CHECKING:
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.model import expr as model
-
 
 YUV = (*PACKED, *HALVED)
 

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import Literal, cast
 
 from rosetta_jit.functions.forms import of_texts, row, undone_by
-from rosetta_jit.kernel.ir import Compare
+from rosetta_jit.kernel.ir import Compare, Expr
 from rosetta_jit.language.function import SEVERAL, Texts
-from rosetta_jit.language.typed import BOOL, INT64
+from rosetta_jit.language.typed import BOOL, INT64, Call
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.search import compared, find, has_at
 from rosetta_jit.lowering.texts.values import placed_of, quoted
-
-if TYPE_CHECKING:
-    from typing import Literal
-
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language.typed import Call
-    from rosetta_jit.lowering.evaluation import Evaluation
 
 HOLDS = row('`starts_with(s, t)`, `ends_with(s, t)`, `contains(s, "t")`', "a bool")
 

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 from functools import reduce
-from typing import TYPE_CHECKING
 
+from rosetta_jit.kernel.ir import Expr
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Row
 from rosetta_jit.language.limits import MAX_OTHERS
-from rosetta_jit.language.typed import INT64
+from rosetta_jit.language.typed import INT64, Call
 from rosetta_jit.lowering.arithmetic import align, others
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language.typed import Call
-    from rosetta_jit.lowering.evaluation import Evaluation
-
+from rosetta_jit.lowering.evaluation import Evaluation
 
 LEFT_OUT = Row(
     "numbers",

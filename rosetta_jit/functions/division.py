@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from rosetta_jit.language.affine_steps import UNSHOWN, LostError, divided_by, fraction, rounded, scaled
+from rosetta_jit.kernel.ir import Expr
+from rosetta_jit.language.affine_steps import UNSHOWN, LostError, Value, divided_by, fraction, rounded, scaled
 from rosetta_jit.language.conversions import FLOAT64
 from rosetta_jit.language.folding import folded
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Affine, Function, Numbers, Row, Whole
-from rosetta_jit.language.typed import INT64, Const
+from rosetta_jit.language.typed import INT64, Call, Const
 from rosetta_jit.lowering.arithmetic import divided, floored
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.model import expr as model
-from rosetta_jit.model.types import Float
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language.affine_steps import Value
-    from rosetta_jit.language.typed import Call
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.model.types import Type
+from rosetta_jit.model.types import Float, Type
 
 EXACT = Row(
     "numbers",

@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.functions.forms import of_texts, row, undone_by
-from rosetta_jit.kernel.ir import Const, Convert, If, Switch
+from rosetta_jit.kernel.ir import Block, Const, Convert, Expr, If, Switch
 from rosetta_jit.kernel.terms import index
-from rosetta_jit.language.affine_steps import LostError
+from rosetta_jit.language import typed
+from rosetta_jit.language.affine_steps import LostError, Value
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.function import SEVERAL
 from rosetta_jit.language.functions.texts import NAMED
+from rosetta_jit.language.scope import Scope
 from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.search import are_bytes
 from rosetta_jit.lowering.texts.values import chosen_text, expect, placed_of
 from rosetta_jit.lowering.texts.views import TRUE, Quoted, View, joined
 from rosetta_jit.lowering.writer import block
+from rosetta_jit.model import expr as model
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Enum
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Block, Expr
-    from rosetta_jit.language import typed
-    from rosetta_jit.language.affine_steps import Value
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.model import expr as model
 
 FALSE = Const("bool", value=False)
 

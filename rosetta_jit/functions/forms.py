@@ -6,18 +6,15 @@ from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.kernel.ir import Binary, Unary
-from rosetta_jit.language.affine_steps import LostError
+from rosetta_jit.kernel.ir import Arithmetic, Binary, Expr, Unary
+from rosetta_jit.kernel.ir import Function as Operation
+from rosetta_jit.language.affine_steps import LostError, Value
 from rosetta_jit.language.function import Function, Row, Undone
-from rosetta_jit.language.typed import Const, Given
+from rosetta_jit.language.typed import Call, Const, Given
+from rosetta_jit.lowering.evaluation import Evaluation
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Arithmetic, Expr
-    from rosetta_jit.kernel.ir import Function as Operation
-    from rosetta_jit.language.affine_steps import Value
     from rosetta_jit.language.function import Back
-    from rosetta_jit.language.typed import Call
-    from rosetta_jit.lowering.evaluation import Evaluation
 
 
 def unary_of(call: Call, values: Evaluation) -> Expr:

@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.language.conversions import FLOAT64
 from rosetta_jit.language.function import SEVERAL, Function, Numbers, Row, Undone, Units
-from rosetta_jit.language.groups import GroupFunction, Parameter
+from rosetta_jit.language.groups import Group, GroupFunction, Parameter
 from rosetta_jit.lowering.groups import lower_component
-from rosetta_jit.model.expr import Call
+from rosetta_jit.model.expr import Call, Expr
 
 if TYPE_CHECKING:
-    from rosetta_jit.language.groups import Group, Inverse
-    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.language.groups import Inverse
 
 
 def group_function(

@@ -8,31 +8,26 @@ image_width image_height image_channels image_depth (bytes)     of a compressed 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 from rosetta_jit.catalogue import images as words
 from rosetta_jit.functions.forms import loses, undone_by
-from rosetta_jit.kernel.ir import Advance, Binary, Compare, Extent, HostCall, Local, Place, Reserve, Used, Wire
+from rosetta_jit.kernel.ir import Advance, Binary, Compare, Expr, Extent, HostCall, Local, Place, Reserve, Used, Wire
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import as_int64, describe
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
 from rosetta_jit.language.functions.texts import is_bytes
 from rosetta_jit.language.image_orders import COLOURS, ORDERED
+from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import INT64
-from rosetta_jit.lowering.evaluation import lowered
+from rosetta_jit.lowering.evaluation import Evaluation, lowered
 from rosetta_jit.lowering.texts.views import View, sound
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Bytes, String
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.lowering.evaluation import Evaluation
 
 MEASURES = ("image_width", "image_height", "image_channels", "image_depth")
 DEFAULTS = {"png": 1, "png16": 1, "jpeg": 90}

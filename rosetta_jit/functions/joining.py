@@ -2,30 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from rosetta_jit.functions.forms import constants_of, if_same_constants, of_texts, row, undone_by
-from rosetta_jit.kernel.ir import Binary
+from rosetta_jit.kernel.ir import Binary, Expr, Local
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
+from rosetta_jit.language.affine_steps import Value
 from rosetta_jit.language.function import SEVERAL, Texts
 from rosetta_jit.language.functions.texts import concatenation, type_texts, without_end
+from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import INT64
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.search import has_at, part, parts
 from rosetta_jit.lowering.texts.separated import between_separators
 from rosetta_jit.lowering.texts.values import expect, field, placed_of, quoted, text_of
 from rosetta_jit.lowering.texts.views import Quoted, View, joined, placed, sound
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Array
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.kernel.ir import Expr, Local
-    from rosetta_jit.language.affine_steps import Value
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.lowering.evaluation import Evaluation
 
 
 class Separated(NamedTuple):

@@ -8,30 +8,24 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 from rosetta_jit.functions.forms import loses, row, undone_by
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Select, Unary
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Local, Select, Unary
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
-from rosetta_jit.language.affine_steps import Error, LostError
+from rosetta_jit.language.affine_steps import Error, LostError, Value
 from rosetta_jit.language.conversions import FLOAT64, bare
 from rosetta_jit.language.function import SEVERAL, ByType, Function, Texts, Whole
 from rosetta_jit.language.functions.texts import TEXT, is_textual, type_texts
+from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import INT64
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.dates import LEAST_SECONDS, MOST_SECONDS, SECOND, read_date, split, written_date
 from rosetta_jit.lowering.texts.values import expect, placed_of
+from rosetta_jit.lowering.texts.views import View
 from rosetta_jit.model import expr as model
-from rosetta_jit.model.types import Float
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr, Local
-    from rosetta_jit.language.affine_steps import Value
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.lowering.texts.views import View
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
+from rosetta_jit.model.types import Float, Type
+from rosetta_jit.source import Span
 
 BEYOND = float(1 << 63)
 """The first float that is no int64."""

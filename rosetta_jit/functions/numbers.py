@@ -5,26 +5,21 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import partial, reduce
-from typing import TYPE_CHECKING
 
 from rosetta_jit.functions.forms import binary_of, unary_of
 from rosetta_jit.functions.reductions import EXTREMES, extreme_of, lower_extreme
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Unary
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Expr, Unary
 from rosetta_jit.kernel.terms import index, type_of
+from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import FLOAT64
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Reduction, Row, Units, written
 from rosetta_jit.language.functions.calls import type_numbers
-from rosetta_jit.language.typed import BOOL, INT64
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.language.typed import BOOL, INT64, Call
 from rosetta_jit.lowering.arithmetic import binary
+from rosetta_jit.lowering.evaluation import Evaluation
+from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Float
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language import typed
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Call
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.model import expr as model
 
 FLOATS = (Float(32), FLOAT64)
 ANY = (INT64, *FLOATS)

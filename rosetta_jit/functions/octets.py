@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 from functools import partial, reduce
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import number_bytes as words
-from rosetta_jit.kernel.ir import WIDTH, Binary, Bits, Compare, Const, Convert, Select, Wire
+from rosetta_jit.kernel.ir import WIDTH, Binary, Bits, Compare, Const, Convert, Expr, Scalar, Select, Wire
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import as_int64, describe
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
 from rosetta_jit.language.functions.decisions import is_condition
 from rosetta_jit.language.functions.texts import is_bytes
+from rosetta_jit.language.scope import Scope
 from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.views import byte_at
+from rosetta_jit.model import expr as model
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Float, Int
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr, Scalar
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.model import expr as model
 
 READ: dict[str, Int | Float] = {
     **{f"int{bits}_at": Int(bits) for bits in (8, 16, 32, 64)},

@@ -13,24 +13,19 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import reduce
 from itertools import product
-from typing import TYPE_CHECKING
 
 from rosetta_jit.functions.images import bytes_of
-from rosetta_jit.kernel.ir import Advance, Binary, Compare, Const, Copy, Fill, For, If, Local, Place, Reserve, SetField, Used, Wire
+from rosetta_jit.kernel.ir import Advance, Binary, Compare, Const, Copy, Expr, Fill, For, If, Local, Place, Reserve, SetField, Used, Wire
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.language import typed
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
 from rosetta_jit.language.image_orders import COUNT, ORDERED
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.views import View, byte_at, lane_of, sound
-from rosetta_jit.lowering.writer import block
+from rosetta_jit.lowering.writer import Writer, block
+from rosetta_jit.model import expr as model
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.lowering.writer import Writer
-    from rosetta_jit.model import expr as model
 
 ZERO, ONE = index(0), index(1)
 

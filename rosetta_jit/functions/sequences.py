@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial, reduce
@@ -9,29 +10,22 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.functions.forms import constants_of, if_same_constants, undone_by
-from rosetta_jit.kernel.ir import Binary, Bits, Compare, Const, Convert, Expr, For, If, Local, Select
+from rosetta_jit.kernel.ir import Binary, Bits, Compare, Const, Convert, Expr, For, If, Local, Scalar, Select
 from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.function import SEVERAL, Function, Row
+from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import BOOL, INT64
 from rosetta_jit.lowering.arithmetic import binary, inside
 from rosetta_jit.lowering.codec.fields import scalar_name
-from rosetta_jit.lowering.made_arrays import UINT8, MadeArray, array_argument
-from rosetta_jit.lowering.writer import block
+from rosetta_jit.lowering.evaluation import Evaluation
+from rosetta_jit.lowering.made_arrays import UINT8, ArrayArgument, MadeArray, Put, array_argument
+from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.layout import scalar_of
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Type
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
-
-    from rosetta_jit.kernel.ir import Scalar
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.lowering.made_arrays import ArrayArgument, Put
-    from rosetta_jit.lowering.writer import Writer
-    from rosetta_jit.model.types import Type
-
     Fill = Callable[[ArrayArgument, Expr, Evaluation, Put], None]
     Takes = tuple[str, Callable[[Type | None], bool]]
     """What an argument must be, and whether an array of such elements is that."""

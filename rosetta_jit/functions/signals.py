@@ -7,31 +7,23 @@ signal_bytes (size, "start|length@order sign", number, ...)     the frame; bits 
 from __future__ import annotations
 
 from functools import partial, reduce
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import signals as words
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Wire
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Wire
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import as_int64, bare, describe
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
 from rosetta_jit.language.functions.texts import is_bytes
 from rosetta_jit.language.limits import MAX_SIGNAL_BYTES
-from rosetta_jit.language.signal_bits import MOST_BITS, signal_of
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.language.signal_bits import MOST_BITS, Signal, signal_of
 from rosetta_jit.lowering.codec.fields import scalar_name
-from rosetta_jit.lowering.texts.views import byte_at, kept, put, room
+from rosetta_jit.lowering.evaluation import Evaluation
+from rosetta_jit.lowering.texts.views import View, byte_at, kept, put, room
+from rosetta_jit.model import expr as model
 from rosetta_jit.model.layout import scalar_of
-from rosetta_jit.model.types import Array, Bytes, Int, String
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.signal_bits import Signal
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.lowering.texts.views import View
-    from rosetta_jit.model import expr as model
-    from rosetta_jit.model.types import Type
-
+from rosetta_jit.model.types import Array, Bytes, Int, String, Type
 
 # --- types ---------------------------------------------------------------------------------------------------------------
 

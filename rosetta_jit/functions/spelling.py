@@ -3,34 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import texts as words
 from rosetta_jit.functions.enum_names import NAMES, lower_name, read_name
 from rosetta_jit.functions.forms import if_same_constants, loses, of_texts, row, undone_by
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Unary
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Expr, Unary
 from rosetta_jit.language import typed
+from rosetta_jit.language.affine_steps import Value
 from rosetta_jit.language.conversions import FLOAT64, describe
 from rosetta_jit.language.function import ByType, Texts
 from rosetta_jit.language.functions.texts import BYTES, NAMED, TEXT, argument, is_textual, name_of
 from rosetta_jit.language.limits import MAX_DECIMALS
+from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import INT64
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.encodings import Recoded, from_latin, from_utf16, is_ascii, to_latin, to_utf16
-from rosetta_jit.lowering.texts.number_reading import read_float, read_integer
+from rosetta_jit.lowering.texts.number_reading import Read, read_float, read_integer
 from rosetta_jit.lowering.texts.number_writing import is_special, written_float, written_integer
 from rosetta_jit.lowering.texts.values import checked, expect, placed_of, quoted
+from rosetta_jit.lowering.texts.views import View
 from rosetta_jit.model import expr as model
-from rosetta_jit.model.types import Bool, Enum, Float, Int, String
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language.affine_steps import Value
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.lowering.texts.number_reading import Read
-    from rosetta_jit.lowering.texts.views import View
-    from rosetta_jit.model.types import Type
+from rosetta_jit.model.types import Bool, Enum, Float, Int, String, Type
 
 LARGEST = 18
 """Digits that a float of so many decimals may have in all."""

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.functions.forms import loses, of_texts, row, undone_by
 from rosetta_jit.kernel.ir import Binary, Compare, Const, If
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.function import SEVERAL, ByType, Texts
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.making import padded, replaced, with_case
 from rosetta_jit.lowering.texts.search import find, stripped
 from rosetta_jit.lowering.texts.values import expect, placed_of, quoted
 from rosetta_jit.lowering.texts.views import View, byte_at, lies_in, sound
 from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.expr import Call, Expr, Literal
-from rosetta_jit.model.types import Array, Bytes, String
-
-if TYPE_CHECKING:
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.model.types import Type
+from rosetta_jit.model.types import Array, Bytes, String, Type
 
 BLANKS = " \t\n\r\v\f"
 BEHIND_NUL = "what is behind the first NUL is dropped"

@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
-from rosetta_jit.kernel.ir import Const, For, Reserve, While
+from rosetta_jit.kernel.ir import Block, Const, For, Kernel, Reserve, While
 from rosetta_jit.kernel.shape import blocks_of
-from rosetta_jit.model.layout import Row, Span, Variant, map_entry
-from rosetta_jit.model.types import Array, Bytes, Map, Optional, String, Struct, Union
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.kernel.ir import Block, Kernel
-    from rosetta_jit.model.layout import Layout, Slot
-    from rosetta_jit.model.types import Schema, Type
+from rosetta_jit.model.layout import Layout, Row, Slot, Span, Variant, map_entry
+from rosetta_jit.model.types import Array, Bytes, Map, Optional, Schema, String, Struct, Type, Union
 
 Bounds = tuple[int | None, ...]
 MOST = 1 << 31

@@ -3,38 +3,29 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import PurePath
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.generate.bounds import bounds_of_type, least, reserved
 from rosetta_jit.generate.inner_types import with_inner_types
 from rosetta_jit.generate.languages import installed
-from rosetta_jit.generate.origins import origins_of
-from rosetta_jit.generate.unit import Unit, UserFunction, wire_of
-from rosetta_jit.kernel.ir import Digits, Nearest, Scale, Unary
+from rosetta_jit.generate.origins import Origin, origins_of
+from rosetta_jit.generate.unit import Role, Unit, UserFunction, wire_of
+from rosetta_jit.kernel.ir import Digits, Kernel, Nearest, Scalar, Scale, Unary
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.passes.alone import alone
 from rosetta_jit.kernel.passes.postpone import postpone
 from rosetta_jit.kernel.shape import calls_to_host, expressions_of, our_functions, statements, subexpressions
 from rosetta_jit.lowering.rules.values import scalar_type
-from rosetta_jit.model.layout import layout
-from rosetta_jit.model.types import Ref
+from rosetta_jit.model.layout import Layout, layout
+from rosetta_jit.model.types import Ref, Schema, Type
 from rosetta_jit.pipeline.build import Build, within_stack
+from rosetta_jit.pipeline.request import Request
 from rosetta_jit.pipeline.wires import arrival_registers
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
-    from rosetta_jit.generate.origins import Origin
-    from rosetta_jit.generate.unit import Role
-    from rosetta_jit.kernel.ir import Kernel, Scalar
-    from rosetta_jit.model.layout import Layout
-    from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.pipeline.request import Request
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}")
 HEADERS = frozenset(

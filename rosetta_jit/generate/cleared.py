@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
-from rosetta_jit.kernel.ir import Fill, Get, Place, Return, SetField
+from rosetta_jit.kernel.ir import Block, Fill, Get, Kernel, Place, Return, SetField, Stmt
 from rosetta_jit.kernel.rewrite import with_bodies
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import index, type_of
-from rosetta_jit.model.layout import Number, Row, Span
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.kernel.ir import Block, Kernel, Stmt
-    from rosetta_jit.model.layout import Layout, Slot
+from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span
 
 
 def slots_of(slot: Slot) -> Iterator[Slot]:

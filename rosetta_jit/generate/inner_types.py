@@ -5,17 +5,15 @@ Also those that a schema declares within a field, without a name, as YARP's bott
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import count
 from typing import TYPE_CHECKING
 
-from rosetta_jit.model.types import Array, Enum, Map, Optional, Ref, Struct, Union
+from rosetta_jit.model.types import Array, Declaration, Enum, Field, Map, Optional, Ref, Schema, Struct, Type, Union
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.model.types import Declaration, Field, Schema, Type
 
 
 def with_inner_types(schema: Schema, name: str) -> Schema:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, cast
 
@@ -9,8 +10,6 @@ from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     from rosetta_jit.generate.unit import Role, Unit
 
     Files = Callable[[Unit], dict[str, str]]

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Const, Copy, Fill, Get, IsText, Nearest, Place, SetField
+from rosetta_jit.kernel.ir import Binary, Const, Copy, Expr, Fill, Get, IsText, Nearest, Place, SetField, Site, Stmt
 from rosetta_jit.kernel.shape import expressions_of, subexpressions
 from rosetta_jit.language import typed
 from rosetta_jit.model import rules as rule_nodes
-from rosetta_jit.model.layout import WIDTH, Number, Row, Span, Variant
+from rosetta_jit.model.layout import WIDTH, Layout, Number, Row, Slot, Span, Variant
+from rosetta_jit.source import Span as Stretch
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from rosetta_jit.kernel.ir import Expr, Site, Stmt
-    from rosetta_jit.model.layout import Layout, Slot
-    from rosetta_jit.source import Span as Stretch
 
 NODES = frozenset({typed.__name__, rule_nodes.__name__})
 """The modules of the nodes of typed mappings."""

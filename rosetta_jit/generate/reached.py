@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.rewrite import ends, locals_in, with_blocks
 from rosetta_jit.kernel.shape import expressions_of, statements
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 
 def read_names(block: ir.Block, results: Iterable[str] = ()) -> frozenset[str]:

@@ -5,15 +5,10 @@ Fields are given by the ways to them, as `pose.position`; the empty way is the w
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
-from rosetta_jit.kernel.ir import Copy, Fill, Place, Reserve, SetField
+from rosetta_jit.kernel.ir import Copy, Fill, Kernel, Place, Reserve, SetField, Stmt
 from rosetta_jit.kernel.shape import statements
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.kernel.ir import Kernel, Stmt
 
 Ways = frozenset[tuple[str, ...]]
 WHOLE: Ways = frozenset({()})

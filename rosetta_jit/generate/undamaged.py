@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
-from rosetta_jit.kernel.ir import Expect
+from rosetta_jit.kernel.ir import Block, Expect, Kernel, Site
 from rosetta_jit.kernel.rewrite import with_blocks, with_bodies
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.kernel.ir import Block, Kernel, Site
 
 DAMAGED = "the holder is damaged"
 

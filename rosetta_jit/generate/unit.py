@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import field
 from typing import TYPE_CHECKING, Literal, cast
 
+from rosetta_jit.kernel.ir import Kernel, Scalar
+from rosetta_jit.model.layout import Layout
 from rosetta_jit.model.types import Schema
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.generate.origins import Origin
     from rosetta_jit.generate.shares import Ways
-    from rosetta_jit.kernel.ir import Kernel, Scalar
-    from rosetta_jit.model.layout import Layout
 
 Purpose = Literal["decode", "borrow", "encode", "size"]
 """What a kernel does; `borrow` decodes and leaves bytes in the message."""

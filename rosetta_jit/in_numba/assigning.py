@@ -8,6 +8,7 @@ Numba converts the number to the field's type before this code sees it, as where
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from ctypes import CFUNCTYPE, c_int64, py_object
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
@@ -24,17 +25,14 @@ from rosetta_jit.in_numba.reading import Reader, cell_type
 from rosetta_jit.in_numba.types import MessageType
 from rosetta_jit.model.types import Bool, Enum
 from rosetta_jit.runtime.holder import arena
-from rosetta_jit.runtime.holder.record import Bit, Scalar
+from rosetta_jit.runtime.holder.record import Bit, Choice, Presence, Scalar
+from rosetta_jit.runtime.lanes import Lanes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numba.core.base import BaseContext
     from numba.core.typing.templates import Signature
 
     from rosetta_jit.in_numba.taking import Taken
-    from rosetta_jit.runtime.holder.record import Choice, Presence
-    from rosetta_jit.runtime.lanes import Lanes
 
 NO_ENUMERATOR = "a closed enum has no such value"
 NO_MEMORY = "there is no memory for what an assignment makes present"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -17,19 +18,17 @@ from rosetta_jit.in_numba.c_call import call_c
 from rosetta_jit.in_numba.reading import Reader
 from rosetta_jit.in_numba.taking import BrokenMessage, Program, entries
 from rosetta_jit.in_numba.types import MessageType
+from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.shape import is_short
 from rosetta_jit.kernel.state import CLEAN, VALID
+from rosetta_jit.runtime.holder.classes import HolderFamily
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numba.core.base import BaseContext
     from numba.core.dispatcher import Dispatcher
     from numba.core.typing.templates import Signature
     from numba.extending import Implementation
 
-    from rosetta_jit.kernel.ir import Kernel
-    from rosetta_jit.runtime.holder.classes import HolderFamily
 
 REGISTERED = (assigning, boxing, maps, sequences)
 """Modules that tell numba of holders when they are imported."""

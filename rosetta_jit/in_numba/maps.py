@@ -11,6 +11,7 @@ array.
 from __future__ import annotations
 
 import operator
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast, get_args
 
 import numpy as np
@@ -26,8 +27,6 @@ from rosetta_jit.in_numba.types import ROWS, MapIteratorType, MapType, Shown
 from rosetta_jit.runtime.holder.coerce import UTF_16
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from llvmlite import ir
     from numba.core.base import BaseContext
     from numba.core.imputils import IternextResult

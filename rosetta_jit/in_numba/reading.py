@@ -6,6 +6,7 @@ has left in a row, or another one since, nothing outside the holder is read.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, cast
 
 from llvmlite import ir
@@ -22,17 +23,29 @@ from rosetta_jit.errors import InvalidHolder
 from rosetta_jit.in_numba.types import NUMBERS, MapType, MessageType, SequenceType, type_of
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, VALID, lane_word
 from rosetta_jit.runtime.cells import SCALARS
-from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.record import (
+    Bit,
+    Blob,
+    Case,
+    Cell,
+    Child,
+    Entry,
+    Items,
+    Node,
+    Numbers,
+    Pairs,
+    Presence,
+    Record,
+    Scalar,
+    Text,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numba.core.base import BaseContext
     from numba.core.cgutils import StructProxy
     from numba.core.typing.templates import Signature
     from numba.extending import Implementation
 
-    from rosetta_jit.runtime.holder.record import Cell, Entry, Node, Presence
 
 INVALID = "the last decode into this holder failed: decode again before you read it"
 BROKEN = "the element that was here is gone"

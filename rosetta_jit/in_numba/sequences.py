@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+from collections.abc import Callable
 from typing import TYPE_CHECKING, cast
 
 from numba import types
@@ -15,8 +16,6 @@ from rosetta_jit.in_numba.reading import Reader
 from rosetta_jit.in_numba.types import IteratorType, SequenceType
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from llvmlite import ir
     from numba.core.base import BaseContext
     from numba.core.imputils import IternextResult

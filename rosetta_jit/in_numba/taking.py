@@ -6,22 +6,19 @@ a function has read, or returns, keep all memory alive that the holder had meanw
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from ctypes import CFUNCTYPE, c_int64, py_object
 from functools import cache
 from threading import local
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rosetta_jit.errors import DecodeError, RosettaError
 from rosetta_jit.kernel.state import GROW, VALID
 from rosetta_jit.runtime import run
+from rosetta_jit.runtime.holder import Holder
 from rosetta_jit.runtime.holder.classes import settle_lanes
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.runtime.holder import Holder
-    from rosetta_jit.runtime.lanes import Lanes
 
 _TELL = CFUNCTYPE(None, py_object)
 _MEND = CFUNCTYPE(c_int64, py_object, c_int64, c_int64, c_int64)

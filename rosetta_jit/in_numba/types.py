@@ -18,14 +18,13 @@ from numba.core.errors import NumbaTypeError
 from numba.extending import models, register_model
 
 from rosetta_jit.runtime.cells import SCALARS, dtype_of
-from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.classes import HolderFamily
+from rosetta_jit.runtime.holder.record import Blob, Child, Items, Node, Numbers, Pairs, Record, Scalar, Text
 
 if TYPE_CHECKING:
     from llvmlite import ir
     from numba.core.datamodel import DataModelManager
 
-    from rosetta_jit.runtime.holder.classes import HolderFamily
-    from rosetta_jit.runtime.holder.record import Node
 
 COMMON = (
     ("meminfo", types.MemInfoPointer(types.voidptr)),

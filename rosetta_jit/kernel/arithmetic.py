@@ -7,14 +7,11 @@ NaN that is only moved, and because f32 arithmetic on it is f32.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 import numpy as np
 
-from rosetta_jit.kernel.ir import WIDTH
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Arithmetic, Comparison, Function, Order, Scalar
+from rosetta_jit.kernel.ir import WIDTH, Arithmetic, Comparison, Function, Order, Scalar
 
 Value = int | bool | np.float32 | np.float64
 

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from collections.abc import Mapping
+from typing import assert_never
 
 from rosetta_jit.kernel import arithmetic, decimals, ir
-from rosetta_jit.kernel.arithmetic import demand
+from rosetta_jit.kernel.arithmetic import Value, demand
+from rosetta_jit.kernel.host import Functions
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.kernel.arithmetic import Value
-    from rosetta_jit.kernel.host import Functions
 
 
 @dataclass(slots=True)

@@ -7,15 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rosetta_jit.kernel.arithmetic import FLOATS, Value, constant, limits
+from rosetta_jit.kernel.ir import Scalar
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Scalar
 
 Functions = Mapping[str, Callable[..., Value]]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, MutableSequence, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, assert_never
@@ -11,7 +12,7 @@ import numpy as np
 from rosetta_jit.kernel import arithmetic, ir
 from rosetta_jit.kernel.arithmetic import demand
 from rosetta_jit.kernel.evaluation import Machine, bytes_at, field, integer, value_of
-from rosetta_jit.kernel.host import NO_FUNCTIONS, RefusedError
+from rosetta_jit.kernel.host import NO_FUNCTIONS, Functions, RefusedError
 from rosetta_jit.kernel.shape import extents_of
 from rosetta_jit.kernel.state import (
     CAPACITY,
@@ -30,10 +31,6 @@ from rosetta_jit.kernel.terms import BEGIN, END, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, MutableSequence, Sequence
-
-    from rosetta_jit.kernel.host import Functions
-
     Memory = bytes | bytearray | memoryview
     State = np.ndarray[tuple[int], np.dtype[np.int64]]
 

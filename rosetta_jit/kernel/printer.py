@@ -5,13 +5,10 @@ It is what a person reads as ``stage("kernel")`` and a part of the cache's key, 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from collections.abc import Iterator
+from typing import assert_never
 
 from rosetta_jit.kernel import ir
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
 
 SYMBOL = {
     "add": "+",

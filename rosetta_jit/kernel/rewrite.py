@@ -5,17 +5,14 @@ What nothing changes in stays the object that it is: most of a kernel does so in
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from operator import is_
 from types import MappingProxyType
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.shape import blocks_of, expressions_of, operands, parts_of, statements, subexpressions
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-
 
 NO_NAMES: Mapping[str, str] = MappingProxyType({})
 

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import chain, pairwise
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import Any, assert_never
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.limits import MAX_BLOCKS, MAX_EXPRESSION
 from rosetta_jit.kernel.state import INDEX_WORDS
 from rosetta_jit.kernel.terms import BEGIN, END, ROW
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
-
 
 SHORT = 32
 """Statements up to which a call costs any kernel more than 5 % of its time."""

@@ -11,14 +11,13 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
-from rosetta_jit.model.types import Bool, Enum, Float, Int
+from rosetta_jit.language.typed import Expr
+from rosetta_jit.model.types import Bool, Enum, Float, Int, Type
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.model.types import Type
 
 PRECISION = {32: 24, 64: 53}
 LARGEST = {32: 2.0**128 * (1 - 2.0**-24), 64: math.ldexp(1 - 2.0**-53, 1024)}

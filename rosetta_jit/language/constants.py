@@ -13,18 +13,13 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
 
 from rosetta_jit.language.conversions import FLOAT64, holds, in_single, is_single
 from rosetta_jit.language.typed import INT64, Const
-from rosetta_jit.model.types import Bool, Enum, Float, Int, String, Struct, name_parts
+from rosetta_jit.model.types import Bool, Constant, Enum, Float, Int, Schema, String, Struct, Type, name_parts
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.model.types import Constant, Schema, Type
-    from rosetta_jit.source import Span
 
 LAST = re.compile(r"(?:\.|::)(?=\w+$)")
 """What stands before the last part of a constant's name."""

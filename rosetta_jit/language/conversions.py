@@ -9,14 +9,9 @@ from __future__ import annotations
 import math
 import struct
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from rosetta_jit.language.typed import INT64, Binary, Call, Const, Convert, LenOf, Local, Reduce, Unary
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
-
-if TYPE_CHECKING:
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.model.types import Type
+from rosetta_jit.language.typed import INT64, Binary, Call, Const, Convert, Expr, LenOf, Local, Reduce, Unary
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
 
 FLOAT64 = Float(64)
 SMALL = 2**32

@@ -5,18 +5,11 @@ A message in which the two differ is refused, so that one can stand for the othe
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
-from rosetta_jit.language.typed import FieldStep
-from rosetta_jit.model.expr import Member, Path
-from rosetta_jit.model.types import Array, Bytes
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from rosetta_jit.language.typed import Step
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.types import Type
+from rosetta_jit.language.typed import FieldStep, Step
+from rosetta_jit.model.expr import Expr, Member, Path
+from rosetta_jit.model.types import Array, Bytes, Type
 
 Counter = tuple[tuple["Step", ...], str]
 """The struct around, by the way to it, and the field of it that counts."""

@@ -9,25 +9,22 @@ texts is a record with a name that no mapping can write: `+`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, cast
 from typing import Literal as OneOf
 
-from rosetta_jit.model.types import Float, Int
+from rosetta_jit.language import typed
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.language.typed import Expr
+from rosetta_jit.model import expr as model
+from rosetta_jit.model.types import Float, Int, Type
 from rosetta_jit.startup import entry_points
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rosetta_jit.language import typed
     from rosetta_jit.language.affine_steps import Value
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.model import expr as model
-    from rosetta_jit.model.types import Type
 
     Solved = tuple[model.Expr, model.Expr]
     """An argument of a call, and what it must be."""

@@ -15,21 +15,17 @@ one value knows those of several: units, laws, costs, kernels.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.language.function import GROUPS, family_of
-from rosetta_jit.model.expr import Call, Choice, Coerced, Item, List, Literal
+from rosetta_jit.language.function import GROUPS, Function, family_of
+from rosetta_jit.model.expr import Call, Choice, Coerced, Expr, Item, List, Literal
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rosetta_jit.language.function import Function
-    from rosetta_jit.model.expr import Expr
-
     Inverse = Callable[[tuple[Expr, ...], Expr], Expr]
     """Of the arguments of a call and its value: what one of the arguments must be."""
 

@@ -14,21 +14,17 @@ All others give the same for several values. Functions have such records, too: `
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.affine_steps import LostError, divided_by, fraction, rounded, scaled, shifted
+from rosetta_jit.language.affine_steps import LostError, Value, divided_by, fraction, rounded, scaled, shifted
 from rosetta_jit.language.function import SEVERAL
-from rosetta_jit.model.expr import Binary, Call
+from rosetta_jit.model.expr import Binary, Call, Expr
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rosetta_jit.language.affine_steps import Value
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.source import Span
-
     Undo = Callable[[Expr, Expr, Span | None], Expr]
     """What an operand must be, of the value and the other operand."""
 

@@ -5,18 +5,12 @@ A place is shown as a mapping names it: a case of a union as a field of what is 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
-from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, For, IndexStep, SetLength, When
-from rosetta_jit.model.types import Array, Field, Struct, Union
+from rosetta_jit.language.scope import Message
+from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, For, IndexStep, Place, Rule, SetLength, Step, When
+from rosetta_jit.model.types import Array, Field, Struct, Type, Union
 from rosetta_jit.model.walk import every_rule
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Place, Rule, Step
-    from rosetta_jit.model.types import Type
 
 
 def field_names(place: Place) -> tuple[str, ...]:

@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import field, replace
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.catalogue import fields as words
 from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue.resolve import nearest
+from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.language.constants import Constants
 from rosetta_jit.language.conversions import SMALL, describe
-from rosetta_jit.language.typed import Const, FieldStep, IndexStep, Place
-from rosetta_jit.model.expr import Each, Index, Keyed, Member, Pick, Slice
+from rosetta_jit.language.typed import Const, Expr, FieldStep, IndexStep, Place, StateVariable, Step
+from rosetta_jit.language.uses import Signature, UsableMappings
+from rosetta_jit.model.expr import Each, Index, Keyed, Member, Path, Pick, Side, Slice
+from rosetta_jit.model.expr import Expr as Untyped
 from rosetta_jit.model.layout import map_entry
 from rosetta_jit.model.mapping import OF_WIRES
-from rosetta_jit.model.types import Array, Bytes, Enum, Int, Map, Optional, Struct, Union
+from rosetta_jit.model.types import Array, Bytes, Enum, Field, Int, Map, Optional, Schema, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping, Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.constants import Constants
-    from rosetta_jit.language.typed import Expr, StateVariable, Step
-    from rosetta_jit.language.uses import Signature, UsableMappings
-    from rosetta_jit.model.expr import Expr as Untyped
-    from rosetta_jit.model.expr import Path, Side
-    from rosetta_jit.model.types import Field, Schema, Type
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,17 +16,14 @@ text is checked, and a length that the target fixes is checked.
 from __future__ import annotations
 
 from dataclasses import field
-from typing import TYPE_CHECKING, TypeAlias
 from typing import Literal as OneOf
+from typing import TypeAlias
 
+from rosetta_jit.model.expr import Operator, Side
 from rosetta_jit.model.rules import Assign, Default, For, Ignore, Reject, SetLength, SetState, When
-from rosetta_jit.model.types import Bool, Int
+from rosetta_jit.model.types import Bool, Field, Int, Type
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.expr import Operator, Side
-    from rosetta_jit.model.types import Field, Type
-    from rosetta_jit.source import Span
 
 INT64 = Int(64)
 BOOL = Bool()

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from rosetta_jit.language import typed
 from rosetta_jit.language.counters import counters_of
 from rosetta_jit.language.places import field_names, places_in, value_inside
-from rosetta_jit.language.typed import FieldStep
+from rosetta_jit.language.scope import Message
+from rosetta_jit.language.typed import Expr, FieldStep, Place, Rule
 from rosetta_jit.language.walk import expressions_of, parts
 from rosetta_jit.model.types import Field, Optional, Ref, Struct, Union
 from rosetta_jit.model.walk import every_rule
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Expr, Place, Rule
 
 Names = tuple[str, ...]
 

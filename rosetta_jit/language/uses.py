@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import field, replace
-from typing import TYPE_CHECKING
 
+from rosetta_jit.language.typed import Place
+from rosetta_jit.model import mapping as model
+from rosetta_jit.model.expr import Side
+from rosetta_jit.model.mapping import Via
+from rosetta_jit.model.types import Type
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rosetta_jit.language.typed import Place
-    from rosetta_jit.model import mapping as model
-    from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.mapping import Via
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,13 +6,11 @@ walks may be recursive.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.language import typed
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
 
 
 def operands(expr: typed.Expr) -> tuple[typed.Expr, ...]:

@@ -6,6 +6,7 @@ block = bytes, and a row a message: its channel, its times, where it lies
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING, Protocol, cast
 
@@ -13,7 +14,6 @@ from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     import numpy as np

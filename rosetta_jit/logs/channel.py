@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar, cast
@@ -10,24 +11,20 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import DecodeError, LogError, SchemaError
-from rosetta_jit.logs.base import Wanted
+from rosetta_jit.logs.base import Block, Connection, Wanted
 from rosetta_jit.logs.moments import nanoseconds, shown
-from rosetta_jit.logs.parts import CLOCKS, Collector, nothing
+from rosetta_jit.logs.parts import CLOCKS, Collector, OnError, Part, nothing
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable, Iterator
-
     import pyarrow as pa
     from numpy.typing import NDArray
 
     from rosetta_jit.api.bridges import Bridge
     from rosetta_jit.api.options import Options
     from rosetta_jit.api.programs import Decoder, Encoder
-    from rosetta_jit.logs.base import Block, Connection
     from rosetta_jit.logs.file import LogFile
     from rosetta_jit.logs.moments import Moment
-    from rosetta_jit.logs.parts import OnError, Part
     from rosetta_jit.logs.reading.walking import Rows
     from rosetta_jit.runtime.batch import Batch
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from itertools import takewhile
 from typing import TYPE_CHECKING, Any, cast
 
@@ -12,20 +13,16 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.limits import MAX_LISTED_DEPTH
 from rosetta_jit.model.units import Context
-from rosetta_jit.runtime.batch import family_in
+from rosetta_jit.runtime.batch import Batch, family_in
 from rosetta_jit.runtime.columns import Ragged
-from rosetta_jit.runtime.holder.record import Child, Items, Record
+from rosetta_jit.runtime.holder.record import Child, Items, Node, Record
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from numpy.typing import NDArray
 
     from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.log import Log
-    from rosetta_jit.runtime.batch import Batch
-    from rosetta_jit.runtime.holder.record import Node
 
     Floats = NDArray[np.float64]
 

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rosetta_jit.catalogue import logs as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import LogError, ReportError
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.base import Block
     from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.log import Log

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from rosetta_jit.logs.ahead import ahead
-from rosetta_jit.logs.base import Wanted
+from rosetta_jit.logs.base import Block, Connection, Format, Piece, Reader, Wanted
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
     from rosetta_jit.api.options import Options
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.base import Block, Connection, Format, Piece, Reader
     from rosetta_jit.logs.reading.storage import Storage
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from rosetta_jit.catalogue import logs as words
@@ -9,8 +10,6 @@ from rosetta_jit.errors import DecodeError, LogError
 from rosetta_jit.logs.moments import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
     from rosetta_jit.api.wires import Decoders
 
 

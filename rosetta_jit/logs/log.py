@@ -2,32 +2,28 @@
 
 from __future__ import annotations
 
+import os
 import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Unpack, cast
 
 import numpy as np
 
 from rosetta_jit.catalogue import logs as words
-from rosetta_jit.diagnostics import render
+from rosetta_jit.diagnostics import Diagnostic, render
 from rosetta_jit.errors import LogError, LogWarning, MappingError
-from rosetta_jit.logs.base import Wanted
+from rosetta_jit.logs.base import Block, Connection, Format, Wanted
 from rosetta_jit.logs.channel import Channel
 from rosetta_jit.logs.file import LogFile
 from rosetta_jit.logs.moments import Moment, nanoseconds, shown
-from rosetta_jit.logs.reading.storage import open_storage
+from rosetta_jit.logs.parts import OnError
+from rosetta_jit.logs.reading.storage import Storage, open_storage
 from rosetta_jit.logs.table import formats
 
 if TYPE_CHECKING:
-    import os
-    from collections.abc import Callable, Iterable, Iterator, Mapping
-
     from rosetta_jit.api.options import Options
     from rosetta_jit.api.wires import WireOptions
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.base import Block, Connection, Format
     from rosetta_jit.logs.joining import Joined
-    from rosetta_jit.logs.parts import OnError
-    from rosetta_jit.logs.reading.storage import Storage
 
 MAGIC_BYTES = 64
 

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from datetime import UTC, datetime, timedelta
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from typing import TypeAlias
-
     Moment: TypeAlias = int | datetime | np.datetime64
 else:
     Moment = object

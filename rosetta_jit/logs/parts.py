@@ -5,6 +5,7 @@ Chunks of logs may be small, and columns and tables are made of thousands of mes
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -15,8 +16,6 @@ from rosetta_jit.runtime.message_spans import MessageSpans
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
     from numpy.typing import NDArray
 
     from rosetta_jit.api.programs import Decoder

@@ -6,24 +6,22 @@ from the cache of compiled kernels where one is there.
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from rosetta_jit.errors import LogError
-from rosetta_jit.logs.base import Wanted
+from rosetta_jit.logs.base import Piece, Wanted
+from rosetta_jit.logs.channel import Channel
 from rosetta_jit.logs.log import open_log
 from rosetta_jit.logs.moments import nanoseconds
 from rosetta_jit.logs.parts import CLOCKS
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    import os
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-
     import pyarrow as pa
 
-    from rosetta_jit.logs.base import Piece
-    from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.moments import Moment
 
 ALL_CLOCKS = (*CLOCKS, "header_time")

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rosetta_jit.logs.base import Format
 from rosetta_jit.startup.entry_points import offered
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 GROUP = "rosetta_jit.logs"
 """The group of entry points by which packages offer formats."""

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rosetta_jit.runtime.batch import hand_over
+from rosetta_jit.runtime.batch import Batch, hand_over
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
     import pyarrow as pa
 
     from rosetta_jit.logs.parts import Part
-    from rosetta_jit.runtime.batch import Batch
 
 STAMPS = (("secs", "nsecs"), ("sec", "nanosec"), ("sec", "nsec"))
 """What the seconds and nanoseconds of a ``header.stamp`` are called: ROS 1, ROS 2, OpenRTM."""

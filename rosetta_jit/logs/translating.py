@@ -6,6 +6,7 @@ new field cannot hold, or a field that has no successor but a header's `seq`, is
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,14 +15,11 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.frameworks.ros2.successors import definition, successor
 from rosetta_jit.language.imports.search import Reading, SearchPath
-from rosetta_jit.logs.base import Connection
+from rosetta_jit.logs.base import Block, Connection
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from rosetta_jit.api.bridges import Bridge
-    from rosetta_jit.logs.base import Block
     from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.log import Log
 

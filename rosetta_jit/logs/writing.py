@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from contextlib import contextmanager
 from shutil import rmtree
 from typing import TYPE_CHECKING, Protocol
@@ -12,7 +13,6 @@ from rosetta_jit.file_errors import named, whole
 from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
     from pathlib import Path
 
     from rosetta_jit.logs.base import Connection

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from rosetta_jit.kernel.ir import Binary, Bits, Compare, Comparison, Const, Expr, Fits, Select
+from rosetta_jit.kernel.ir import Arithmetic, Binary, Bits, Compare, Comparison, Const, Expr, Fits, Select
 from rosetta_jit.kernel.terms import add, index, mul, type_of
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Arithmetic
-    from rosetta_jit.lowering.writer import Where, Writer
-    from rosetta_jit.model.expr import Operator
+from rosetta_jit.lowering.writer import Where, Writer
+from rosetta_jit.model.expr import Operator
 
 _OPS: dict[str, Arithmetic] = {"+": "add", "-": "sub", "*": "mul", "/": "div", "%": "rem"}
 _BITS: dict[str, Arithmetic] = {"&": "and", "|": "or", "^": "xor", "and": "and", "or": "or", "<<": "shl", ">>": "shr"}

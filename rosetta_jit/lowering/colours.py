@@ -18,17 +18,31 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Advance, Binary, Compare, Const, Convert, For, Get, Load, Local, Place, Reserve, Select, SetField, Used
+from rosetta_jit.kernel.ir import (
+    Advance,
+    Arithmetic,
+    Binary,
+    Compare,
+    Const,
+    Convert,
+    Expr,
+    For,
+    Get,
+    Load,
+    Local,
+    Place,
+    Reserve,
+    Select,
+    SetField,
+    Used,
+)
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.limits import MAX_COLOUR_SIDE
 from rosetta_jit.lowering.texts.views import View, lane_of, sound
-from rosetta_jit.lowering.writer import block
+from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Arithmetic, Expr
-    from rosetta_jit.lowering.writer import Where, Writer
-
     Colour = tuple[Expr, ...]
     """R, G and B."""
 

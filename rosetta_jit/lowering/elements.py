@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, For, Local
+from rosetta_jit.kernel.ir import Binary, Expr, For, Local
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import inside
-from rosetta_jit.lowering.writer import block
+from rosetta_jit.lowering.evaluation import Evaluation
+from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Generator
-
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.lowering.writer import Writer
 
 BLOCK = 1 << 16
 """How many elements a block has: so many integers of 32 bits add up to one of 64."""

@@ -5,18 +5,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
+from typing import Protocol
 
+from rosetta_jit.kernel.ir import Address, Expr, Local, Scalar, Stmt
+from rosetta_jit.language import typed
 from rosetta_jit.language.function import functions
+from rosetta_jit.lowering.writer import Where, Writer
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from contextlib import AbstractContextManager
-
-    from rosetta_jit.kernel.ir import Address, Expr, Local, Scalar, Stmt
-    from rosetta_jit.language import typed
-    from rosetta_jit.lowering.writer import Where, Writer
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+from rosetta_jit.kernel.ir import Expr
 from rosetta_jit.language.groups import group_functions
 from rosetta_jit.language.resolve.definitions import arguments_in, definitions_of
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language.typed import Call
-    from rosetta_jit.lowering.evaluation import Evaluation
+from rosetta_jit.language.typed import Call
+from rosetta_jit.lowering.evaluation import Evaluation
 
 
 def lower_component(call: Call, values: Evaluation) -> Expr:

@@ -7,16 +7,19 @@ of an encoding becomes a body of the kernel.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Block, Capacity, Compare, Direction, Fill, Kernel, Return
 from rosetta_jit.kernel.ir import Place as KernelPlace
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index
-from rosetta_jit.language.check.discriminators import discriminators_of
+from rosetta_jit.language.check.discriminators import Discriminator, discriminators_of
+from rosetta_jit.language.check.wire_shares import Share
 from rosetta_jit.language.scope import Message
+from rosetta_jit.language.typed import Rule
 from rosetta_jit.lowering.codec.ending import end
-from rosetta_jit.lowering.codec.fields import root_fields
+from rosetta_jit.lowering.codec.fields import HolderFields, root_fields
 from rosetta_jit.lowering.codec.walk import walk
 from rosetta_jit.lowering.codec.wire_fields import Found, WireFields
 from rosetta_jit.lowering.rules.holder_side import HolderSide
@@ -30,23 +33,14 @@ from rosetta_jit.lowering.rules.values import Values
 from rosetta_jit.lowering.rules.wire_side import WireSide
 from rosetta_jit.lowering.staging import staged_fields
 from rosetta_jit.lowering.writer import References, Where, Writer, block
+from rosetta_jit.model.expr import Side
 from rosetta_jit.model.initial_values import InitialValues
-from rosetta_jit.model.types import Struct
+from rosetta_jit.model.layout import Layout
+from rosetta_jit.model.types import Schema, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.wire.codec import Tagged
+from rosetta_jit.wire.codec import Codec, Encoding, Tagged
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rosetta_jit.language.check.discriminators import Discriminator
-    from rosetta_jit.language.check.wire_shares import Share
-    from rosetta_jit.language.typed import Rule
-    from rosetta_jit.lowering.codec.fields import HolderFields
-    from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.layout import Layout
-    from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.wire.codec import Codec, Encoding
-
     Relate = Callable[[HolderFields, Codec], None]
 
 SCRATCH_STRIDE = 8

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
-from rosetta_jit.kernel.ir import For, Local
+from rosetta_jit.kernel.ir import Expr, For, Local
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import inside
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.writer import block
-from rosetta_jit.model.types import Array, Int
+from rosetta_jit.model.types import Array, Int, Type
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
-
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.model.types import Type
 
 
 class Put(Protocol):

@@ -6,15 +6,11 @@ are then encoded. Bytes move once more than in place, and every wire can be mapp
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.kernel.ir import Advance, Fill, Place, Reserve, Used
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.lowering.codec.fields import Cell, HolderFields
+from rosetta_jit.lowering.writer import Writer
 from rosetta_jit.model.layout import Lane, Layout, Number, behind
-
-if TYPE_CHECKING:
-    from rosetta_jit.lowering.writer import Writer
 
 SCRATCH = Lane("(scratch)", 8, Number(0, "i64"))
 """What lies behind the lanes of a layout: words that a codec must remember."""

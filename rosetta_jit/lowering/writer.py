@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import field, replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel import ir, state
 from rosetta_jit.kernel.shape import subexpressions
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, type_of
 from rosetta_jit.lowering.limits import MAX_SIZE, MAX_STATEMENTS
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
 
 
 class TooManyStatementsError(Exception):

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.model.expr import Each, Index, Len, Literal, Name
-from rosetta_jit.model.mapping import For, Ignore
+from rosetta_jit.model.expr import Each, Index, Len, Literal, Name, Path
+from rosetta_jit.model.mapping import For, Ignore, Rule
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.expr import Path
-    from rosetta_jit.model.mapping import Rule
     from rosetta_jit.source import Span
 
 

@@ -8,18 +8,14 @@ are routines.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.model.layout import SPAN_BYTES, WIDTH, recursive_structs, scalar_of
 from rosetta_jit.model.limits import MAX_BYTES, MAX_LINKS, MAX_NESTED, MAX_SLOTS
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rosetta_jit.model.types import Schema, Type
 
 
 @dataclass(frozen=True, slots=True)

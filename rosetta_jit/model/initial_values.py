@@ -8,16 +8,10 @@ that zero selects. What may be absent gets its initial value when it comes.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from rosetta_jit.model.layout import Row, Span, Variant
+from rosetta_jit.model.layout import Layout, Row, Slot, Span, Variant
 from rosetta_jit.model.limits import MAX_INITIAL_BYTES
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Optional, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Optional, Schema, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.layout import Layout, Slot
-    from rosetta_jit.model.types import Schema, Type
 
 
 @dataclass(slots=True, eq=False)

@@ -15,17 +15,14 @@ such a lane end with hidden words (`LINK_WORDS`) in which kernels keep their wor
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.model import types
 from rosetta_jit.model.limits import MAX_ROW_BYTES, MAX_SLOTS
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
 
 SPAN_BYTES = 16
 LINK_WORDS = 6

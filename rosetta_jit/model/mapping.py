@@ -15,12 +15,11 @@ from dataclasses import field
 from typing import TYPE_CHECKING, TypeAlias
 from typing import Literal as OneOf
 
-from rosetta_jit.model.expr import Expr, Path
+from rosetta_jit.model.expr import Expr, Len, List, Path
 from rosetta_jit.model.rules import Assign, Default, For, Ignore, Reject, SetLength, SetState, When
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.expr import Len, List
     from rosetta_jit.source import Source, Span
 
 OF_WIRES = "wires "

@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from collections.abc import Iterable
+from typing import assert_never
 
 from rosetta_jit.model import expr
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rosetta_jit.model.types import Declaration, Field, Schema, Type
-
+from rosetta_jit.model.types import (
+    Array,
+    Bool,
+    Bytes,
+    Declaration,
+    Enum,
+    Field,
+    Float,
+    Int,
+    Map,
+    Optional,
+    Ref,
+    Schema,
+    String,
+    Struct,
+    Type,
+    Union,
+)
 
 ESCAPED = str.maketrans({'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"})
 """Characters that a text in quotes writes otherwise."""

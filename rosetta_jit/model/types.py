@@ -12,6 +12,7 @@ Scalars carry the word that their IDL uses (`spelling`): two IDL types with the 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import field
 from typing import TYPE_CHECKING
 
@@ -19,8 +20,6 @@ from rosetta_jit.model.scalars import Bool, Enum, Float, Int, String
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.source import Span

@@ -7,17 +7,13 @@ itself and by one around it, the outer one counts: it knows more.
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeGuard
+from typing import TypeGuard
 
 from rosetta_jit.model.limits import MAX_UNIT_PARTS
-from rosetta_jit.model.types import Array
+from rosetta_jit.model.types import Array, Field, PartUnit
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.model.types import Field, PartUnit
 
 
 def with_unit(field: Field, text: str | None) -> Field:

@@ -5,8 +5,9 @@ The depth of an expression is bounded by the parser, so that walks may be recurs
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeVar, assert_never, cast
+from typing import TypeVar, assert_never, cast
 
 from rosetta_jit.model import mapping
 from rosetta_jit.model.expr import (
@@ -14,6 +15,7 @@ from rosetta_jit.model.expr import (
     Call,
     Choice,
     Coerced,
+    Expr,
     Given,
     Index,
     Item,
@@ -25,15 +27,12 @@ from rosetta_jit.model.expr import (
     Name,
     Nearest,
     Path,
+    Side,
     Slice,
+    Step,
     Unary,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-
-    from rosetta_jit.model.expr import Expr, Side, Step
-    from rosetta_jit.model.mapping import Rule
+from rosetta_jit.model.mapping import Rule
 
 Field = Path | Len
 """A field or its length."""

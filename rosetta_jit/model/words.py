@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.model.limits import MAX_LISTED
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Field, Schema, Type
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
 
 
 def field_words(field: Field, schema: Schema) -> str:

@@ -10,13 +10,13 @@ fifth of what a first compile took; the driver looks at the states that a text l
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.parsing.lalr import Grammar
 from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
 SUFFIX = ".tables"

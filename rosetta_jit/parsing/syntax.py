@@ -6,20 +6,16 @@ that was open then is dropped, and so is the closing word of a block whose openi
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from rosetta_jit.parsing.lalr import END, Token, UnexpectedTokenError
+from rosetta_jit.parsing.lalr import END, Grammar, Parser, Token, Tree, UnexpectedTokenError
 from rosetta_jit.parsing.limits import MAX_ERRORS
-from rosetta_jit.source import Span
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.parsing.lalr import Grammar, Parser, Tree
-    from rosetta_jit.source import Source
 
 
 @dataclass(frozen=True, slots=True)

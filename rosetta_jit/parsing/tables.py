@@ -9,6 +9,7 @@ start, end                  the first state, and the one behind the whole text
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 from lark import Lark
@@ -16,8 +17,6 @@ from lark.lark import PostLex
 from lark.parsers.lalr_analysis import Shift
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
     from lark import Token
     from lark.grammar import Rule, Symbol, Terminal
 

@@ -6,36 +6,31 @@ Bytes that no rule touches are not copied into lanes: their lane *is* the messag
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import Any, assert_never
 
+from rosetta_jit.backends.backend import Backend
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.catalogue.wires import not_here
 from rosetta_jit.errors import MappingError
-from rosetta_jit.kernel.ir import Reserve
+from rosetta_jit.kernel.host import UserFunction
+from rosetta_jit.kernel.ir import Kernel, Reserve
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.rewrite import with_registers_behind
 from rosetta_jit.kernel.shape import asks_host, our_functions, statements
+from rosetta_jit.language.uses import Signature
 from rosetta_jit.lowering.writer import References
-from rosetta_jit.model.layout import Layout, Members, Number, Row, Span, Variant
+from rosetta_jit.model.layout import Layout, Members, Number, Row, Slot, Span, Variant
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref, same_name
 from rosetta_jit.pipeline.build import Build, plain_site
 from rosetta_jit.pipeline.kept import kept_of
+from rosetta_jit.pipeline.request import BridgeRequest, GivenFunction, Request
 from rosetta_jit.pipeline.successors import SuccessorBuild, joined
 from rosetta_jit.pipeline.user_functions import check_compiled
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.garbage import imported
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.backends.backend import Backend
-    from rosetta_jit.kernel.host import UserFunction
-    from rosetta_jit.kernel.ir import Kernel
-    from rosetta_jit.language.uses import Signature
-    from rosetta_jit.model.layout import Slot
-    from rosetta_jit.pipeline.request import BridgeRequest, GivenFunction, Request
 
 
 class BridgeBuild:

@@ -6,10 +6,12 @@ texts → schemas and mapping → checked rules → encoding, layout → kernels
 from __future__ import annotations
 
 import json
+from collections.abc import Generator, Iterable, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, cast, get_args
 
+from rosetta_jit.backends.backend import Backend
 from rosetta_jit.backends.installed import backend_named
 from rosetta_jit.backends.installed import installed as installed_backends
 from rosetta_jit.catalogue import pipeline as words
@@ -18,6 +20,8 @@ from rosetta_jit.catalogue.wires import unknown as unknown_wire
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework
 from rosetta_jit.frameworks.installed import GROUP as FRAMEWORKS
+from rosetta_jit.kernel.host import UserFunction
+from rosetta_jit.kernel.ir import Kernel, Site
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError
@@ -26,8 +30,9 @@ from rosetta_jit.language.check.mapping import Checked, check
 from rosetta_jit.language.function import GROUP as FUNCTIONS
 from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parse.mapping import parse as parse_mapping
+from rosetta_jit.language.typed import Rule
 from rosetta_jit.lowering.lower import Mapped, lower
-from rosetta_jit.lowering.writer import TooManyStatementsError
+from rosetta_jit.lowering.writer import References, TooManyStatementsError
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct
@@ -35,31 +40,22 @@ from rosetta_jit.pipeline.checked_mapping import CheckedMapping
 from rosetta_jit.pipeline.declared import declared_types, files_of, of_a_size, readers_of, report
 from rosetta_jit.pipeline.kept import kept_of
 from rosetta_jit.pipeline.recent import recently
-from rosetta_jit.pipeline.request import ByteOrder, Request
-from rosetta_jit.pipeline.stages import shown
+from rosetta_jit.pipeline.request import ByteOrder, GivenFunction, Request
+from rosetta_jit.pipeline.stages import Made, shown
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.pipeline.user_functions import called_functions, check_compiled, check_given
 from rosetta_jit.pipeline.wires import types_of_wire
 from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.runtime.limits import MAX_PIXEL_BYTES
 from rosetta_jit.runtime.run import GRACE_BYTES
+from rosetta_jit.source import Span
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.entry_points import files_of_offered
 from rosetta_jit.startup.garbage import imported
+from rosetta_jit.wire.codec import Encoding, Rare
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable, Mapping
-
-    from rosetta_jit.backends.backend import Backend
     from rosetta_jit.backends.entry.link import Options
-    from rosetta_jit.kernel.host import UserFunction
-    from rosetta_jit.kernel.ir import Kernel, Site
-    from rosetta_jit.language.typed import Rule
-    from rosetta_jit.lowering.writer import References
-    from rosetta_jit.pipeline.request import GivenFunction
-    from rosetta_jit.pipeline.stages import Made
-    from rosetta_jit.source import Span
-    from rosetta_jit.wire.codec import Encoding, Rare
 
 
 class Build:

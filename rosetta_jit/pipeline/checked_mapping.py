@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.check.mapping import Checked
     from rosetta_jit.language.laws.guarantees import Laws

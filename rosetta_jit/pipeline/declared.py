@@ -9,23 +9,22 @@ from typing import TYPE_CHECKING, Any
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.catalogue.bind import needless
 from rosetta_jit.catalogue.wires import unknown as unknown_wire
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language.imports.search import Reading, SearchPath, refusal
 from rosetta_jit.language.parse.unit_file import SUFFIX
 from rosetta_jit.model.expansion import excess
 from rosetta_jit.model.serial import from_plain
-from rosetta_jit.model.types import Array, Map, Optional, Schema, String, Struct, Union, same_name
+from rosetta_jit.model.types import Array, Declaration, Map, Optional, Schema, String, Struct, Type, Union, same_name
 from rosetta_jit.pipeline.similar_types import similar_types
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.runtime.cache.kernels import digest_file
+from rosetta_jit.source import Source
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.types import Declaration, Type
     from rosetta_jit.pipeline.request import Request
-    from rosetta_jit.source import Source
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.installed import installed
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 
 def infer(messages: Iterable[bytes], *, name: str, encoding: str) -> str:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.shape import calls_to_host, registers_read
 from rosetta_jit.lowering.rules.state import word_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from rosetta_jit.kernel.ir import Kernel
     from rosetta_jit.language.parameters.state import Declared
 
 

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Callable, Hashable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from rosetta_jit.frameworks.installed import installed
-from rosetta_jit.language.function import offered
+from rosetta_jit.language.function import Function, offered
 from rosetta_jit.pipeline.limits import MAX_RECENT, MAX_RECENT_BYTES
-from rosetta_jit.pipeline.request import here
+from rosetta_jit.pipeline.request import Request, here
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Mapping
-
     from rosetta_jit.frameworks.base import Framework
-    from rosetta_jit.language.function import Function
     from rosetta_jit.pipeline.declared import Files
-    from rosetta_jit.pipeline.request import Request
 
 _Said = TypeVar("_Said")
 

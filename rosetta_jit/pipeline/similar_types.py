@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from itertools import islice
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from rosetta_jit.errors import ReportError
-from rosetta_jit.language.imports.search import refusal
+from rosetta_jit.language.imports.search import SearchPath, refusal
 from rosetta_jit.model.types import name_parts
+from rosetta_jit.parsing.idl import FrontEnds
 from rosetta_jit.pipeline.limits import MAX_FILES, MAX_GUESSES, MAX_READ
 from rosetta_jit.source import shipped_folders
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from pathlib import Path
-
-    from rosetta_jit.language.imports.search import SearchPath
-    from rosetta_jit.parsing.idl import FrontEnds
 
 
 def similar_types(wanted: str, front_ends: FrontEnds, search: SearchPath) -> list[str]:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 from typing import Literal as OneOf
 
+from rosetta_jit.backends.backend import Backend
 from rosetta_jit.backends.installed import backend_named
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.backends.backend import Backend
     from rosetta_jit.backends.entry.link import Options
     from rosetta_jit.kernel.entries import EntryName
     from rosetta_jit.kernel.ir import Kernel

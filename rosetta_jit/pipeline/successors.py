@@ -6,18 +6,16 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.model.types import Schema
+from rosetta_jit.lowering.writer import References
+from rosetta_jit.model.types import Schema, Struct
 from rosetta_jit.pipeline.build import Build, Types
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.wire.codec import Encoding
 from rosetta_jit.wire.differences import differences
-from rosetta_jit.wire.other_type import Partners, UnlikeError, for_other_type
+from rosetta_jit.wire.other_type import Pairs, Partners, UnlikeError, for_other_type
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Successors
-    from rosetta_jit.lowering.writer import References
-    from rosetta_jit.model.types import Struct
-    from rosetta_jit.wire.codec import Encoding
-    from rosetta_jit.wire.other_type import Pairs
 
 
 class SuccessorBuild(Build):

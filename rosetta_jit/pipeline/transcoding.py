@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.backends.backend import Backend
 from rosetta_jit.backends.installed import backend_named
 from rosetta_jit.backends.installed import installed as installed_backends
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.installed import GROUP as FRAMEWORKS
 from rosetta_jit.frameworks.installed import installed
+from rosetta_jit.kernel.host import UserFunction
+from rosetta_jit.kernel.ir import Direction, Kernel
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.lowering.codec.transcoding import MESSAGES, transcoding_kernel
@@ -19,6 +22,7 @@ from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref
 from rosetta_jit.pipeline.build import plain_site
 from rosetta_jit.pipeline.kept import kept_of
+from rosetta_jit.pipeline.request import BridgeRequest, GivenFunction
 from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.runtime.run import GRACE_BYTES
 from rosetta_jit.startup.cached import cached_property
@@ -26,10 +30,6 @@ from rosetta_jit.startup.entry_points import files_of_offered
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
-    from rosetta_jit.backends.backend import Backend
-    from rosetta_jit.kernel.host import UserFunction
-    from rosetta_jit.kernel.ir import Direction, Kernel
-    from rosetta_jit.pipeline.request import BridgeRequest, GivenFunction
     from rosetta_jit.wire.tree import Tree
 
 DIRECTIONS: tuple[Direction, ...] = ("decode", "size", "encode")

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.parameters.state import NO_STATE
+from rosetta_jit.language.parameters.state import NO_STATE, Declared
+from rosetta_jit.language.typed import Rule
+from rosetta_jit.model.types import Schema, Struct
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.language.check.wire_shares import Share
-    from rosetta_jit.language.parameters.state import Declared
-    from rosetta_jit.language.typed import Rule
     from rosetta_jit.language.uses import Signature
-    from rosetta_jit.model.types import Schema, Struct
 
 
 @dataclass(frozen=True, slots=True)

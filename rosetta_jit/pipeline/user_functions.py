@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import functions as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.host import UserFunction
+from rosetta_jit.kernel.ir import Kernel, Scalar
 from rosetta_jit.kernel.shape import calls_to_host
+from rosetta_jit.language.uses import Signature
 from rosetta_jit.lowering.rules.values import scalar_type
 from rosetta_jit.runtime.code.allowed import ALLOWED
 from rosetta_jit.runtime.code.object_file import undefined_symbols
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.kernel.ir import Kernel, Scalar
-    from rosetta_jit.language.uses import Signature
     from rosetta_jit.pipeline.request import Request
 
 

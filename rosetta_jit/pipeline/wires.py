@@ -7,6 +7,7 @@ registers.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import wires as words
@@ -15,18 +16,14 @@ from rosetta_jit.language.check.across_wires import Memory, type_name
 from rosetta_jit.language.check.wire_shares import share_of
 from rosetta_jit.language.check.wires import kept_values, rules_of, value_of_wire
 from rosetta_jit.language.parameters.state import Declared
-from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, SetState
-from rosetta_jit.model.types import Struct
+from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, Expr, Rule, SetState
+from rosetta_jit.model.mapping import Mapping
+from rosetta_jit.model.types import Schema, Struct
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.runtime.arrivals import ALL, variable_of, variable_of_value
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rosetta_jit.language.check.mapping import Checked
-    from rosetta_jit.language.typed import Expr, Rule
-    from rosetta_jit.model.mapping import Mapping
-    from rosetta_jit.model.types import Schema
     from rosetta_jit.pipeline.request import Request
 
 

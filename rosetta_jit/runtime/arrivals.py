@@ -5,10 +5,7 @@ No mapping can give a variable such a name.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 ALL = "(arrivals)"
 """How many messages have arrived in all."""

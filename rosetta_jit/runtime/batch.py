@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, cast, overload
 
 import numpy as np
 
-from rosetta_jit.errors import InUse
+from rosetta_jit.errors import DecodeError, InUse
 from rosetta_jit.kernel.state import EPOCH, VALID
 from rosetta_jit.runtime.columns import column, presence_mask
 from rosetta_jit.runtime.handed import Handed
+from rosetta_jit.runtime.holder import Holder, Manners
+from rosetta_jit.runtime.holder.classes import HolderFamily
 from rosetta_jit.runtime.holder.family import family_of
 from rosetta_jit.runtime.holder.paths import entries_to
 from rosetta_jit.runtime.lanes import Lanes, in_use
@@ -17,16 +20,11 @@ from rosetta_jit.runtime.parts import contents, errors_of_part, errors_together,
 from rosetta_jit.runtime.plan import plan
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-
     import pyarrow as pa
     from numpy.typing import ArrayLike, NDArray
 
-    from rosetta_jit.errors import DecodeError
     from rosetta_jit.runtime.arrow.arrays import Form, Octets
     from rosetta_jit.runtime.arrow.times import Unit
-    from rosetta_jit.runtime.holder import Holder, Manners
-    from rosetta_jit.runtime.holder.classes import HolderFamily
 
 _INTERNAL = frozenset({"lanes", "room", "reset"})
 """What batches have for other modules."""

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.memory import ALIGNMENT
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 
 def _begun_in_python(arena: bytearray, begin: bytes, places: bytes) -> int:

@@ -6,6 +6,7 @@ Their lanes are nobody else's: threads take them in turn, and others where they 
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Generator, Iterable, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, cast
 
@@ -13,24 +14,21 @@ import numpy as np
 
 from rosetta_jit.errors import DecodeError, EncodeError, InUse
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, GROW, NUMBER, USED, lane_word
+from rosetta_jit.model.layout import Layout
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import Context, bind_call
+from rosetta_jit.runtime.code.native import Library
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_SPARES
-from rosetta_jit.runtime.message_spans import laid_out
+from rosetta_jit.runtime.message_spans import MessageSpans, laid_out
 from rosetta_jit.runtime.program import ProgramBase, entry_of
 from rosetta_jit.runtime.registers import NOTHING_KEPT, Kept, address_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable, Mapping
-
     from _typeshed import ReadableBuffer as Buffer
     from numpy.typing import NDArray
 
-    from rosetta_jit.model.layout import Layout
-    from rosetta_jit.runtime.code.native import Library
-    from rosetta_jit.runtime.message_spans import MessageSpans
 
 _NOTHING = np.empty(0, np.uint8)
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import ctypes
 import sys
+from collections.abc import Callable
 from dataclasses import field
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -22,8 +23,6 @@ from rosetta_jit.runtime import specs
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     Words = np.ndarray[tuple[int], np.dtype[np.int64]]
 
 VECTORCALL, CONTEXT, CALLABLE_BYTES = 64, 72, 80

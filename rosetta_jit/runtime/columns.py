@@ -5,6 +5,7 @@ A number is a strided array. An array of anything is `Ragged`: the column of its
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
 import numpy as np
@@ -13,22 +14,17 @@ from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import String
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder import coerce
-from rosetta_jit.runtime.holder.message import place
+from rosetta_jit.runtime.holder.message import Message, place
 from rosetta_jit.runtime.holder.paths import entries_to
-from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Cell, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Cell, Child, Items, Node, Numbers, Pairs, Presence, Record, Scalar, Text
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_TEXT_ITEMS
 from rosetta_jit.runtime.parts import chosen_rows
 from rosetta_jit.runtime.rows import elements
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from numpy.typing import NDArray
-
-    from rosetta_jit.runtime.holder.message import Message
-    from rosetta_jit.runtime.holder.record import Node, Presence
-    from rosetta_jit.runtime.lanes import Lanes
 
 
 _OCTETS, _CODE_UNITS = String("octets"), String("utf-16")

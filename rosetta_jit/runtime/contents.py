@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.state import USED, lane_word
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rosetta_jit.runtime.lanes import Lanes
 
 

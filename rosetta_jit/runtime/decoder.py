@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from threading import get_ident, local
 from typing import TYPE_CHECKING, Any, TypeVar, cast, overload
 from weakref import WeakKeyDictionary
@@ -11,26 +12,23 @@ from rosetta_jit.runtime import run
 from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.attributes.methods import turning
 from rosetta_jit.runtime.callable import FAILED, THREAD
+from rosetta_jit.runtime.holder import Holder
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.runtime.memory import LARGE
-from rosetta_jit.runtime.message_spans import laid_out, source_of
+from rosetta_jit.runtime.message_spans import MessageSpans, laid_out, source_of
 from rosetta_jit.runtime.program import Loaded, Program, is_foreign
 from rosetta_jit.runtime.room import roomier
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
     import numpy as np
     from _typeshed import ReadableBuffer as Buffer
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.filling import Filling, OnError
-    from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.holder.objects.giving import Givers
-    from rosetta_jit.runtime.lanes import Lanes
-    from rosetta_jit.runtime.message_spans import MessageSpans
     from rosetta_jit.runtime.on_demand import OnDemand
 
 _Object = TypeVar("_Object")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -12,22 +13,20 @@ from rosetta_jit.kernel.state import CLEAN, VALID
 from rosetta_jit.model.types import same_name
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import OTHERS
+from rosetta_jit.runtime.holder import Holder
 from rosetta_jit.runtime.holder.classes import settle_lanes
 from rosetta_jit.runtime.holder.message import Message, place
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.runtime.message_spans import MessageSpans
 from rosetta_jit.runtime.program import Loaded, Program, is_foreign, one_by_one
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from _typeshed import ReadableBuffer as Buffer
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.batch import Batch
-    from rosetta_jit.runtime.holder import Holder
-    from rosetta_jit.runtime.lanes import Lanes
 
     Target = tuple[NDArray[np.uint8], int]
     """A buffer, and where to write in it."""

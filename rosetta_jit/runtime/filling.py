@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -9,19 +10,15 @@ import numpy as np
 from rosetta_jit.errors import DecodeError
 from rosetta_jit.kernel.state import CAPACITY, CLEAN, LANE_WORDS, USED, VALID, lane_word
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.batch import begin_anew, keep_only
+from rosetta_jit.runtime.batch import Batch, begin_anew, keep_only
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.memory import pointer_to
-from rosetta_jit.runtime.program import one_by_one
+from rosetta_jit.runtime.program import Loaded, one_by_one
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.batch import Batch
-    from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.message_spans import MessageSpans
-    from rosetta_jit.runtime.program import Loaded
 
 OnError = Literal["raise", "skip", "mask"]
 MadeFor: TypeAlias = "Callable[[int, NDArray[np.uint8], int, int], bool]"

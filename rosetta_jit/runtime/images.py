@@ -8,16 +8,14 @@ wrote, ask again.
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable, Mapping
 from importlib.util import find_spec
 from io import BytesIO
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 from rosetta_jit.errors import MappingError
 from rosetta_jit.runtime.limits import MAX_IMAGE_SIDE, MAX_PIXEL_BYTES
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
 
 DEFLATE_RATIO = 1032
 """How much shorter deflate makes bytes at most (RFC 1951, 3.2.5: 258 bytes by two bits); a PNG that claims more is none."""

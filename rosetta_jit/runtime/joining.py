@@ -6,18 +6,14 @@ messages of other wires are decoded meanwhile. The compiled entry takes messages
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 from rosetta_jit.kernel.state import CLEAN, VALID
+from rosetta_jit.runtime.holder import Holder
 from rosetta_jit.runtime.holder.classes import settle_lanes
-
-if TYPE_CHECKING:
-    from collections.abc import Generator
-    from weakref import WeakKeyDictionary
-
-    from rosetta_jit.runtime.holder import Holder
-    from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.lanes import Lanes
 
 NOT_WHOLE = "a message of one of several wires fills a part of a holder: decode it by a call, or by `into`, and not {}"
 

@@ -10,7 +10,8 @@ Compiled entries keep to the same rule by themselves (`backends/entry/*.ll`).
 
 from __future__ import annotations
 
-from _thread import allocate_lock
+from _thread import LockType, allocate_lock
+from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Self, TypeVar, assert_never, cast
 
@@ -32,7 +33,8 @@ from rosetta_jit.kernel.state import (
     WASTED,
     lane_word,
 )
-from rosetta_jit.model.initial_values import FirstCase, FixedArray
+from rosetta_jit.model.initial_values import FirstCase, FixedArray, InitialValue
+from rosetta_jit.model.layout import Layout
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.beginning import address_of_bytes, begin
 from rosetta_jit.runtime.cells import Array, Arrays, Cells, Memory
@@ -42,13 +44,8 @@ from rosetta_jit.runtime.memory import ALIGNMENT, Hidden, address_of, aligned, a
 from rosetta_jit.runtime.plan import Plan, plan
 
 if TYPE_CHECKING:
-    from _thread import LockType
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
-    from rosetta_jit.model.initial_values import InitialValue
-    from rosetta_jit.model.layout import Layout
 
 _What = TypeVar("_What")
 _Value = TypeVar("_Value")

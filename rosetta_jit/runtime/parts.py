@@ -6,12 +6,15 @@ What is copied lies together and in order, borrowed bytes included; nothing that
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING, Any, assert_never
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
 
 import numpy as np
 
+from rosetta_jit.errors import DecodeError
 from rosetta_jit.kernel.state import USED, VALID, lane_word
-from rosetta_jit.model.layout import Number, Row, Span, Variant
+from rosetta_jit.model.initial_values import InitialValue
+from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span, Variant
 from rosetta_jit.runtime.lanes import Lanes, in_use
 from rosetta_jit.runtime.limits import MAX_GENERATIONS
 from rosetta_jit.runtime.plan import plan
@@ -19,14 +22,7 @@ from rosetta_jit.runtime.rows import Rows, elements, lent, offsets, picked
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-    from typing import TypeAlias
-
     from numpy.typing import ArrayLike, NDArray
-
-    from rosetta_jit.errors import DecodeError
-    from rosetta_jit.model.initial_values import InitialValue
-    from rosetta_jit.model.layout import Layout, Slot
 
     Index: TypeAlias = slice | ArrayLike
     Errors: TypeAlias = dict[int, DecodeError]

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rosetta_jit.kernel.state import ADDRESS, CLEAN, STRIDE, USED, VALID, lane_word, state_words
-from rosetta_jit.model.initial_values import FixedArray
-from rosetta_jit.model.layout import Number
+from rosetta_jit.model.initial_values import FixedArray, InitialValue
+from rosetta_jit.model.layout import Layout, Number
 from rosetta_jit.runtime.cells import BYTES, dtype_of
 from rosetta_jit.runtime.memory import aligned
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.model.initial_values import InitialValue
-    from rosetta_jit.model.layout import Layout
 
 INITIAL_BYTES = 64
 """What a lane has room for before it grows."""

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import ctypes
 import time
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Generator, Mapping
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rosetta_jit.kernel.state import NOW, NUMBER
@@ -16,27 +17,23 @@ from rosetta_jit.runtime import run
 from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.attributes.makers import give_room, maker
 from rosetta_jit.runtime.callable import MADE, Context, bind_call, builtin_of
+from rosetta_jit.runtime.code.native import Library
+from rosetta_jit.runtime.holder import Holder
 from rosetta_jit.runtime.holder.message import Message
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_SPARES
-from rosetta_jit.runtime.registers import NOTHING_KEPT, Kept, address_of
+from rosetta_jit.runtime.plan import Plan
+from rosetta_jit.runtime.registers import NOTHING_KEPT, Kept, Registers, address_of
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Mapping
-    from contextlib import AbstractContextManager
-
     import numpy as np
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.batch import Batch
-    from rosetta_jit.runtime.code.native import Library
-    from rosetta_jit.runtime.holder import Holder
-    from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.message_spans import MessageSpans
     from rosetta_jit.runtime.on_demand import OnDemand
-    from rosetta_jit.runtime.plan import Plan
-    from rosetta_jit.runtime.registers import Registers
 
 _NOTHING_LENT = nullcontext[None]()
 

@@ -7,6 +7,7 @@ when its message is done (`kernel.ir.Return`), so that a message that fails leav
 from __future__ import annotations
 
 from _thread import allocate_lock
+from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Self
 
@@ -17,8 +18,6 @@ from rosetta_jit.kernel.state import REGISTERS
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Mapping
-
     from rosetta_jit.runtime.lanes import Lanes
 
 OTHERS = "another call of this program, whose mapping keeps state from one message to the next, has not returned: give each thread its own"

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import operator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rosetta_jit.kernel.state import ADDRESS, CLEAN, EPOCH, VALID, lane_word
 from rosetta_jit.runtime.lanes import MOST_AT_ONCE, Lanes
-from rosetta_jit.runtime.plan import begun, plan
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.plan import Plan
+from rosetta_jit.runtime.plan import Plan, begun, plan
 
 
 def initialised(first: Plan) -> Plan:

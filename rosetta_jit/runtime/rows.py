@@ -8,24 +8,20 @@ What is read may be changed by another thread meanwhile. `Lanes.consistent` read
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, assert_never
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
 
 import numpy as np
 
 from rosetta_jit.model.layout import SPAN_BYTES
 from rosetta_jit.runtime.cells import dtype_of
-from rosetta_jit.runtime.holder.record import Bit, Case
+from rosetta_jit.runtime.holder.record import Bit, Case, Cell, Presence
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.run import readable
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import TypeAlias
-
     from numpy.typing import NDArray
-
-    from rosetta_jit.runtime.holder.record import Cell, Presence
-    from rosetta_jit.runtime.lanes import Lanes
 
     Flags: TypeAlias = NDArray[np.bool_]
     Indices: TypeAlias = NDArray[np.int64]

@@ -7,22 +7,19 @@ from __future__ import annotations
 
 import ctypes
 import marshal
-from collections.abc import Callable
+from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from rosetta_jit.errors import DecodeError, EncodeError
+from rosetta_jit.errors import DecodeError, EncodeError, Kind
 from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, GROW, GROW_LANE, GROW_ROWS, RESULT
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Sequence
-
     from numpy.typing import NDArray
 
-    from rosetta_jit.errors import Kind
     from rosetta_jit.runtime.lanes import Lanes
 
 ANY_SIZE = 1 << 60

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any, cast
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-    from types import MethodDescriptorType
+from collections.abc import Callable, Mapping, Sequence
+from types import MethodDescriptorType
+from typing import Any, cast
 
 # Include/object.h, Include/typeslots.h, Include/structmember.h
 DEFAULT, METHOD_DESCRIPTOR, VECTORCALL, BASETYPE = 1 << 18, 1 << 17, 1 << 11, 1 << 10

@@ -7,18 +7,14 @@ some of them, one for each thread that runs it at the same time.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.handing import handing
-from rosetta_jit.runtime.holder.objects.steps import LEFT
+from rosetta_jit.runtime.holder.objects.foreign import Whole
+from rosetta_jit.runtime.holder.objects.steps import LEFT, Steps
 from rosetta_jit.runtime.limits import MAX_SPARES
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.runtime.holder.objects.foreign import Whole
-    from rosetta_jit.runtime.holder.objects.steps import Steps
 
 
 def encoding(encode: Callable[..., Any], new: Callable[[], Any], whole: Whole, *, is_plain: bool) -> Callable[..., Any]:

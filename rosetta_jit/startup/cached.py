@@ -6,10 +6,8 @@ Here two threads may compute the value at once, and both get the one that was th
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, overload
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from collections.abc import Callable
+from typing import Any, Generic, Self, TypeVar, overload
 
 _Value = TypeVar("_Value")
 

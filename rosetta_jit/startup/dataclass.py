@@ -9,16 +9,14 @@ those that inherit fields or bring such methods themselves, are left to the stan
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable, Mapping
 from functools import cache
 from operator import attrgetter
-from types import FunctionType
-from typing import TYPE_CHECKING, cast
+from types import CodeType, FunctionType
+from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
     from dataclasses import dataclass as dataclass  # noqa: PLC0414 - what others import from here
-    from types import CodeType
-    from typing import Any
 
 OPTIONS = frozenset(("frozen", "slots", "eq", "repr", "weakref_slot"))
 _OWN = frozenset(("__init__", "__eq__", "__hash__", "__repr__", "__setattr__", "__delattr__", "__getstate__", "__setstate__"))

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import gc
 import sys
+from collections.abc import Generator
 from contextlib import contextmanager
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from collections.abc import Generator
-    from types import ModuleType
+from types import ModuleType
+from typing import Any
 
 SELDOM = 200_000
 """New objects between two searches; Python's own 700 make searches an eighth of the time. What is garbage meanwhile stays bounded."""

@@ -10,21 +10,16 @@ import builtins
 import inspect
 import keyword
 import re
+from collections.abc import Iterable, Iterator
 from itertools import accumulate, repeat
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 from rosetta_jit.model.words import escaped, field_words
 from rosetta_jit.runtime.holder import Holder
+from rosetta_jit.runtime.holder.classes import HolderFamily
 from rosetta_jit.runtime.holder.message import OWN_NAMES
-from rosetta_jit.stubs.fields import annotation, path
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from rosetta_jit.runtime.holder.classes import HolderFamily
-    from rosetta_jit.runtime.holder.record import Entry
-    from rosetta_jit.stubs.fields import Shapes
-
+from rosetta_jit.runtime.holder.record import Entry
+from rosetta_jit.stubs.fields import Shapes, annotation, path
 
 SIMPLE = (bool, int, float, str, bytes)
 OVERRIDE = "  # type: ignore  # pyright: ignore"

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from rosetta_jit.model.words import escaped
-from rosetta_jit.runtime.holder.record import Child, Items, Pairs, Record
+from rosetta_jit.runtime.holder.classes import HolderFamily
+from rosetta_jit.runtime.holder.record import Child, Items, Node, Pairs, Record
 from rosetta_jit.stubs.classes import class_names, class_text
 from rosetta_jit.stubs.fields import Shapes, path
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-
-    from rosetta_jit.runtime.holder.classes import HolderFamily
-    from rosetta_jit.runtime.holder.record import Node
 
 HEAD = """\
 # Types of `{what}` for type checkers and editors, written by `rosetta-jit stubs`; write it again when the schema changes.

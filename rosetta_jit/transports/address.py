@@ -10,18 +10,15 @@ as in URLs.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 from rosetta_jit.catalogue import transports as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import AddressError
 from rosetta_jit.source import Source as Text
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
 
 _UNITS = {"": 1, "k": 1 << 10, "m": 1 << 20, "g": 1 << 30}
 

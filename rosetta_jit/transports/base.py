@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field
 from time import monotonic, time_ns
 from typing import TYPE_CHECKING, Any, cast
@@ -16,8 +17,6 @@ from rosetta_jit.transports.limits import MAX_QUEUE_BYTES
 from rosetta_jit.transports.message import Message
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-
     from rosetta_jit.transports.address import Address, Option
 
     Bytes = bytes | memoryview

@@ -5,16 +5,14 @@ from __future__ import annotations
 import errno
 import os
 import socket
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.loop import READ, WRITE, loop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import Any
-
     Target = tuple[int, Any]
     """A family of sockets, and an address in it."""
 

@@ -6,6 +6,7 @@ import ipaddress
 import socket
 import struct
 import sys
+from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +15,6 @@ from rosetta_jit.transports.limits import MAX_DATAGRAM
 from rosetta_jit.transports.loop import READ, loop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rosetta_jit.transports.end import End
 
 AT_ONCE = 64

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
+from collections.abc import Callable
+from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
 from rosetta_jit.errors import TransportError
@@ -11,9 +13,6 @@ from rosetta_jit.terminal import printable
 from rosetta_jit.transports.limits import MAX_ALIKE, MAX_REASON, MAX_REASONS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from types import TracebackType
-
     Lost = Callable[[str, int], object]
 
 

@@ -6,12 +6,12 @@ it asks again.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Generator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
     from struct import Struct
 
     Machine = Generator["int | Until | Frames", memoryview, None]

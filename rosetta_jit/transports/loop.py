@@ -7,16 +7,14 @@ import os
 import select
 import threading
 from collections import deque
+from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from itertools import count
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rosetta_jit.transports.limits import MAX_SENDING_BYTES
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 READ = select.EPOLLIN
 WRITE = select.EPOLLOUT

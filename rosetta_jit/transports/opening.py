@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.catalogue import transports as words
 from rosetta_jit.errors import AddressError, MissingPackage
 from rosetta_jit.transports.address import Address, Option, parse, settle
-from rosetta_jit.transports.base import QUEUE, Server, Source, Transport
+from rosetta_jit.transports.base import QUEUE, Caller, Server, Sink, Source, Transport
 from rosetta_jit.transports.installed import installed
 from rosetta_jit.transports.limits import MAX_MESSAGE_BYTES
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.transports.base import Answer, Caller, Deliver, Lost, Sink
+    from rosetta_jit.transports.base import Answer, Deliver, Lost
 
 COMMON = {
     "max_message": Option("size", MAX_MESSAGE_BYTES, "no message is larger than so many bytes"),

@@ -5,19 +5,17 @@ from __future__ import annotations
 import socket
 import threading
 from collections import Counter, deque
+from collections.abc import Callable, Iterable
 from time import monotonic
 from typing import TYPE_CHECKING
 
 from rosetta_jit.transports.feeding import FIRST_BYTES, Feed, ProtocolError
 from rosetta_jit.transports.limits import MAX_HELD_BYTES, MAX_WAITING_BYTES
-from rosetta_jit.transports.loop import READ, WRITE, loop
+from rosetta_jit.transports.loop import READ, WRITE, Timer, loop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
     from rosetta_jit.transports.end import End
     from rosetta_jit.transports.feeding import Machine
-    from rosetta_jit.transports.loop import Timer
 
     Bytes = bytes | bytearray | memoryview
 

@@ -10,14 +10,13 @@ a `Tagged` field. The path () is that element itself. What decoding and encoding
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.model.expr import Expr
 
 Path = tuple[str, ...]

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rosetta_jit.model.types import Array, Bytes, Int, Struct
+from rosetta_jit.model.types import Array, Bytes, Int, Schema, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.wire.other_type import Pairs
 
 

@@ -9,15 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String, Struct
+from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Schema, String, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.wire.codec import Align, Blob, Constant, Count, Number, Padding, Repeat, Seq, Table, Unsent
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.wire.codec import Codec, Encoding, Path
+from rosetta_jit.wire.codec import Align, Blob, Codec, Constant, Count, Encoding, Number, Padding, Path, Repeat, Seq, Table, Unsent
 
 
 @dataclass(frozen=True, slots=True)

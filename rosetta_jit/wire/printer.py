@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.wire import codec as wire
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     Leaf = (
         wire.Number
         | wire.Unsent

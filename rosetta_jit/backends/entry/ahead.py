@@ -6,17 +6,13 @@ Each kernel is a function ``int64 NAME(uint8 *buffer, int64 begin, int64 end, in
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 from llvmlite import binding, ir
 
 from rosetta_jit.backends.llvm import function as llvm
+from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.runtime.code.assembler import linked, make_private, run_passes
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.kernel.ir import Kernel
 
 HIGH_BYTE_FIRST = "E"
 """How the data layout of such machines begins."""

@@ -5,16 +5,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from rosetta_jit.backends.llvm.host import symbol
 from rosetta_jit.kernel.entries import HOST
+from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.shape import calls_to_host, extents_of, our_functions
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.kernel.ir import Kernel
 
 FUNCTION = """
 define i32 @"{name}"(ptr %result, ptr %exception{parameters}) {{

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -27,7 +28,8 @@ from rosetta_jit.backends.entry.host_table import table_text
 from rosetta_jit.backends.entry.references import references_text
 from rosetta_jit.backends.llvm import definitions, support
 from rosetta_jit.backends.llvm import function as llvm
-from rosetta_jit.kernel.entries import HOST, ON_DEMAND, SYMBOLS
+from rosetta_jit.kernel.entries import HOST, ON_DEMAND, SYMBOLS, EntryName
+from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.shape import (
     are_straight_and_compute,
     are_vast,
@@ -47,11 +49,7 @@ from rosetta_jit.runtime.code.assembler import linked, make_private, object_of, 
 from rosetta_jit.runtime.code.prelink import is_prelinking, prelinked
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from rosetta_jit.kernel.entries import EntryName
     from rosetta_jit.kernel.host import UserFunction
-    from rosetta_jit.kernel.ir import Kernel
 
 USUAL: dict[EntryName, tuple[str, ...]] = {
     "decode": ("owning.ll", "decode.ll"),

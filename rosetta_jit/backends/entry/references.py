@@ -5,12 +5,9 @@ define void @refer(ptr %state, ptr %data, i64 %end)
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, USED, lane_word
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 LANE = """\
   %address{lane} = getelementptr i64, ptr %state, i64 {address}

@@ -8,20 +8,15 @@ differ, one row a stretch; `series` prints it once. What a stretch takes over fr
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from typing import Any
 
-from rosetta_jit.backends.llvm.alike_names import carried_names, stay_inside
+from rosetta_jit.backends.llvm.alike_names import Carried, carried_names, stay_inside
 from rosetta_jit.backends.llvm.outline import Outline, Slot, is_number
-from rosetta_jit.kernel.ir import Call, Const, Copy, Fill, For, If, Local, Reserve, Switch, While
+from rosetta_jit.kernel.ir import Block, Call, Const, Copy, Expr, Fill, For, If, Kernel, Local, Reserve, Scalar, Stmt, Switch, While
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterable, Mapping, Sequence
-
-    from rosetta_jit.backends.llvm.alike_names import Carried
-    from rosetta_jit.kernel.ir import Block, Expr, Kernel, Scalar, Stmt
 
 MANY = 512
 """Statements of a body from which on series are looked for: below, LLVM takes no time worth mentioning."""

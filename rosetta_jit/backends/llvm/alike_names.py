@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rosetta_jit.backends.llvm.outline import Slot
     from rosetta_jit.kernel.ir import Scalar
 

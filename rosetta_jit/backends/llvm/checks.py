@@ -10,18 +10,13 @@ stores, each of which LLVM compares with all before it.
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
-from rosetta_jit.backends.llvm.frame import F32, F64, I32, I64, Variable, forgotten
-from rosetta_jit.kernel.ir import Expect, If, SetField, Store
+from rosetta_jit.backends.llvm.frame import F32, F64, I32, I64, Frame, Variable, forgotten
+from rosetta_jit.kernel.ir import Block, Expect, If, SetField, Store
 from rosetta_jit.kernel.rewrite import locals_in
-
-if TYPE_CHECKING:
-    from rosetta_jit.backends.llvm.frame import Frame
-    from rosetta_jit.kernel.ir import Block
 
 OFTEN = 64
 """Checks of one value from which on it is another one."""

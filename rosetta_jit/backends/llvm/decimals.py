@@ -5,7 +5,7 @@ Neither the point that they write nor the one that they read is looked at: the p
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from llvmlite import ir
 
@@ -13,9 +13,6 @@ from rosetta_jit.backends.llvm.frame import F32, F64, I8, I32, I64, POINTER, con
 from rosetta_jit.backends.llvm.support import BOTH, declared
 from rosetta_jit.kernel.decimals import FIRST, LAST, LEAST_NORMAL
 from rosetta_jit.kernel.limits import MAX_DIGITS
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 ROOM = 400
 """Bytes of the longest number that is written: a float64 has 309 digits before its point."""

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm.support import SIGNATURES, declared
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 
 def define(module: ir.Module) -> None:

@@ -8,18 +8,15 @@ from __future__ import annotations
 
 import struct
 from math import gcd
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from llvmlite import ir
 
-from rosetta_jit.backends.llvm.frame import F32, I1, I8, I64, LLVM_TYPES, POINTER, Variable, constant, intrinsic, is_float, is_signed
+from rosetta_jit.backends.llvm.frame import F32, I1, I8, I64, LLVM_TYPES, POINTER, Frame, Variable, constant, intrinsic, is_float, is_signed
 from rosetta_jit.backends.llvm.support import declared
 from rosetta_jit.kernel import ir as kernel
 from rosetta_jit.kernel.terms import BEGIN, type_of
 from rosetta_jit.startup.sha import sha256
-
-if TYPE_CHECKING:
-    from rosetta_jit.backends.llvm.frame import Frame
 
 PREDICATES = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
 FLOAT_BINARY = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv", "rem": "frem"}

@@ -9,7 +9,7 @@ after another, and what a failure and a success write to the holder's state.
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 from llvmlite import ir
 
@@ -22,7 +22,7 @@ from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, StoredExit, constant, state_word
 from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.series import begin_rows, end_rows
-from rosetta_jit.kernel.ir import Block, Call, Expect, For, HostCall, Kernel, Require, While
+from rosetta_jit.kernel.ir import Block, Call, Expect, Expr, For, HostCall, Kernel, Require, Routine, Stmt, While
 from rosetta_jit.kernel.state import (
     ERROR_INDICES,
     ERROR_OFFSET,
@@ -35,11 +35,6 @@ from rosetta_jit.kernel.state import (
     USED,
     lane_word,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from rosetta_jit.kernel.ir import Expr, Routine, Stmt
 
 SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
 ARGUMENTS = ("buffer", "begin", "end", "state", "row")

@@ -7,18 +7,13 @@ A status that is not 0 says that the function refuses. What the name stands for 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm.expr import expression, pointer
-from rosetta_jit.backends.llvm.frame import I8, I64, LLVM_TYPES, POINTER, intrinsic
+from rosetta_jit.backends.llvm.frame import I8, I64, LLVM_TYPES, POINTER, Frame, intrinsic
+from rosetta_jit.kernel.ir import HostCall, Scalar
 from rosetta_jit.kernel.shape import extents_of
 from rosetta_jit.kernel.terms import type_of
-
-if TYPE_CHECKING:
-    from rosetta_jit.backends.llvm.frame import Frame
-    from rosetta_jit.kernel.ir import HostCall, Scalar
 
 I32 = ir.IntType(32)
 

@@ -6,13 +6,10 @@ instructions are appended, printed, and never looked at again: as lines of text 
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import count
-from typing import TYPE_CHECKING
 
 from llvmlite import ir
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
 
 I1, I32 = ir.IntType(1), ir.IntType(32)
 NOTHING = ir.VoidType()

@@ -5,17 +5,14 @@ Two statements with the same *shape* differ in nothing but what stands in their 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable, Sequence
 from math import gcd
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from rosetta_jit.kernel import ir as kernel
 from rosetta_jit.kernel.shape import blocks_of, expressions_of, operands
 from rosetta_jit.kernel.terms import BEGIN, END, ROW
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Sequence
-
 
 FIXED = frozenset((BEGIN.name, END.name, ROW.name))
 """Names that mean the same in all statements."""

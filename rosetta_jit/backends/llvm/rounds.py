@@ -8,23 +8,19 @@ switch: whoever decodes the fields of a message in the order in which they were 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
 from rosetta_jit.backends.base import statements
 from rosetta_jit.backends.llvm.expr import expression
-from rosetta_jit.backends.llvm.frame import I64, Variable, forgotten
+from rosetta_jit.backends.llvm.frame import I64, Frame, Variable, forgotten
 from rosetta_jit.backends.llvm.series import print_cases
-from rosetta_jit.kernel.ir import Assign, Const, Expect, If, Local, Switch
+from rosetta_jit.kernel.ir import Assign, Block, Const, Expect, If, Local, Switch, While
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.backends.llvm.frame import Frame
-    from rosetta_jit.kernel.ir import Block, While
-
     Printer = Callable[[Frame, Block], None]
 
 

@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Container, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
-from rosetta_jit.backends.llvm.alike import NOTHING
+from rosetta_jit.backends.llvm.alike import NOTHING, Number, Series
 from rosetta_jit.backends.llvm.expr import expression
-from rosetta_jit.backends.llvm.frame import I64, LLVM_TYPES, Given, constant, forgotten, state_word
-from rosetta_jit.kernel.ir import Local
+from rosetta_jit.backends.llvm.frame import I64, LLVM_TYPES, Frame, Given, constant, forgotten, state_word
+from rosetta_jit.kernel.ir import Block, Direction, Local, Switch
 from rosetta_jit.kernel.state import LANE_WORDS, USED, lane_word
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Sequence
-
-    from rosetta_jit.backends.llvm.alike import Number, Series
-    from rosetta_jit.backends.llvm.frame import Frame
-    from rosetta_jit.kernel.ir import Block, Direction, Switch
-
     Printer = Callable[[Frame, Block], None]
 
 

@@ -6,9 +6,10 @@ takes failures; so the hot path holds compares and branches alone.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from llvmlite import ir
 
@@ -24,7 +25,7 @@ from rosetta_jit.backends.llvm.expr import (
     store,
     wire_pointer,
 )
-from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Variable, constant, forgotten, state_word
+from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Frame, Variable, constant, forgotten, state_word
 from rosetta_jit.backends.llvm.host import host_called
 from rosetta_jit.backends.llvm.rounds import print_switch, rounds_of
 from rosetta_jit.backends.llvm.series import print_cases, print_series
@@ -32,11 +33,6 @@ from rosetta_jit.kernel import ir as kernel
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.backends.llvm.frame import Frame
 
 MANY_CASES = 64
 GOLDEN = 0x9E3779B1

@@ -7,14 +7,11 @@ shorter than a vector is looked at from both ends: as many branches for each len
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm.frame import I1, I8, I64, constant
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 WORD = 8
 VECTOR = 4 * WORD

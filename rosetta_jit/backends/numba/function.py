@@ -22,6 +22,7 @@ Decode many messages of one size in a loop of one's own; ``state`` is the state 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from numba import njit, types
@@ -29,18 +30,16 @@ from numba.extending import intrinsic
 
 from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.backends.llvm.frame import POINTER
+from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.shape import calls_to_host
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from llvmlite import ir
     from numba.core.base import BaseContext
     from numba.core.dispatcher import Dispatcher
     from numba.core.typing.templates import Signature
     from numba.extending import Implementation
 
-    from rosetta_jit.kernel.ir import Kernel
 
 BYTES, WORDS = types.CPointer(types.uint8), types.CPointer(types.int64)
 SIGNATURE = types.int64(BYTES, types.intp, types.intp, WORDS, types.intp)

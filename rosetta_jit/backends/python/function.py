@@ -9,21 +9,17 @@ what a message cannot be ends it with `Failed`.
 from __future__ import annotations
 
 import keyword
-from typing import TYPE_CHECKING, Any, assert_never
+from collections.abc import Callable, Iterable
+from typing import Any, assert_never
 
 from rosetta_jit.backends.base import Namespace, Writer, counted_lanes, emptied_lanes, statements
 from rosetta_jit.backends.python.expr import FLOATS, FORMATS, Names, expression, location, part
 from rosetta_jit.kernel import ir
-from rosetta_jit.kernel.host import NO_FUNCTIONS
+from rosetta_jit.kernel.host import NO_FUNCTIONS, Functions
 from rosetta_jit.kernel.interpret import runnable as interpreted
 from rosetta_jit.kernel.shape import expressions_of, extents_of, subexpressions
 from rosetta_jit.kernel.state import CAPACITY, USED, lane_word
 from rosetta_jit.kernel.terms import type_of
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
-    from rosetta_jit.kernel.host import Functions
 
 IMPORTS = (
     "from struct import pack_into, unpack_from",

@@ -6,15 +6,12 @@ enumerator is read as its number, and can be assigned as its name.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from rosetta_jit.model.types import Enum, Ref, Union
-from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder import Family
+from rosetta_jit.runtime.holder import PLAIN, Family, Holder, Manners
 
 
 class Structure(Holder):

@@ -11,14 +11,13 @@ from rosetta_jit.frameworks.lcm.limits import MAX_DEPTH
 from rosetta_jit.model import expr
 from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.limits import MAX_SLOTS
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Blob, Codec, Constant, Count, Encoding, Number, Path, Recursion, Repeat, Seq, Table
 from rosetta_jit.wire.recursion import recurses
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Choices
-    from rosetta_jit.model.types import Field, Schema, Type
 
 STRING = Count("i32", ">")
 

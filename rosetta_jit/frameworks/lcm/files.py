@@ -6,23 +6,21 @@ file that uses it.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import field
 from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.limits import MAX_FILES, MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.reading import read
 from rosetta_jit.frameworks.lcm.shape import PRIMITIVES
-from rosetta_jit.frameworks.lcm.tree import Member, StructDeclaration, qualified
+from rosetta_jit.frameworks.lcm.tree import Declaration, File, Member, Name, StructDeclaration, qualified
+from rosetta_jit.source import Source
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.lcm.tree import Declaration, File, Name
     from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
 
 
 @dataclass(slots=True)

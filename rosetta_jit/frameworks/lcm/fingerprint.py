@@ -8,18 +8,14 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import field
-from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.limits import MAX_DEPTH, MAX_WAYS
 from rosetta_jit.frameworks.lcm.shape import shape_of, written_sizes
 from rosetta_jit.model.layout import recursive_structs
-from rosetta_jit.model.types import Enum, Ref, Struct
+from rosetta_jit.model.types import Enum, Field, Ref, Schema, Struct
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Field, Schema
 
 MASK = (1 << 64) - 1
 STRUCT_SEED, ENUM_SEED = 0x12345678, 0x87654321

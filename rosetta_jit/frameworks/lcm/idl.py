@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from typing import TYPE_CHECKING
+from pathlib import Path
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.files import gather
 from rosetta_jit.frameworks.lcm.fingerprint import fingerprint
 from rosetta_jit.frameworks.lcm.limits import MAX_FILES, MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.schema import schema_of
-from rosetta_jit.model.types import Array, Ref, Struct
-from rosetta_jit.parsing.idl import refuse
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from pathlib import Path
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.types import Field, Schema, Type
-    from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
+from rosetta_jit.model.types import Array, Field, Ref, Schema, Struct, Type
+from rosetta_jit.parsing.idl import Load, refuse
+from rosetta_jit.source import Source
 
 
 def parse(source: Source, load: Load) -> Schema:

@@ -9,19 +9,15 @@ from __future__ import annotations
 
 import sys
 from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from rosetta_jit.frameworks.lcm.fingerprint import fingerprint
 from rosetta_jit.frameworks.lcm.shape import shape_of
-from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
+from rosetta_jit.runtime.holder import PLAIN, Family, Holder, Manners
 from rosetta_jit.runtime.holder.objects.foreign import Foreign
-from rosetta_jit.runtime.holder.serialising import encoded, programs_of
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder import Family
-    from rosetta_jit.runtime.holder.serialising import Programs
+from rosetta_jit.runtime.holder.serialising import Programs, encoded, programs_of
 
 
 class LcmMessage(Holder):

@@ -9,21 +9,15 @@ What cannot be read is reported and skipped, up to the next statement, and readi
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, TypeVar
+from collections.abc import Callable, Iterator
+from typing import TypeVar
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.limits import MAX_PROBLEMS
-from rosetta_jit.frameworks.lcm.tree import Constant, EnumDeclaration, File, Member, Name, StructDeclaration, Word
-from rosetta_jit.source import Span
+from rosetta_jit.frameworks.lcm.tree import Constant, Declaration, EnumDeclaration, File, Item, Member, Name, StructDeclaration, Word
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.lcm.tree import Declaration, Item
-    from rosetta_jit.source import Source
-
 
 T = TypeVar("T")
 

@@ -7,19 +7,17 @@ from dataclasses import field
 from math import isfinite
 from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.limits import MAX_DIGITS, MAX_DIMENSIONS, MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.shape import BYTE, CONSTANTS, INTEGERS, PRIMITIVES, SIZES
-from rosetta_jit.frameworks.lcm.tree import Constant, Member, StructDeclaration, qualified
+from rosetta_jit.frameworks.lcm.tree import Constant, EnumDeclaration, Member, Name, StructDeclaration, Word, qualified
 from rosetta_jit.model import expr
-from rosetta_jit.model.types import Array, Bytes, Enum, Field, Float, Int, NamedConstant, Ref, Schema, Struct
+from rosetta_jit.model.types import Array, Bytes, Enum, Field, Float, Int, NamedConstant, Ref, Schema, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.lcm.files import Gathered
-    from rosetta_jit.frameworks.lcm.tree import EnumDeclaration, Name, Word
-    from rosetta_jit.model.types import Type
 
 
 LARGEST_INT32 = (1 << 31) - 1

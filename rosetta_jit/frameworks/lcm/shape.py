@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.model import expr
-from rosetta_jit.model.types import Array, Bool, Bytes, Field, Float, Int, Ref, String
+from rosetta_jit.model.types import Array, Bool, Bytes, Field, Float, Int, Ref, String, Type
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Type
-
 
 SIZES = "sizes"
 """The option of a field that keeps its sizes as they were written, where constant ones were not plain decimals."""

@@ -9,17 +9,15 @@ from hashlib import md5
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.omg import diagnostics as say
-from rosetta_jit.frameworks.omg.constants import Value, as_text, evaluate, fit
+from rosetta_jit.frameworks.omg.constants import Lookup, Value, as_text, evaluate, fit
 from rosetta_jit.frameworks.omg.expressions import ScopedName
 from rosetta_jit.frameworks.omg.problems import LookupProblem
-from rosetta_jit.model.types import Array, Bytes, Float, String
+from rosetta_jit.model.types import Array, Bytes, Constant, Float, String, Type
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.frameworks.omg.constants import Lookup
     from rosetta_jit.frameworks.omg.tree import Annotation
-    from rosetta_jit.model.types import Constant, Type
-    from rosetta_jit.source import Span
 
 LARGEST_ID = 0x0FFFFFFF
 EXTENSIBILITIES = ("final", "appendable", "mutable")

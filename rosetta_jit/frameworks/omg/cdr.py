@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.omg import diagnostics as words
 from rosetta_jit.model.layout import map_entry, recursive_structs, scalar_of
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire import codec as wire
 from rosetta_jit.wire.align import ANYWHERE, ORIGIN, Phase, leading, settle
@@ -24,7 +24,6 @@ from rosetta_jit.wire.size import WIDTH
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Choices
-    from rosetta_jit.model.types import Schema, Type
 
 HEADER_BYTES = 4
 IDENTIFIERS = {

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from collections.abc import Container, Iterable, Iterator
+from typing import assert_never
 
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.cursor import Cursor, SyntaxProblem
 from rosetta_jit.frameworks.omg.expressions import CONDITIONS, Binary, Expr, Literal, Operators, ScopedName, Unary, computed, expression
 from rosetta_jit.frameworks.omg.lexer import LiteralError, Token, number
-
-if TYPE_CHECKING:
-    from collections.abc import Container, Iterable, Iterator
 
 
 def holds(tokens: list[Token], end: Token) -> bool:

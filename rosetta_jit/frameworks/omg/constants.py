@@ -5,20 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from math import isfinite
-from typing import TYPE_CHECKING, assert_never
 from typing import Literal as OneOf
+from typing import assert_never
 
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.expressions import Binary, Expr, Literal, ScopedName, Unary, computed
-from rosetta_jit.frameworks.omg.lexer import LiteralError, number, unescape
+from rosetta_jit.frameworks.omg.lexer import LiteralError, Token, number, unescape
 from rosetta_jit.frameworks.omg.problems import LookupProblem
-from rosetta_jit.model.types import Bool, Float, Int, Ref, String
+from rosetta_jit.model.types import Bool, Constant, Float, Int, Ref, String, Type
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.frameworks.omg.lexer import Token
-    from rosetta_jit.model.types import Constant, Type
-    from rosetta_jit.source import Span
 
 Sort = OneOf["integer", "floating", "boolean", "character", "wide character", "string", "wide string", "enumerator", "fixed"]
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import field
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg import tree
 from rosetta_jit.frameworks.omg.annotations import Annotations
-from rosetta_jit.frameworks.omg.constants import Value, as_text, evaluate, fit
+from rosetta_jit.frameworks.omg.constants import Lookup, Value, as_text, evaluate, fit
 from rosetta_jit.frameworks.omg.expressions import ScopedName
 from rosetta_jit.frameworks.omg.limits import MAX_INHERITED
 from rosetta_jit.frameworks.omg.members import MemberMaker
@@ -18,12 +20,6 @@ from rosetta_jit.frameworks.omg.types import TypeMaker, enum_entry, value_of
 from rosetta_jit.model.types import Bool, Declaration, Enum, Field, Float, Int, NamedConstant, Ref, String, Struct, Type
 from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.omg.constants import Lookup
 
 
 @dataclass(slots=True)

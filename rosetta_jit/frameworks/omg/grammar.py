@@ -5,11 +5,14 @@ After a mistake the statement around it is skipped, and the next one is read.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Callable
+from typing import Literal
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.omg.cursor import Cursor, SyntaxProblem
+from rosetta_jit.frameworks.omg.expressions import Expr, ScopedName
 from rosetta_jit.frameworks.omg.grammar_types import TypeReader
-from rosetta_jit.frameworks.omg.lexer import OPAQUE, SKIPPED
+from rosetta_jit.frameworks.omg.lexer import OPAQUE, SKIPPED, Token
 from rosetta_jit.frameworks.omg.limits import MAX_SYNTAX_ERRORS
 from rosetta_jit.frameworks.omg.tree import (
     Aggregate,
@@ -26,13 +29,6 @@ from rosetta_jit.frameworks.omg.tree import (
     Opaque,
     Typedef,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.omg.expressions import Expr, ScopedName
-    from rosetta_jit.frameworks.omg.lexer import Token
 
 OPENING, CLOSING = ("{", "(", "["), ("}", ")", "]")
 

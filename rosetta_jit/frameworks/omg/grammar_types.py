@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from collections.abc import Callable
+from typing import TypeVar
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.cursor import Cursor, SyntaxProblem
 from rosetta_jit.frameworks.omg.expressions import ARITHMETIC, Expr, Literal, Operators, ScopedName, expression
 from rosetta_jit.frameworks.omg.lexer import FOLDED, KEYWORDS, SCALARS, SERVICES
 from rosetta_jit.frameworks.omg.limits import MAX_NESTING
 from rosetta_jit.frameworks.omg.tree import Aggregate, Annotation, Basic, Enum, MapOf, Name, Sequence, Text, TypeSpec, Unsupported
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.diagnostics import Diagnostic
 
 LITERALS = ("number", "string", "wstring", "char", "wchar")
 

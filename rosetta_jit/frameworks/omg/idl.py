@@ -5,24 +5,18 @@ text ─ lexer ─▶ tokens ─ preprocessor ─▶ tokens of all files ─ gra
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.declare import declare
 from rosetta_jit.frameworks.omg.grammar import parse as definitions_of
 from rosetta_jit.frameworks.omg.limits import MAX_REPORTED
 from rosetta_jit.frameworks.omg.preprocessor import preprocess
-from rosetta_jit.model.types import Array, Map, NamedConstant, Optional, Ref, Schema, Struct, Union
-from rosetta_jit.parsing.idl import refuse
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.types import Declaration, Type
-    from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
+from rosetta_jit.model.types import Array, Declaration, Map, NamedConstant, Optional, Ref, Schema, Struct, Type, Union
+from rosetta_jit.parsing.idl import Load, refuse
+from rosetta_jit.source import Source
 
 
 def parse(source: Source, load: Load) -> Schema:

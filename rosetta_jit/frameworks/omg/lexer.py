@@ -7,18 +7,13 @@ What is no token at all becomes a `wrong` one: it is a mistake only where it is 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from math import isfinite
-from typing import TYPE_CHECKING, Literal, cast
+from typing import Literal, cast
 
 from rosetta_jit.frameworks.omg.limits import MAX_DIGITS
-from rosetta_jit.source import Span
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.source import Source
-
 
 Kind = Literal["word", "number", "string", "wstring", "char", "wchar", "symbol", "newline", "wrong", "end"]
 

@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.omg import diagnostics as say
+from rosetta_jit.frameworks.omg import tree
 from rosetta_jit.frameworks.omg.annotations import Annotations
 from rosetta_jit.frameworks.omg.constants import evaluate, fit, word_of
 from rosetta_jit.frameworks.omg.problems import LookupProblem
 from rosetta_jit.frameworks.omg.scopes import Entry, Scope
-from rosetta_jit.frameworks.omg.types import value_of
-from rosetta_jit.model.types import Bool, Enum, Field, Int, Optional, Ref, Type, Union
+from rosetta_jit.frameworks.omg.types import TypeMaker, value_of
+from rosetta_jit.model.types import Bool, Constant, Declaration, Enum, Field, Int, Optional, Ref, Type, Union
 from rosetta_jit.model.units import with_unit
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.omg import tree
-    from rosetta_jit.frameworks.omg.types import TypeMaker
-    from rosetta_jit.model.types import Constant, Declaration
-    from rosetta_jit.source import Span
 
 DISCRIMINATOR, CASES = "_d", "_u"
 """The fields of the struct that a union is."""

@@ -5,24 +5,22 @@ A file is read once, however often it is included: what rosidl writes has no inc
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import field
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.conditions import answer_defined, holds
 from rosetta_jit.frameworks.omg.cursor import SyntaxProblem
 from rosetta_jit.frameworks.omg.lexer import LiteralError, Token, tokens, unescape
 from rosetta_jit.frameworks.omg.limits import MAX_EXPANDED, MAX_FILES
-from rosetta_jit.source import Span
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
 
 
 PREDEFINED = "__OMNIIDL__"

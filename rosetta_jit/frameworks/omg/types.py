@@ -5,23 +5,21 @@ What the model has nothing for becomes a reference to a type that is declared no
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.frameworks.omg import diagnostics as say
-from rosetta_jit.frameworks.omg.constants import evaluate, fit
+from rosetta_jit.frameworks.omg.constants import Value, evaluate, fit
 from rosetta_jit.frameworks.omg.expressions import Expr, ScopedName
 from rosetta_jit.frameworks.omg.limits import MAX_TYPE_DEPTH
 from rosetta_jit.frameworks.omg.problems import LookupProblem
 from rosetta_jit.frameworks.omg.tree import Aggregate, Basic, Declarator, Enum, MapOf, Sequence, Text, TypeSpec, Unsupported
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Map, Ref, String, Type
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.frameworks.omg.constants import Value
     from rosetta_jit.frameworks.omg.scopes import Entry, Scope
-    from rosetta_jit.source import Span
 
 SCALARS: dict[str, Type] = {
     "boolean": Bool("boolean"),

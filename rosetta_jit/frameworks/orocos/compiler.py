@@ -10,19 +10,15 @@ from bisect import bisect_right
 from dataclasses import field
 from itertools import accumulate
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos import diagnostics as words
-from rosetta_jit.frameworks.orocos.includes import MAIN, STANDARD, USER
+from rosetta_jit.frameworks.orocos.includes import MAIN, STANDARD, USER, Texts
 from rosetta_jit.frameworks.orocos.limits import MAX_COMPILER_BYTES, MAX_DECLARATION_DEPTH, MAX_ERRORS, MAX_MEMBERS, MAX_PROCESSOR_SECONDS
-from rosetta_jit.source import Span
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.orocos.includes import Texts
-    from rosetta_jit.source import Source
 
 SECONDS = 30
 """How long the answer to a header is waited for, on a machine that has other work."""

@@ -7,6 +7,7 @@ from dataclasses import field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.depth import dependents, nesting_problems, reached
@@ -14,14 +15,12 @@ from rosetta_jit.frameworks.orocos.includes import MAIN
 from rosetta_jit.frameworks.orocos.layout import Extent, Layouts, pinned, unaccounted
 from rosetta_jit.frameworks.orocos.limits import MAX_PROBLEMS, MAX_SIZE
 from rosetta_jit.frameworks.orocos.messages import NUMBERS, STRING, array, options_of, with_messages, wrapped
-from rosetta_jit.model.types import Array, Bytes, Enum, Field, Int, NamedConstant, Ref, Schema, Struct
+from rosetta_jit.model.types import Array, Bytes, Declaration, Enum, Field, Int, NamedConstant, Ref, Schema, Struct, Type
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.orocos.compiler import Places
-    from rosetta_jit.model.types import Declaration, Type
-    from rosetta_jit.source import Span
 
 _MARKS = re.compile(r"^\s*(/\*\*<?|/\*!<?|///?!?<?|\*)")
 INT32 = range(-(1 << 31), 1 << 31)

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.limits import MAX_NESTING
-from rosetta_jit.model.types import Array, Ref, Struct
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.types import Declaration, Type
+from rosetta_jit.model.types import Array, Declaration, Ref, Struct, Type
 
 
 def reference(type_: Type) -> tuple[str | None, int, bool]:

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 from rosetta_jit.frameworks.orocos.compiler import Places, declarations
 from rosetta_jit.frameworks.orocos.declared import declared
 from rosetta_jit.frameworks.orocos.includes import gather
+from rosetta_jit.model.types import Schema
+from rosetta_jit.source import Source
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.types import Schema
     from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
 
 
 def parse(source: Source, load: Load) -> Schema:

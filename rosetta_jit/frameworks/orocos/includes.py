@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import posixpath
 import re
+from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,14 +15,11 @@ from typing import TYPE_CHECKING
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.limits import MAX_CHARACTERS, MAX_FILES
-from rosetta_jit.source import Span
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
     from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
 
 USER, STANDARD = "/header/", "/standard/"
 """Where the compiler believes that the user's headers and those of the standard library lie; no such folders need exist."""

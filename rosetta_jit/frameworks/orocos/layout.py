@@ -7,17 +7,29 @@ bytes, ``size`` and ``alignment`` of a struct.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.frameworks.orocos.limits import MAX_PADDING
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.types import (
+    Array,
+    Bool,
+    Bytes,
+    Declaration,
+    Enum,
+    Field,
+    Float,
+    Int,
+    Map,
+    Optional,
+    Ref,
+    String,
+    Struct,
+    Type,
+    Union,
+)
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from rosetta_jit.model.types import Declaration, Field, Type
 
 UNDERLYING = "underlying"
 """The option of a field whose enum is not an int: the scalar that it is instead."""

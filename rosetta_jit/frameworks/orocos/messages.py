@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.frameworks.orocos.layout import UNDERLYING
-from rosetta_jit.model.types import Array, Bool, Bytes, Field, Float, Int, Ref, String, Struct
+from rosetta_jit.model.types import Array, Bool, Bytes, Declaration, Field, Float, Int, Ref, String, Struct, Type
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from typing import Literal
-
-    from rosetta_jit.model.types import Declaration, Type
     from rosetta_jit.source import Span
 
 DATA = "data"

@@ -15,30 +15,26 @@ by the offsets of the file.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.depth import nesting_problems, references
-from rosetta_jit.frameworks.orocos.elements import read_elements
+from rosetta_jit.frameworks.orocos.elements import Element, read_elements
 from rosetta_jit.frameworks.orocos.layout import STRING, VECTOR, Layouts, pinned, unaccounted
 from rosetta_jit.frameworks.orocos.limits import MAX_PROBLEMS, MAX_SIZE, MAX_TYPE_DEPTH
 from rosetta_jit.frameworks.orocos.messages import NUMBERS, array, with_messages, wrapped
 from rosetta_jit.frameworks.orocos.messages import STRING as TEXT
-from rosetta_jit.model.types import Array, Bytes, Enum, Field, Float, Int, Ref, Schema, Struct
-from rosetta_jit.source import Span
+from rosetta_jit.model.types import Array, Bytes, Declaration, Enum, Field, Float, Int, Ref, Schema, Struct, Type
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.orocos.elements import Element
-    from rosetta_jit.model.types import Declaration, Type
     from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
 
 INT32 = range(-(1 << 31), 1 << 31)
 

@@ -6,20 +6,15 @@ implicit, proto2 where it is tracked, and edition 2023 where a file has both. Ex
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from rosetta_jit.frameworks.definitions import Definition, declared
-from rosetta_jit.frameworks.protobuf.introspection import OPTIONAL, TYPES, MessageDescriptor
-from rosetta_jit.model.types import Enum, Map, Optional, Struct
+from rosetta_jit.frameworks.protobuf.introspection import OPTIONAL, TYPES, FieldDescriptor, MessageDescriptor
+from rosetta_jit.model.types import Declaration, Enum, Map, Optional, Schema, Struct
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from typing import Literal, TypeAlias
-
     from google.protobuf.descriptor_pb2 import DescriptorProto, EnumDescriptorProto, FieldDescriptorProto, FileDescriptorProto
-
-    from rosetta_jit.frameworks.protobuf.introspection import FieldDescriptor
-    from rosetta_jit.model.types import Declaration, Schema
 
     Syntax: TypeAlias = Literal["proto2", "proto3", "editions"]
 

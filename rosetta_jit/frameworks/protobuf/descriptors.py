@@ -7,21 +7,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.limits import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.descriptor_reading import read_files
 from rosetta_jit.frameworks.protobuf.proto.file_set import file_set
 from rosetta_jit.frameworks.protobuf.proto.judge import schema_of
+from rosetta_jit.model.types import Schema
 from rosetta_jit.parsing.idl import refuse
 
 if TYPE_CHECKING:
     from google.protobuf.descriptor import FileDescriptor
     from google.protobuf.descriptor_pb2 import FileDescriptorProto, FileDescriptorSet
     from google.protobuf.message import Message
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.types import Schema
 
 
 def from_file_descriptor_set(data: bytes | FileDescriptorSet) -> Schema:

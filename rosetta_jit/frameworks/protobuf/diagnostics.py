@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Literal, Protocol
 
-from rosetta_jit.diagnostics import Mistake, error
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rosetta_jit.diagnostics import Mistake, error
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.diagnostics import Name
     from rosetta_jit.source import Span
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.model.layout import map_entry, recursive_structs
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.wire.codec import Blob, Codec, Count, Encoding, Entry, Number, Path, Recursion, Tagged, Varint
+from rosetta_jit.wire.codec import Blob, Codec, Count, Encoding, Entry, Number, Path, Recursion, Tagged, Varint, WireType
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Choices
-    from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.wire.codec import WireType
 
 FIXED: dict[str, tuple[str, WireType]] = {
     "fixed32": ("u32", 5),

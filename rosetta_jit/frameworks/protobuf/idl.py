@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf.limits import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.files import gather
 from rosetta_jit.frameworks.protobuf.proto.judge import schema_of
-from rosetta_jit.parsing.idl import refuse
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.types import Schema
-    from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
+from rosetta_jit.model.types import Schema
+from rosetta_jit.parsing.idl import Load, refuse
+from rosetta_jit.source import Source
 
 
 def parse(source: Source, load: Load) -> Schema:

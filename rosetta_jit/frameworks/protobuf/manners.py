@@ -8,6 +8,7 @@ at their index where elements before it are deleted; NaN differs from NaN; error
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
 from rosetta_jit.errors import EncodeError
@@ -19,15 +20,12 @@ from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import Holder, Manners
 from rosetta_jit.runtime.holder.classes import clear
 from rosetta_jit.runtime.holder.message import Message, View, make_present, place
-from rosetta_jit.runtime.holder.serialising import encoded, programs_of
+from rosetta_jit.runtime.holder.record import Entry, Record
+from rosetta_jit.runtime.holder.serialising import Kind, Programs, encoded, programs_of
 from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.runtime.holder import Family, access, arena, merge
-    from rosetta_jit.runtime.holder.record import Entry, Record
-    from rosetta_jit.runtime.holder.serialising import Kind, Programs
 else:
     access, arena, merge = late("rosetta_jit.runtime.holder", "access", "arena", "merge")
 

@@ -6,20 +6,15 @@ same fields with the same numbers, which is asked once a class, of its descripto
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rosetta_jit.errors import RosettaError
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
+from rosetta_jit.runtime.holder import Family
 from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.holder.objects.foreign import Foreign, Whole
-from rosetta_jit.runtime.holder.objects.in_c import functions_in_c
+from rosetta_jit.runtime.holder.objects.in_c import InC, functions_in_c
 from rosetta_jit.runtime.holder.serialising import programs_of
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.runtime.holder import Family
-    from rosetta_jit.runtime.holder.objects.in_c import InC
-
 
 READS: frozenset[str | None] = frozenset({None, "protobuf", "protobuf-partial"})
 """The encodings that are protobuf's own bytes, the framework's usual one among them."""

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.runtime.holder.record import Child, Items, Pairs, Record
+from rosetta_jit.runtime.holder.record import Child, Entry, Items, Node, Pairs, Record
 from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
     from rosetta_jit.runtime.holder import merge
-    from rosetta_jit.runtime.holder.record import Entry, Node
 else:
     merge = Late("rosetta_jit.runtime.holder.merge")
 

@@ -12,17 +12,16 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 
-from rosetta_jit.runtime.holder import holder_class
+from rosetta_jit.runtime.holder import Holder, holder_class
+from rosetta_jit.runtime.holder.classes import HolderFamily
 from rosetta_jit.runtime.holder.dictionary import Dictionary
 from rosetta_jit.runtime.holder.message import Message, View, place, writable
-from rosetta_jit.runtime.holder.record import Items, Numbers, Record
+from rosetta_jit.runtime.holder.record import Entry, Items, Numbers, Record
 from rosetta_jit.runtime.holder.sequence import Sequence
 from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder import Holder, coerce, merge, values
-    from rosetta_jit.runtime.holder.classes import HolderFamily
-    from rosetta_jit.runtime.holder.record import Entry
+    from rosetta_jit.runtime.holder import coerce, merge, values
 else:
     coerce, merge, values = late("rosetta_jit.runtime.holder", "coerce", "merge", "values")
 

@@ -6,18 +6,14 @@ https://protobuf.dev/reference/protobuf/textformat-spec/
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, assert_never
+from collections.abc import Iterator, Mapping
+from typing import Any, assert_never
 
 import numpy as np
 
 from rosetta_jit.frameworks.protobuf.presence import set_entries
 from rosetta_jit.model.types import Enum, Float
-from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.runtime.holder.record import Node, ScalarType
+from rosetta_jit.runtime.holder.record import Blob, Child, Items, Node, Numbers, Pairs, Record, Scalar, ScalarType, Text
 
 _ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t", '"': '\\"', "'": "\\'", "\\": "\\\\"}
 

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from rosetta_jit.catalogue.spelling import closest
-from rosetta_jit.diagnostics import Mistake, error
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error
+from rosetta_jit.source import Span
 
 SHOWN = 80
 """Characters of a word of the file that a report repeats."""

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
 from dataclasses import field
 from typing import TYPE_CHECKING
 
+from rosetta_jit.model.types import Bool, Field, Float, Int, String, Struct
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    import re
-    from collections.abc import Mapping
-
-    from rosetta_jit.model.types import Bool, Field, Float, Int, String, Struct
-
     Scalar = Bool | Int | Float | String
 
 

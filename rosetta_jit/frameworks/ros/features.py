@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.probe import Probe
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 POINT = {"probe/Point.msg": "float64 x\nfloat64 y"}
 

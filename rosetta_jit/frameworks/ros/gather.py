@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Iterator, Mapping
 from dataclasses import field, replace
-from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.ros import diagnostics as say
+from rosetta_jit.frameworks.ros.dialect import Dialect, Interface
 from rosetta_jit.frameworks.ros.limits import MAX_DEPTH, MAX_MESSAGES, MAX_PROBLEMS
 from rosetta_jit.frameworks.ros.names import SUFFIX, Declared, declared_in, places, split
 from rosetta_jit.frameworks.ros.reading import read
-from rosetta_jit.frameworks.ros.sections import sections
+from rosetta_jit.frameworks.ros.sections import Section, sections
+from rosetta_jit.frameworks.ros.tree import Definition, Field, TypeName
 from rosetta_jit.model.limits import MAX_SLOTS
+from rosetta_jit.parsing.idl import Load
 from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.ros.dialect import Dialect, Interface
-    from rosetta_jit.frameworks.ros.sections import Section
-    from rosetta_jit.frameworks.ros.tree import Definition, Field, TypeName
-    from rosetta_jit.parsing.idl import Load
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING
 
+from rosetta_jit.frameworks.ros.dialect import Dialect
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.frameworks.ros.dialect import Dialect
 
 SUFFIX = ".msg"
 KINDS = ("srv", "action")

@@ -9,20 +9,20 @@ import re
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.ros import diagnostics as say
+from rosetta_jit.frameworks.ros.dialect import Dialect, Rule
 from rosetta_jit.frameworks.ros.limits import MAX_PROBLEMS, MAX_UNIT
-from rosetta_jit.frameworks.ros.tree import Constant, Definition, Field, TypeName, Word
+from rosetta_jit.frameworks.ros.sections import Section
+from rosetta_jit.frameworks.ros.tree import Constant, Definition, Field, TypeName, Values, Word
 from rosetta_jit.frameworks.ros.values import array_values, scalar_value, wanted
+from rosetta_jit.model.types import Constant as Value
 from rosetta_jit.model.types import String
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.ros.dialect import Dialect, Rule, Scalar
-    from rosetta_jit.frameworks.ros.sections import Section
-    from rosetta_jit.frameworks.ros.tree import Values
-    from rosetta_jit.model.types import Constant as Value
+    from rosetta_jit.frameworks.ros.dialect import Scalar
 
 
 BLANKS = " \t\r"

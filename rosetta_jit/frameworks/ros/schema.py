@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.ros.gather import gather
+from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.frameworks.ros import tree
+from rosetta_jit.frameworks.ros.dialect import Dialect
+from rosetta_jit.frameworks.ros.gather import Gathered, gather
 from rosetta_jit.frameworks.ros.limits import MAX_PROBLEMS
 from rosetta_jit.frameworks.ros.names import declared_in
 from rosetta_jit.frameworks.ros.reading import read, unit_in
 from rosetta_jit.frameworks.ros.sections import sections
-from rosetta_jit.model.types import Array, Bytes, Field, NamedConstant, Optional, Ref, Schema, String, Struct
-from rosetta_jit.parsing.idl import refuse
+from rosetta_jit.model.types import Array, Bytes, Constant, Field, NamedConstant, Optional, Ref, Schema, String, Struct, Type
+from rosetta_jit.parsing.idl import Load, refuse
+from rosetta_jit.source import Source
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.ros import tree
-    from rosetta_jit.frameworks.ros.dialect import Dialect
-    from rosetta_jit.frameworks.ros.gather import Gathered
-    from rosetta_jit.model.types import Constant, Type
-    from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
-
     Options = tuple[tuple[str, Constant], ...]
 
 

@@ -8,21 +8,15 @@ https://wiki.ros.org/Bags/Format/2.0, https://mcap.dev/spec/registry#ros2msg and
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import field
-from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.ros import diagnostics as say
-from rosetta_jit.frameworks.ros.names import split
-from rosetta_jit.source import Span
+from rosetta_jit.frameworks.ros.dialect import Dialect
+from rosetta_jit.frameworks.ros.names import Declared, split
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.ros.dialect import Dialect
-    from rosetta_jit.frameworks.ros.names import Declared
-    from rosetta_jit.source import Source
 
 SEPARATOR = re.compile(r"^={3,}[ \t]*\r?(?:\n|\Z)", re.MULTILINE)
 HEADER = re.compile(r"([A-Z]+):[ \t]*(\S*)[ \t]*\r?(?:\n|\Z)")

@@ -6,13 +6,9 @@ Constant   = TypeName, Word, value        Field = TypeName, Word, default
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from rosetta_jit.model.types import Constant as Value
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Constant as Value
-    from rosetta_jit.source import Source, Span
 
 Values = tuple["bool | int | float | str", ...]
 

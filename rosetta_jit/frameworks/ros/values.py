@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from rosetta_jit.frameworks.ros.dialect import Dialect
 from rosetta_jit.frameworks.ros.limits import MAX_DIGITS
+from rosetta_jit.frameworks.ros.tree import TypeName, Values
 from rosetta_jit.model.types import Bool, Float, Int, String
 
 if TYPE_CHECKING:
-    from rosetta_jit.frameworks.ros.dialect import Dialect, Scalar
-    from rosetta_jit.frameworks.ros.tree import TypeName, Values
+    from rosetta_jit.frameworks.ros.dialect import Scalar
 
     Value = bool | int | float | str
 

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.frameworks.ros1.manners import full_text
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Schema, Struct
+from rosetta_jit.model.types import Schema, Struct
 
 
 def announcement(struct: Struct, schema: Schema) -> dict[str, str]:

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.frameworks.definitions import Definition
 from rosetta_jit.frameworks.ros1.manners import full_text
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Schema, Struct
+from rosetta_jit.model.types import Schema, Struct
 
 
 def definition(struct: Struct, schema: Schema) -> Definition:

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Blob, Codec, Count, Encoding, Number, Path, Repeat, Seq, Table
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Choices
-    from rosetta_jit.model.types import Schema, Type
 
 BOOLEANS = ((0, 0), (1, 1))
 

@@ -6,21 +6,14 @@ https://wiki.ros.org/msg, https://wiki.ros.org/srv, https://wiki.ros.org/actionl
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping
 from hashlib import md5
-from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.ros import Dialect, Interface, Rule, gathered, schema_of
+from rosetta_jit.frameworks.ros import Definition, Dialect, Field, Interface, Rule, gathered, schema_of
 from rosetta_jit.frameworks.ros1.time_types import INT32, STRUCTS, UINT32
-from rosetta_jit.model.types import Bool, Float, Int, String
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from rosetta_jit.frameworks.ros import Definition, Field
-    from rosetta_jit.model.types import Schema
-    from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
-
+from rosetta_jit.model.types import Bool, Float, Int, Schema, String
+from rosetta_jit.parsing.idl import Load
+from rosetta_jit.source import Source
 
 SCALARS = {
     "int8": Int(8, spelling="int8"),

@@ -8,24 +8,17 @@ when it is serialised; what cannot be decoded raises `rosetta_jit.errors.DecodeE
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, cast
+from collections.abc import Iterator
+from typing import Any, ClassVar, Protocol, Self, cast
 
 import numpy as np
 
 from rosetta_jit.frameworks.ros1.times import DURATION, TIME
-from rosetta_jit.model.types import Array, Bytes, Ref, Struct, name_parts
-from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
+from rosetta_jit.model.types import Array, Bytes, Ref, Schema, Struct, Type, name_parts
+from rosetta_jit.runtime.holder import PLAIN, Family, Holder, Manners
 from rosetta_jit.runtime.holder.objects.foreign import Foreign
-from rosetta_jit.runtime.holder.serialising import encoded, programs_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.runtime.holder import Family
-    from rosetta_jit.runtime.holder.record import Record
-    from rosetta_jit.runtime.holder.serialising import Programs
-
+from rosetta_jit.runtime.holder.record import Record
+from rosetta_jit.runtime.holder.serialising import Programs, encoded, programs_of
 
 SEPARATOR = "=" * 80
 

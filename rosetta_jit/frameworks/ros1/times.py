@@ -5,16 +5,14 @@ A result is a new object, never a view. The other operand may be one of genpy's 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from numbers import Integral, Real
 from operator import ge, gt, le, lt
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from rosetta_jit.frameworks.ros1.time_types import STRUCTS
 from rosetta_jit.model.types import Ref, Schema
 from rosetta_jit.runtime.holder import Holder, holder_class
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 NANO = 1_000_000_000
 SCHEMA = Schema(STRUCTS)

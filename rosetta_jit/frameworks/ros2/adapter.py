@@ -5,23 +5,17 @@ Names are escaped by an underscore before them, since many are keywords of IDL (
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from math import isfinite
-from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.ros import definition_of
+from rosetta_jit.frameworks.ros import Definition, Dialect, Field, definition_of
 from rosetta_jit.frameworks.ros import diagnostics as say
 from rosetta_jit.frameworks.ros.reading import unit_in
-from rosetta_jit.source import Source
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.frameworks.ros import Definition, Dialect, Field
-    from rosetta_jit.frameworks.ros.tree import Constant, TypeName
-    from rosetta_jit.model.types import Constant as Value
-    from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Span
+from rosetta_jit.frameworks.ros.tree import Constant, TypeName
+from rosetta_jit.model.types import Constant as Value
+from rosetta_jit.parsing.idl import Load
+from rosetta_jit.source import Source, Span
 
 WORDS = {"bool": "boolean", "byte": "octet", "char": "uint8", "float32": "float", "float64": "double"}
 """Words of `.msg` files that IDL has other words for."""

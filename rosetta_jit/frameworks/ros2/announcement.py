@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.ros2.type_hash import rihs01
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Schema, Struct
+from rosetta_jit.model.types import Schema, Struct
 
 
 def announcement(struct: Struct, schema: Schema) -> dict[str, str]:

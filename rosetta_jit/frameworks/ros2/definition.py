@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from pathlib import PurePath
-from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.definitions import Definition, declared, sources
 from rosetta_jit.frameworks.ros2.successors import LINE
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Schema, Struct
+from rosetta_jit.model.types import Schema, Struct
 
 
 def definition(struct: Struct, schema: Schema) -> Definition | None:

@@ -6,23 +6,16 @@ https://docs.ros.org/en/rolling/Concepts/Basic/About-Interfaces.html
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
 
 from rosetta_jit.frameworks.omg.idl import parse as parse_declarations
-from rosetta_jit.frameworks.ros import Dialect, Interface, Rule, gathered, schema_of
+from rosetta_jit.frameworks.ros import Dialect, Gathered, Interface, Rule, gathered, schema_of
 from rosetta_jit.frameworks.ros.sections import HEADER, SEPARATOR
 from rosetta_jit.frameworks.ros2.adapter import idl_text, with_messages
 from rosetta_jit.frameworks.ros2.empty import DUMMY
-from rosetta_jit.model.types import Bool, Field, Float, Int, String
+from rosetta_jit.model.types import Bool, Field, Float, Int, Schema, String
+from rosetta_jit.parsing.idl import Load
 from rosetta_jit.source import Source
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.frameworks.ros import Gathered
-    from rosetta_jit.model.types import Schema
-    from rosetta_jit.parsing.idl import Load
-
 
 SCALARS = {
     "bool": Bool("bool"),

@@ -9,22 +9,16 @@ from __future__ import annotations
 
 import json
 import sys
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from rosetta_jit.frameworks.ros2.empty import DUMMY
-from rosetta_jit.model.types import Array, Bytes, Field, Optional, Ref, String, name_parts
-from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
+from rosetta_jit.model.types import Array, Bytes, Field, Optional, Ref, String, Type, name_parts
+from rosetta_jit.runtime.holder import PLAIN, Family, Holder, Manners
 from rosetta_jit.runtime.holder.objects.foreign import Foreign
-from rosetta_jit.runtime.holder.serialising import encoded, programs_of
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.runtime.holder import Family
-    from rosetta_jit.runtime.holder.record import Record
-    from rosetta_jit.runtime.holder.serialising import Programs
-
+from rosetta_jit.runtime.holder.record import Record
+from rosetta_jit.runtime.holder.serialising import Programs, encoded, programs_of
 
 SPELLED = {"float32": "float", "float64": "double", "bool": "boolean", "byte": "octet", "char": "uint8"}
 """Words of `.msg` files that IDL has other words for."""

@@ -6,18 +6,14 @@ got new fields: they are zero or empty in what comes from ROS 1, and must be so 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Collection
 
 from rosetta_jit.frameworks.ros import gathered
 from rosetta_jit.frameworks.ros2.empty import DUMMY
 from rosetta_jit.frameworks.ros2.idl import ROS2
+from rosetta_jit.model.types import Struct
+from rosetta_jit.parsing.idl import Load
 from rosetta_jit.wire.other_type import Partners, UnlikeError
-
-if TYPE_CHECKING:
-    from collections.abc import Collection
-
-    from rosetta_jit.model.types import Struct
-    from rosetta_jit.parsing.idl import Load
 
 RENAMED = {"sec": "secs", "nanosec": "nsecs"}
 DROPPED = frozenset({"seq", DUMMY})

@@ -7,15 +7,12 @@ from __future__ import annotations
 
 import json
 from hashlib import sha256
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.ros import diagnostics as say
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Schema, Type
 
 NESTED, CHAR, WCHAR, BOOLEAN, BYTE, STRING, WSTRING, BOUNDED_STRING, BOUNDED_WSTRING = 1, 13, 14, 15, 16, 17, 18, 21, 22
 INTEGERS = {(8, True): 2, (8, False): 3, (16, True): 4, (16, False): 5, (32, True): 6, (32, False): 7, (64, True): 8, (64, False): 9}

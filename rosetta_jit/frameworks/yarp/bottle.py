@@ -12,20 +12,14 @@ negative count, and bounded nesting.
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING, assert_never
+from collections.abc import Mapping, Sequence
+from typing import assert_never
 
-from rosetta_jit.errors import DecodeError, EncodeError
+from rosetta_jit.errors import DecodeError, EncodeError, Kind
 from rosetta_jit.frameworks.yarp.limits import MAX_NESTING
-from rosetta_jit.frameworks.yarp.tags import DICT, FIXED_FORMATS, list_code, list_units
-from rosetta_jit.frameworks.yarp.tree import Dict, List, Value, narrow, path_text, widen
+from rosetta_jit.frameworks.yarp.tags import DICT, FIXED_FORMATS, Dialect, list_code, list_units
+from rosetta_jit.frameworks.yarp.tree import Dict, Item, List, Path, Value, narrow, path_text, widen
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from rosetta_jit.errors import Kind
-    from rosetta_jit.frameworks.yarp.tags import Dialect
-    from rosetta_jit.frameworks.yarp.tree import Item, Path
 
 MIN_ITEM_BYTES = 5
 """The least that an item of a general list takes: a code and one byte."""

@@ -8,11 +8,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.model import expr
-from rosetta_jit.model.types import Ref, Struct
+from rosetta_jit.model.types import Field, Ref, Schema, Struct
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.types import Field, Schema
     from rosetta_jit.wire.codec import Path
 
 

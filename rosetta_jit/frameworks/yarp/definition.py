@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.frameworks.definitions import Definition, sources
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Schema, Struct
+from rosetta_jit.model.types import Schema, Struct
 
 
 def definition(struct: Struct, schema: Schema) -> Definition | None:

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, assert_never
+from collections.abc import Iterable, Sequence
+from typing import assert_never
 
 from rosetta_jit.frameworks.yarp.limits import MAX_VALUE_SHOWN
 from rosetta_jit.frameworks.yarp.names import unique_names
-from rosetta_jit.frameworks.yarp.shape import Entries, Fixed, Keyed, Many, Scalar
+from rosetta_jit.frameworks.yarp.shape import Entries, Fixed, Keyed, Many, Scalar, Shape
 from rosetta_jit.frameworks.yarp.tags import vocab
 from rosetta_jit.frameworks.yarp.text import to_text
 from rosetta_jit.frameworks.yarp.tree import List, Value
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from rosetta_jit.frameworks.yarp.shape import Shape
 
 Line = tuple[str, str]
 """Code, and a comment to stand behind it."""

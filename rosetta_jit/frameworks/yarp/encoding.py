@@ -9,21 +9,19 @@ first attempt, and the general one comes after it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp.bottle_codec import Bottles
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4, YARP2012, Dialect
 from rosetta_jit.model.layout import recursive_structs
-from rosetta_jit.model.types import Array, Map, Ref, Schema, String, Struct, Union
+from rosetta_jit.model.types import Array, Map, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Codec, Encoding
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rosetta_jit.frameworks.base import Choices
-    from rosetta_jit.model.types import Type
 
 
 def encode_type(struct: Struct, schema: Schema, dialect: str, choices: Choices) -> Encoding:

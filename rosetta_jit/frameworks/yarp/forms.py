@@ -8,14 +8,12 @@ dict              a struct all of whose fields have the option ``key``
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rosetta_jit.model.types import Enum, Field, Struct, Union
+from rosetta_jit.model.types import Enum, Field, Struct, Type, Union
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 from rosetta_jit.errors import DecodeError, SchemaError
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
@@ -10,18 +10,10 @@ from rosetta_jit.frameworks.yarp.bottle import read
 from rosetta_jit.frameworks.yarp.draft import draft
 from rosetta_jit.frameworks.yarp.limits import MAX_PLACES
 from rosetta_jit.frameworks.yarp.names import TYPE_NAME
-from rosetta_jit.frameworks.yarp.shape import Clash, Fixed, Many, join_all, join_lists, join_places, shape
-from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4, YARP2012, vocab
-from rosetta_jit.frameworks.yarp.tree import Dict, List, Value
+from rosetta_jit.frameworks.yarp.shape import Clash, Fixed, Many, Shape, join_all, join_lists, join_places, shape
+from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4, YARP2012, Dialect, vocab
+from rosetta_jit.frameworks.yarp.tree import Dict, Item, List, Value
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rosetta_jit.frameworks.yarp.shape import Shape
-    from rosetta_jit.frameworks.yarp.tags import Dialect
-    from rosetta_jit.frameworks.yarp.tree import Item
-
 
 ANY = "yarp"
 """The encoding that is any of the dialects."""

@@ -7,20 +7,16 @@ What a holder shows is the bottle that it would be written as. It is made anew f
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Iterator
+from typing import Any, ClassVar
 
 from rosetta_jit.frameworks.yarp import tree
 from rosetta_jit.frameworks.yarp.bottle import read
 from rosetta_jit.frameworks.yarp.tags import YARP4, vocab
 from rosetta_jit.frameworks.yarp.text import to_text
 from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
-from rosetta_jit.runtime.holder.serialising import encoded
+from rosetta_jit.runtime.holder.serialising import Programs, encoded
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.runtime.holder.serialising import Programs
 
 INTEGERS = ("int8", "int16", "int32", "int64")
 FLOATS = ("float32", "float64")

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 from rosetta_jit.frameworks.yarp.limits import MAX_KEY
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 FIELD_NAME = re.compile(r"(?!.{101})[A-Za-z_][A-Za-z0-9_]*")
 TYPE_NAME = re.compile(r"(?!.{101})[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*")

@@ -34,26 +34,23 @@ start at the declaration that they stand in.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.limits import MAX_PROBLEMS
 from rosetta_jit.frameworks.yarp.names import TYPE_NAME
 from rosetta_jit.frameworks.yarp.schema_check import check
 from rosetta_jit.frameworks.yarp.schema_type import read_struct
-from rosetta_jit.frameworks.yarp.sexpr import Form, Text, Word, head, read_forms
-from rosetta_jit.model.types import Schema
+from rosetta_jit.frameworks.yarp.sexpr import Form, Node, Text, Word, head, read_forms
+from rosetta_jit.model.types import Schema, Struct
+from rosetta_jit.source import Source
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.yarp.sexpr import Node
-    from rosetta_jit.model.types import Struct
     from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
 
 
 def parse(source: Source, load: Load) -> Schema:

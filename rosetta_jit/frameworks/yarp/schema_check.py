@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 from itertools import islice
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.limits import MAX_NESTING, MAX_TERMS
-from rosetta_jit.model.expr import Binary, Call, Choice, Coerced, Given, Item, Len, List, Literal, Member, Name, Nearest, Path, Unary
+from rosetta_jit.model.expr import Binary, Call, Choice, Coerced, Expr, Given, Item, Len, List, Literal, Member, Name, Nearest, Path, Unary
 from rosetta_jit.model.limits import MAX_SLOTS
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.types import Field, Type
     from rosetta_jit.source import Span
 
 Place = tuple[str, str]

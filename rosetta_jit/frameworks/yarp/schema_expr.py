@@ -3,21 +3,15 @@
 from __future__ import annotations
 
 from sys import float_info
-from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
-from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Vocab, Word
+from rosetta_jit.frameworks.yarp.sexpr import Form, Node, Number, Text, Vocab, Word
 from rosetta_jit.frameworks.yarp.tags import vocab
-from rosetta_jit.model.expr import Binary, Call, Len, Literal, Member, Path
-from rosetta_jit.model.types import Bool, Float, Int, String
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.yarp.sexpr import Node
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
+from rosetta_jit.model.expr import Binary, Call, Expr, Len, Literal, Member, Path
+from rosetta_jit.model.types import Bool, Float, Int, String, Type
+from rosetta_jit.source import Span
 
 OPERATORS = ("+", "-", "*", "/", "align")
 """What two operands can have between them; `length` has one, a list, string or blob."""

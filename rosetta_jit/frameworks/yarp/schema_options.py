@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.limits import MAX_PADDING
 from rosetta_jit.frameworks.yarp.schema_expr import read_constant, read_expr
-from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Word, head
+from rosetta_jit.frameworks.yarp.sexpr import Form, Node, Number, Text, Word, head
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.limits import MAX_UNIT_PARTS
-from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String
+from rosetta_jit.model.types import Array, Bool, Bytes, Constant, Field, Float, Int, String, Type
 from rosetta_jit.model.units import with_units
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.yarp.sexpr import Node
-    from rosetta_jit.model.types import Constant, Field, Type
 
 TEXT = String("octets", "string")
 

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.forms import make_union
 from rosetta_jit.frameworks.yarp.limits import MAX_NESTING, MAX_PROBLEMS
 from rosetta_jit.frameworks.yarp.names import FIELD_NAME
 from rosetta_jit.frameworks.yarp.schema_expr import read_constant
 from rosetta_jit.frameworks.yarp.schema_options import CASE, SCALARS, TEXT, Place, sort_rest, text_option, with_options
-from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Vocab, Word, head
-from rosetta_jit.model.types import Array, Field, Map, Ref, Struct
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.yarp.sexpr import Node
-    from rosetta_jit.model.types import Constant, Type
-    from rosetta_jit.source import Span
+from rosetta_jit.frameworks.yarp.sexpr import Form, Node, Number, Text, Vocab, Word, head
+from rosetta_jit.model.types import Array, Constant, Field, Map, Ref, Struct, Type
+from rosetta_jit.source import Span
 
 _GROUPS = MappingProxyType(
     {

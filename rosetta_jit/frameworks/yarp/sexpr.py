@@ -9,24 +9,18 @@ r"""S-expressions: text into nested forms with their places.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.limits import MAX_DIGITS, MAX_FORMS, MAX_PROBLEMS
-from rosetta_jit.parsing.lalr import UnexpectedCharacterError
+from rosetta_jit.parsing.lalr import Grammar, Token, UnexpectedCharacterError
 from rosetta_jit.parsing.parsers import parser_of
-from rosetta_jit.source import Span
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.parsing.lalr import Grammar, Token
-    from rosetta_jit.source import Source
 
 GRAMMAR = Path(__file__).with_name("bottle_schema.lark")
 

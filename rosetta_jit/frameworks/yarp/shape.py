@@ -13,18 +13,14 @@ length never varied: the writer of the schema says which.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from functools import reduce
 from math import isnan
 from struct import pack
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
-from rosetta_jit.frameworks.yarp.tree import Dict, List, Value
+from rosetta_jit.frameworks.yarp.tree import Dict, Item, List, Value
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from rosetta_jit.frameworks.yarp.tree import Item
 
 
 @dataclass(frozen=True, slots=True)

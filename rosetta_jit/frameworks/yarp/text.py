@@ -9,16 +9,12 @@ from __future__ import annotations
 
 import re
 from math import copysign, isnan
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.errors import EncodeError
 from rosetta_jit.frameworks.yarp.limits import MAX_NESTING
-from rosetta_jit.frameworks.yarp.tags import vocab
-from rosetta_jit.frameworks.yarp.tree import Dict, List, Value, path_text, specialised
-
-if TYPE_CHECKING:
-    from rosetta_jit.frameworks.yarp.tags import Dialect
-    from rosetta_jit.frameworks.yarp.tree import Item, Path
+from rosetta_jit.frameworks.yarp.tags import Dialect, vocab
+from rosetta_jit.frameworks.yarp.tree import Dict, Item, List, Path, Value, path_text, specialised
 
 DECIMAL_DIGITS = 21
 """DECIMAL_DIG where long double has 64 bits of mantissa: YARP prints every float with so many digits."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp import thrift_diagnostics as say
 from rosetta_jit.frameworks.yarp import thrift_grammar as tree
@@ -16,14 +17,29 @@ from rosetta_jit.frameworks.yarp.limits import MAX_ANCESTORS, MAX_FILES, MAX_FUN
 from rosetta_jit.frameworks.yarp.tags import vocab
 from rosetta_jit.frameworks.yarp.thrift_lexer import words_of
 from rosetta_jit.model import expr
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, NamedConstant, Ref, Schema, String, Struct
+from rosetta_jit.model.types import (
+    Array,
+    Bool,
+    Bytes,
+    Constant,
+    Declaration,
+    Enum,
+    Field,
+    Float,
+    Int,
+    Map,
+    NamedConstant,
+    Ref,
+    Schema,
+    String,
+    Struct,
+    Type,
+)
+from rosetta_jit.source import Source
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.types import Constant, Declaration, Type
     from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
 
 VOCAB_LETTERS = 4
 """Words of a function's name that are longer are texts."""

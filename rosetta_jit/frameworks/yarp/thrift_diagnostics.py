@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.spelling import closest
-from rosetta_jit.diagnostics import Mistake, error
+from rosetta_jit.diagnostics import Diagnostic, Mistake, error
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
 

@@ -6,20 +6,14 @@ tag that its list announces, and in YARP 3 so does a list of lists, so that neit
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp import thrift_diagnostics as thrift
 from rosetta_jit.frameworks.yarp.tags import FIXED_FORMATS, LIST, YARP4, Dialect, vocab
 from rosetta_jit.model import expr
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, String, Struct
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Schema, String, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.wire.codec import Blob, Choice, Codec, Constant, Count, Number, Recursion, Repeat, Seq, Table
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.wire.codec import Path
+from rosetta_jit.wire.codec import Blob, Choice, Codec, Constant, Count, Number, Path, Recursion, Repeat, Seq, Table
 
 BOOLEANS = ((vocab(b"ok"), 1), (vocab(b"fail"), 0))
 COUNT = Count("i32")

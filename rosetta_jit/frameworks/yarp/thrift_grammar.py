@@ -6,6 +6,7 @@ Type   = Named(name) | List(element) | Set(element) | Map(key, value)
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import field
 from typing import TYPE_CHECKING
 
@@ -15,8 +16,6 @@ from rosetta_jit.frameworks.yarp.limits import MAX_THRIFT_DIGITS, MAX_TYPE_DEPTH
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rosetta_jit.frameworks.yarp.thrift_lexer import Word
     from rosetta_jit.source import Span
 

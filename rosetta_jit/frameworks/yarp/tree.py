@@ -12,13 +12,10 @@ The tree says which of its two forms a list has, so that writing gives back the 
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterable
 from math import isnan
-from typing import TYPE_CHECKING
 
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 Path = tuple[int, ...]
 """Where an item is: its index in the bottle, then its index in the list there, and so on."""

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.bounds import reserved
 from rosetta_jit.generate.c.words import RESERVED
-from rosetta_jit.generate.unit import wire_of
+from rosetta_jit.generate.unit import Unit, wire_of
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.c.rows import Struct
-    from rosetta_jit.generate.unit import Unit
 
 ROWS, BYTES, SCRATCH_BYTES = 64, 1024, 4096
 """Room in a `memory` where nothing bounds what a message needs: elements, bytes of texts, bytes of scratch."""

@@ -9,6 +9,7 @@ Each takes those of the shared parameters that it needs.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer, counted_lanes
@@ -18,19 +19,16 @@ from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.statements import Callable, Function, moved, print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.words import C_TYPES
+from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.reached import leaves, reached, read_names
-from rosetta_jit.kernel.ir import Advance, Call, For, While
+from rosetta_jit.generate.unit import Role
+from rosetta_jit.kernel.ir import Advance, Call, Direction, For, Kernel, Routine, While
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.origins import Origin
-    from rosetta_jit.generate.unit import Role
-    from rosetta_jit.kernel.ir import Direction, Kernel, Routine
 
 SHARED = ("holder", "given_row", "given_object", "bytes", "end", "failure")
 """The parameters that all functions of a kernel may have, in order."""

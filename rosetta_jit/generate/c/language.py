@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.generate.c.functions import print_kernel
+from rosetta_jit.generate.c.functions import Printed, print_kernel
 from rosetta_jit.generate.c.header import header
-from rosetta_jit.generate.c.lanes import Lanes
+from rosetta_jit.generate.c.lanes import Dialect, Lanes
+from rosetta_jit.generate.c.rows import Struct
 from rosetta_jit.generate.c.source import source
 from rosetta_jit.generate.c.unit_lanes import hidden_lanes, own_lanes
+from rosetta_jit.generate.unit import Role, Unit
+from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rosetta_jit.generate.c.functions import Printed
-    from rosetta_jit.generate.c.lanes import Dialect
-    from rosetta_jit.generate.c.rows import Struct
-    from rosetta_jit.generate.unit import Role, Unit
-    from rosetta_jit.kernel.ir import Kernel
-
     Print = Callable[[Kernel, Lanes, Role], Printed]
 
 

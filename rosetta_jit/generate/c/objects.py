@@ -5,22 +5,17 @@ The kernels there have the words of `kernel.state` as their holder: the calls fi
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.backends.base import Writer
 from rosetta_jit.backends.entry.ahead import TargetError, object_for
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.functions import Attempt, Printed
+from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.language import as_c
 from rosetta_jit.generate.c.state import MEMBERS
-from rosetta_jit.generate.unit import kind_of
+from rosetta_jit.generate.unit import Role, Unit, kind_of
 from rosetta_jit.kernel import state
-
-if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.unit import Role, Unit
-    from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.ir import Kernel
 
 SIGNATURE = "int64_t {name}(const unsigned char *bytes, int64_t begin, int64_t end, int64_t *state, int64_t row);"
 """What an encoder writes to is the message of its caller, who does not have it as a constant."""

@@ -10,16 +10,13 @@ from __future__ import annotations
 
 import re
 from itertools import count
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.kernel.ir import WIDTH
-from rosetta_jit.model.layout import LINK_WORDS, SPAN_BYTES, Number, Row, Span, Variant
+from rosetta_jit.model.layout import LINK_WORDS, SPAN_BYTES, Lane, Layout, Members, Number, Row, Slot, Span, Variant
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.layout import Lane, Layout, Members, Slot
 
 OWN_WORDS = frozenset({"presence", "which", "unknown", "links", "nothing", "value"})
 PADDING = re.compile(r"padding_?\d*")

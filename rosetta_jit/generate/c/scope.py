@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
+from rosetta_jit.backends.base import Namespace
+from rosetta_jit.kernel.ir import Scalar
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.backends.base import Namespace
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.kernel.ir import Scalar
 
 
 @dataclass(slots=True)

@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.c.accessors import clear
 from rosetta_jit.generate.c.header import STATUSES, made
+from rosetta_jit.generate.c.lanes import Lanes
+from rosetta_jit.generate.c.rows import Struct
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
-from rosetta_jit.generate.unit import kind_of, wire_of
-from rosetta_jit.kernel.ir import Site
+from rosetta_jit.generate.unit import Purpose, Role, Unit, kind_of, wire_of
+from rosetta_jit.kernel.ir import Kernel, Site
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     from rosetta_jit.generate.c.functions import Attempt, Printed
-    from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.c.rows import Struct
-    from rosetta_jit.generate.unit import Purpose, Role, Unit
-    from rosetta_jit.kernel.ir import Kernel
 
 FREESTANDING = """#include <float.h>
 

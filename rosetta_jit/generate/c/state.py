@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.generate.c.texts import comment
-from rosetta_jit.generate.unit import kind_of, wire_of
-
-if TYPE_CHECKING:
-    from rosetta_jit.generate.unit import Purpose, Role, Unit
+from rosetta_jit.generate.unit import Purpose, Role, Unit, kind_of, wire_of
 
 MEMBERS: dict[Purpose, str] = {"decode": "unpack", "borrow": "unpack", "encode": "pack", "size": "pack"}
 """The array of the struct that has the registers of a kernel."""

@@ -5,6 +5,7 @@ What a message cannot be ends a function with a negative result: `fail` notes th
 
 from __future__ import annotations
 
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
@@ -14,9 +15,10 @@ from rosetta_jit.generate.c.expressions import expression, location, store, writ
 from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import C_TYPES
-from rosetta_jit.generate.origins import described, origin_of
+from rosetta_jit.generate.origins import Origin, described, origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.reached import leaves
+from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.shape import statements
@@ -24,12 +26,8 @@ from rosetta_jit.kernel.terms import END, add, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable, Mapping, Sequence
-
     from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.c.scope import Scope
-    from rosetta_jit.generate.origins import Origin
-    from rosetta_jit.generate.unit import Role
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,17 +6,14 @@ A section's head names it, says for which words it is repeated (``bits: 16 32``)
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator
 from functools import cache
 from itertools import product
 from pathlib import Path
 from string import Template
-from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
 
 HEAD = re.compile(r"^/\* == (.*) == \*/$", re.MULTILINE)
 REAL = {"32": "float", "64": "double"}

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from itertools import count
-from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.c.accessors import words_of
@@ -12,13 +12,9 @@ from rosetta_jit.generate.c.lanes import OWN_WORDS, Lane, Lanes
 from rosetta_jit.generate.c.rows import Structs, elements_of
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.words import RESERVED, of_unit
+from rosetta_jit.generate.unit import Unit
 from rosetta_jit.model.layout import UNKNOWN, Number
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-
-    from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.model.layout import Lane as LayoutLane
+from rosetta_jit.model.layout import Lane as LayoutLane
 
 
 def own_lanes(unit: Unit) -> tuple[Structs, list[Lane]]:

@@ -10,11 +10,10 @@ from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.generate.inner_types import reached_types
 from rosetta_jit.model.layout import recursive_structs
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.model.types import Type
 
 _OF_KERNELS = {f"{role}_{what}" for role in ("decode", "encode", "size", "borrow") for what in ("message", "sites")}
 _OF_SOURCES = {"failure", "fill", "gather", "measured", "reach", "report", "source", "state", "written"}

@@ -5,19 +5,17 @@ They are those that each message has, outside of lists, unions and optional fiel
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.cleared import clears, settled
 from rosetta_jit.generate.unit import wires_of
-from rosetta_jit.kernel.ir import Copy, Fill, Get, HostCall, IsText, Nearest, Place
+from rosetta_jit.kernel.ir import Address, Copy, Fill, Get, HostCall, IsText, Kernel, Nearest, Place, Stmt
 from rosetta_jit.kernel.shape import expressions_of, extents_of, statements, subexpressions
 from rosetta_jit.model.types import Ref
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.generate.cpp.walk import Walk
-    from rosetta_jit.kernel.ir import Address, Kernel, Stmt
 
 VALUE = "$value"
 """What stands for the number in a statement that sets it."""

@@ -4,27 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.generate.c.functions import print_kernel
+from rosetta_jit.generate.c.functions import Printed, print_kernel
+from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.language import parts_of
 from rosetta_jit.generate.cleared import without_clearing
 from rosetta_jit.generate.cpp.filled import straight_numbers
-from rosetta_jit.generate.cpp.manners import MANNERS
+from rosetta_jit.generate.cpp.manners import MANNERS, Manners
 from rosetta_jit.generate.cpp.reading import addressed_in, viewed_in
 from rosetta_jit.generate.cpp.source import header, source
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.undamaged import undamaged_kernel
-from rosetta_jit.generate.unit import kind_of, wire_of
-
-if TYPE_CHECKING:
-    from rosetta_jit.generate.c.functions import Printed
-    from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.cpp.manners import Manners
-    from rosetta_jit.generate.unit import Role, Unit
-    from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of
+from rosetta_jit.kernel.ir import Kernel
 
 INCLUDE = Path(__file__).with_name("include")
 SHARED = "rosetta_jit/rosetta_jit.hpp"

@@ -7,27 +7,22 @@ Only a compiler knows how a class lies in memory: `lies` of a generated struct a
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Writer
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import path_to
 from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk, members_of
-from rosetta_jit.generate.unit import kind_of
-from rosetta_jit.kernel.ir import Advance, Capacity, Copy, Get, HostCall, Place, Reserve, Used
+from rosetta_jit.generate.unit import Unit, kind_of
+from rosetta_jit.kernel.ir import Advance, Block, Capacity, Copy, Expr, Get, HostCall, Place, Reserve, Stmt, Used
 from rosetta_jit.kernel.shape import expressions_of, extents_of, statements, subexpressions
-from rosetta_jit.model.layout import Number, Row, Span
-from rosetta_jit.model.types import Array, Bytes, Ref, String, Struct
+from rosetta_jit.model.layout import Number, Row, Slot, Span
+from rosetta_jit.model.types import Array, Bytes, Ref, String, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.kernel.ir import Block, Expr, Stmt
-    from rosetta_jit.model.layout import Slot
-    from rosetta_jit.model.types import Type
 
 
 @dataclass(frozen=True, slots=True)

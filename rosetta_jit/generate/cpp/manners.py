@@ -8,17 +8,12 @@ holder without a section cannot have such fields. `laid out` is empty where a cl
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from rosetta_jit.model.types import name_parts
+from rosetta_jit.model.types import Struct, name_parts
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rosetta_jit.model.types import Struct
 
 FOLDER = Path(__file__).with_name("manners")
 HEAD = re.compile(r"^/\* == (.*?) == \*/\n", re.MULTILINE)

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.c.words import RESERVED, of_unit
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rosetta_jit.model.types import Struct
+from rosetta_jit.model.types import Struct
 
 OWN_WORDS = frozenset({"unknown_fields", "std", "rosetta_jit"})
 

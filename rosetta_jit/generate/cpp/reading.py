@@ -5,20 +5,19 @@ from __future__ import annotations
 from string import Template
 from typing import TYPE_CHECKING
 
+from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.source import run
 from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.lists import Listed, row_name, viewed
 from rosetta_jit.generate.cpp.straight import addressed_lanes, is_local
 from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
-from rosetta_jit.generate.unit import wires_of
+from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.model.layout import Row
 from rosetta_jit.model.types import Ref
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.c.language import Parts
     from rosetta_jit.generate.cpp.manners import Manners
-    from rosetta_jit.generate.unit import Unit
 
 HOLDER = "std::declval<const holder &>()"
 

@@ -21,13 +21,12 @@ from rosetta_jit.generate.cpp.reading import addressed_in, container_type, direc
 from rosetta_jit.generate.cpp.straight import is_local
 from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
 from rosetta_jit.generate.shares import WHOLE, changed_lanes
-from rosetta_jit.generate.unit import kind_of, wire_of, wires_of
+from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of, wires_of
 from rosetta_jit.model.types import Ref, Struct
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.language import Parts
     from rosetta_jit.generate.cpp.manners import Manners
-    from rosetta_jit.generate.unit import Role, Unit
 
 FOLDER = Path(__file__).parent
 HOLDER = "std::declval<holder &>()"

@@ -5,22 +5,17 @@ A lane is *addressed* where its rows are the characters of strings anywhere in t
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.unit import kind_of
-from rosetta_jit.kernel.ir import Copy, Fill, Get, Place, SetField
+from rosetta_jit.generate.unit import Unit, kind_of
+from rosetta_jit.kernel.ir import Copy, Fill, Get, Kernel, Place, SetField, Stmt
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
-from rosetta_jit.model.layout import Row, Span, Variant, map_entry
-from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.layout import Row, Slot, Span, Variant, map_entry
+from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, Struct, Type, Union
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.generate.cpp.walk import Walk
-    from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.kernel.ir import Kernel, Stmt
-    from rosetta_jit.model.layout import Slot
-    from rosetta_jit.model.types import Type
 
 
 def addressed_lanes(unit: Unit, direct: frozenset[int]) -> frozenset[int]:

@@ -12,6 +12,7 @@ characters that a message has once: the lane shows the elements of their contain
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import field
 from string import Template
 from typing import TYPE_CHECKING, Literal
@@ -20,24 +21,20 @@ from rosetta_jit.backends.base import Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.rows import PADDING
+from rosetta_jit.generate.c.rows import Member as RowMember
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.classes import names_of
 from rosetta_jit.generate.cpp.names import member_names
 from rosetta_jit.generate.shares import WHOLE, Ways, within
-from rosetta_jit.model.layout import Number, Row, Span, Variant, map_entry
-from rosetta_jit.model.types import Array, Bytes, Enum, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.layout import Member, Number, Row, Span, Variant, map_entry
+from rosetta_jit.model.types import Array, Bytes, Enum, Field, Map, Optional, Ref, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.c.rows import Member as RowMember
     from rosetta_jit.generate.cpp.manners import Manners
     from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.model.layout import Member
-    from rosetta_jit.model.types import Field, Type
 
 Direction = Literal["decode", "encode"]
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.generate.inner_types import reached_types
@@ -10,14 +11,11 @@ from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.texts import doc
 from rosetta_jit.generate.lisp.words import LISP_TYPES, Names, constants, hyphenated, runtime_names, symbols
 from rosetta_jit.model.layout import scalar_of
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.model.types import Field, Schema, Type
 
 KERNELS = frozenset({"decode-kernel", "encode-kernel", "size-kernel", "unknown-fields", "forget-rows", "writer"})
 UNKNOWN = "unknown fields"

@@ -5,26 +5,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.lisp.expressions import Scope, expression
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.statements import Function, Variable, declaration, print_block, registers
 from rosetta_jit.generate.lisp.words import LISP_TYPES, Names, hyphenated
+from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.reached import leaves, reached, read_names
 from rosetta_jit.generate.shares import changed_lanes
 from rosetta_jit.kernel.arithmetic import FLOATS
-from rosetta_jit.kernel.ir import Binary, Compare, Convert, Decimal, Unary
+from rosetta_jit.kernel.ir import Binary, Compare, Convert, Decimal, Expr, Kernel, Routine, Unary
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
     from rosetta_jit.generate.lisp.lanes import Lanes
-    from rosetta_jit.generate.origins import Origin
-    from rosetta_jit.kernel.ir import Expr, Kernel, Routine
 
 DECLARED = (
     "(declare (optimize (speed 1) (safety 0) (debug 0)) (type codec codec) (type octets data) (type i64 end) (type fixnum attempt) "

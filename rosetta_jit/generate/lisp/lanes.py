@@ -9,6 +9,7 @@ A lane whose element is None has no fields that have names.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING
 
@@ -17,8 +18,6 @@ from rosetta_jit.generate.lisp.words import Names, codec_slots, constants, hyphe
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rosetta_jit.generate.c import lanes as c
 
 OWN_WORDS = frozenset({"codec", "data", "end", "attempt"})

@@ -3,31 +3,24 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from string import Template
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.unit_lanes import named_lanes
 from rosetta_jit.generate.lisp.classes import classes_of, definitions, function_symbols, wire_symbols
-from rosetta_jit.generate.lisp.functions import About, computes_with_floats, print_kernel
-from rosetta_jit.generate.lisp.lanes import lanes_of
+from rosetta_jit.generate.lisp.functions import About, Printed, computes_with_floats, print_kernel
+from rosetta_jit.generate.lisp.lanes import Lanes, lanes_of
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.objects import Put, Take
 from rosetta_jit.generate.lisp.texts import comment, literal
 from rosetta_jit.generate.lisp.words import package_of, runtime_text
 from rosetta_jit.generate.shares import changed_lanes
-from rosetta_jit.generate.unit import wire_of
+from rosetta_jit.generate.unit import Role, Unit, wire_of
+from rosetta_jit.kernel.ir import Kernel, Part, Site
 from rosetta_jit.kernel.shape import asks_host
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from rosetta_jit.generate.lisp.functions import Printed
-    from rosetta_jit.generate.lisp.lanes import Lanes
-    from rosetta_jit.generate.unit import Role, Unit
-    from rosetta_jit.kernel.ir import Kernel, Part, Site
 
 API = Path(__file__).with_name("api.lisp")
 NO_MEMORY = "the message asks for more memory than its size allows"

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
 from dataclasses import field
 from textwrap import wrap
-from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.lisp.texts import WIDTH, broken, comment
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable, Sequence
 
 MAX_LINE = 140
 

@@ -11,19 +11,16 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.lisp.classes import ABSENT_BOOL, UNKNOWN
+from rosetta_jit.generate.lisp.classes import ABSENT_BOOL, UNKNOWN, Classes
 from rosetta_jit.generate.lisp.expressions import access, row_start
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.shares import WHOLE, Ways, within
-from rosetta_jit.model.layout import Number, Row, Span, Variant, map_entry
-from rosetta_jit.model.types import Array, Bool, Bytes, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.model.layout import Member, Number, Row, Slot, Span, Variant, map_entry
+from rosetta_jit.model.types import Array, Bool, Bytes, Field, Map, Optional, Ref, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.lisp.classes import Classes
     from rosetta_jit.generate.lisp.lanes import Lanes
-    from rosetta_jit.model.layout import Member, Slot
-    from rosetta_jit.model.types import Field, Type
 
 
 @dataclass(slots=True)

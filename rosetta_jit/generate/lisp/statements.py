@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import field
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
-from rosetta_jit.generate.lisp.expressions import access, expression, got, location, state_word, zero
+from rosetta_jit.generate.lisp.expressions import Scope, access, expression, got, location, state_word, zero
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.texts import literal
 from rosetta_jit.generate.lisp.words import LISP_TYPES, hyphenated
-from rosetta_jit.generate.origins import described, origin_of
+from rosetta_jit.generate.origins import Origin, described, origin_of
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import END, add, type_of
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-
-    from rosetta_jit.generate.lisp.expressions import Scope
-    from rosetta_jit.generate.origins import Origin
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,17 +5,13 @@ from __future__ import annotations
 import builtins
 import keyword
 import re
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.inner_types import reached_types
-from rosetta_jit.generate.unit import wire_of
+from rosetta_jit.generate.unit import Unit, wire_of
 from rosetta_jit.model.layout import scalar_of
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
-
-if TYPE_CHECKING:
-    from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.model.types import Type
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
 
 WORDS = frozenset(
     (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import field
 from functools import partial
 from typing import TYPE_CHECKING
@@ -9,17 +10,13 @@ from typing import TYPE_CHECKING
 from rosetta_jit.backends.base import Writer
 from rosetta_jit.generate.python.classes import NUMPY, member_names
 from rosetta_jit.generate.python.expressions import CODES, flat_name, within
-from rosetta_jit.model.layout import WIDTH, Number, Row, Span, Variant, map_entry
-from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.generate.unit import Unit
+from rosetta_jit.model.layout import WIDTH, Number, Row, Slot, Span, Variant, map_entry
+from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.model.layout import Slot
-    from rosetta_jit.model.types import Type
 
 MOST_AT_ONCE = 40
 """Numbers of an array of a fixed length that are packed by a function of its own."""

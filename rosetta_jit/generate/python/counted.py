@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from rosetta_jit.kernel.ir import Assign, Binary, Compare, Const, For, Let, Local, Var, While
+from rosetta_jit.kernel.ir import Assign, Binary, Block, Compare, Const, For, Let, Local, Stmt, Var, While
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.shape import expressions_of, statements
 from rosetta_jit.kernel.terms import index
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Block, Stmt
 
 
 def counted(block: Block) -> Block:

@@ -14,7 +14,8 @@ from rosetta_jit.generate.python.presence import without_lengths
 from rosetta_jit.generate.python.statements import Function, Objects
 from rosetta_jit.generate.reached import reached, read_names
 from rosetta_jit.generate.undamaged import undamaged
-from rosetta_jit.kernel.ir import Expect
+from rosetta_jit.generate.unit import Unit
+from rosetta_jit.kernel.ir import Block, Expect, Kernel, Routine
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.model.types import Ref
@@ -22,8 +23,6 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.kernel.ir import Block, Kernel, Routine
 
 
 KNOWN = {"write_varint": "_varint"}

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
+from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import NUMPY
 from rosetta_jit.generate.python.direct import Direct
@@ -23,7 +24,6 @@ from rosetta_jit.kernel.terms import END, is_wider, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.backends.base import Namespace
     from rosetta_jit.generate.c.lanes import Lanes
 
 CODES = {

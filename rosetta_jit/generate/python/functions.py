@@ -3,30 +3,27 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer
 from rosetta_jit.generate.cleared import settled
+from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import WORDS
 from rosetta_jit.generate.python.direct import FEW, direct
 from rosetta_jit.generate.python.expressions import CODES, Scope, expression, flat_name, view_name
 from rosetta_jit.generate.python.groups import not_negative
-from rosetta_jit.generate.python.statements import Attempt, Function, print_block
+from rosetta_jit.generate.python.statements import Attempt, Function, Objects, print_block
 from rosetta_jit.generate.reached import reached, read_names
 from rosetta_jit.generate.undamaged import undamaged
-from rosetta_jit.generate.unit import kind_of
+from rosetta_jit.generate.unit import Role, kind_of
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import type_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.origins import Origin
-    from rosetta_jit.generate.python.statements import Objects
-    from rosetta_jit.generate.unit import Role
 
 
 def is_flat(kernel: ir.Kernel, lanes: Lanes) -> bool:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.shape import bound_names, statements
 from rosetta_jit.kernel.terms import END, index, type_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 
 def grouped(block: ir.Block) -> Iterator[list[ir.Stmt]]:

@@ -9,20 +9,18 @@ from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.direct import numbers_of
 from rosetta_jit.generate.python.expressions import CODES, expression
-from rosetta_jit.generate.python.object_rows import Binder
+from rosetta_jit.generate.python.object_rows import Binder, Listed, ObjectScope
 from rosetta_jit.generate.python.packed import ANY, Part, part_text, with_numbers
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
 from rosetta_jit.generate.python.varints import _varint  # pyright: ignore[reportPrivateUsage] - as generated modules name it
-from rosetta_jit.kernel.ir import WIDTH, Convert, Get
+from rosetta_jit.generate.unit import Unit
+from rosetta_jit.kernel.ir import WIDTH, Convert, Expr, Get, Place
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.model.layout import Number
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.python.object_rows import Listed, ObjectScope
     from rosetta_jit.generate.python.statements import Function
-    from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.kernel.ir import Expr, Place
 
 MOST_STARRED = 40
 """Numbers of an array of a fixed length that are packed together with those around it."""

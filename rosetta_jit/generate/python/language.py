@@ -5,31 +5,25 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.unit_lanes import named_lanes
 from rosetta_jit.generate.python.classes import WORDS, classes, names_of
 from rosetta_jit.generate.python.collecting import Collect
 from rosetta_jit.generate.python.encoder import encoder_in_parts
 from rosetta_jit.generate.python.expressions import CODES, Scope, view_name
-from rosetta_jit.generate.python.functions import is_flat, print_kernel
+from rosetta_jit.generate.python.functions import Attempt, is_flat, print_kernel
 from rosetta_jit.generate.python.making import Make, arrays_of
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.python.statements import Objects
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
-from rosetta_jit.generate.unit import wire_of
-from rosetta_jit.kernel.ir import Advance, Const, Return
+from rosetta_jit.generate.unit import Role, Unit, wire_of
+from rosetta_jit.kernel.ir import Advance, Const, Direction, Kernel, Return
 from rosetta_jit.kernel.shape import asks_host, statements
 from rosetta_jit.model.types import Ref
-
-if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.python.functions import Attempt
-    from rosetta_jit.generate.unit import Role, Unit
-    from rosetta_jit.kernel.ir import Direction, Kernel
 
 REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 """The lists of the registers of each direction, in the module."""

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
 
 from rosetta_jit.generate.python.classes import NUMPY
 from rosetta_jit.generate.python.expressions import CODES, Scope
-from rosetta_jit.model.layout import WIDTH, Number, Row, Span, Variant, map_entry
-from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.generate.unit import Unit
+from rosetta_jit.model.layout import WIDTH, Member, Number, Row, Slot, Span, Variant, map_entry
+from rosetta_jit.model.types import Array, Bytes, Field, Map, Optional, Ref, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rosetta_jit.generate.unit import Unit
-    from rosetta_jit.model.layout import Member, Slot
-    from rosetta_jit.model.types import Field, Type
 
 _HOW = {"utf-8": "", "octets": '"utf-8", "surrogateescape"'}
 """How texts are decoded: those that were checked, and others."""

@@ -10,6 +10,7 @@ from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import member_names
 from rosetta_jit.generate.python.expressions import Scope, expression, within
 from rosetta_jit.generate.python.positions import NotInParts
+from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import WIDTH, Binary, Expr, Local, Place
 from rosetta_jit.kernel.terms import index
@@ -19,7 +20,6 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.python.statements import Function
-    from rosetta_jit.generate.unit import Unit
 
 START = "<start> "
 """Begins what stands for the start of a sequence, behind which its lane is named: objects have no such number."""

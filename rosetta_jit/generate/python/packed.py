@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from rosetta_jit.generate.python.object_rows import ObjectScope
 
 ANY = "?"

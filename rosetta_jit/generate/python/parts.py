@@ -8,28 +8,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.joined_parts import Written
+from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope
 from rosetta_jit.generate.python.packed import Part
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
 from rosetta_jit.generate.python.presence import bit_tested, case_tested, named_in_rounds, places_read
-from rosetta_jit.generate.python.statements import fail, print_statement
+from rosetta_jit.generate.python.statements import Function, fail, print_statement
+from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.model.layout import Number
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope
-    from rosetta_jit.generate.python.statements import Function
-    from rosetta_jit.generate.unit import Unit
 
 
 class Parts(Written):

@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Iterable, Iterator
 from dataclasses import field, replace
 from itertools import count
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Call, Const, Copy, Expect, Failure, Fill, Local, Require, Return, Store, While, Wire
+from rosetta_jit.kernel.ir import (
+    Binary,
+    Block,
+    Call,
+    Const,
+    Copy,
+    Expect,
+    Expr,
+    Failure,
+    Fill,
+    Local,
+    Require,
+    Return,
+    Stmt,
+    Store,
+    While,
+    Wire,
+)
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterable, Iterator
-
-    from rosetta_jit.kernel.ir import Block, Expr, Stmt
 
 
 class NotInParts(Exception):  # noqa: N818 - no error: such an encoder is printed otherwise

@@ -8,16 +8,11 @@ length      let size = get i64 lane 14[n].0         measured before; behind the 
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
 
-from rosetta_jit.kernel.ir import Assign, Binary, Call, Compare, Const, Expect, Get, Let, Local, Place, Var
+from rosetta_jit.kernel.ir import Assign, Binary, Block, Call, Compare, Const, Expect, Expr, Get, Let, Local, Place, Site, Stmt, Var
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from rosetta_jit.kernel.ir import Block, Expr, Site, Stmt
 
 CHANGED = "the holder changed while it was written"
 

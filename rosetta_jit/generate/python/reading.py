@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import groupby
-from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.python.expressions import CODES, expression
-from rosetta_jit.kernel.ir import Binary, Const, IsText, Wire
-from rosetta_jit.model.layout import Number
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.generate.python.expressions import Scope
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.model.layout import Slot
+from rosetta_jit.generate.python.expressions import CODES, Scope, expression
+from rosetta_jit.kernel.ir import Binary, Const, Expr, IsText, Wire
+from rosetta_jit.model.layout import Number, Slot
 
 SOME = 100
 """Numbers of an array from which on a view of them is quicker than the struct module."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.backends.base import Writer
-from rosetta_jit.generate.origins import origin_of
+from rosetta_jit.generate.origins import Origin, origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.expressions import CODES, Scope, expression, location, view_name
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
@@ -15,13 +16,8 @@ from rosetta_jit.generate.python.reading import numbers_read, takes_text
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import mul, type_of
+from rosetta_jit.model.layout import Layout
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from rosetta_jit.generate.origins import Origin
-    from rosetta_jit.model.layout import Layout
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,24 +5,21 @@ What arrays hold that several wires fill, and which fields are there, stays in r
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Writer
 from rosetta_jit.generate.python.classes import member_names
-from rosetta_jit.generate.shares import changed_lanes, within
-from rosetta_jit.generate.unit import wire_of
+from rosetta_jit.generate.shares import Ways, changed_lanes, within
+from rosetta_jit.generate.unit import Role, Unit, wire_of
+from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.model.layout import Row
 from rosetta_jit.model.types import Optional, Struct
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.python.making import Make
     from rosetta_jit.generate.python.statements import Attempt
-    from rosetta_jit.generate.shares import Ways
-    from rosetta_jit.generate.unit import Role, Unit
-    from rosetta_jit.kernel.ir import Kernel
 
 
 def wires_of(unit: Unit) -> dict[str, Role]:

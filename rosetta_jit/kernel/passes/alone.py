@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Capacity, Compare, Expect, Failure, Local
+from rosetta_jit.kernel.ir import Binary, Block, Capacity, Compare, Expect, Expr, Failure, Kernel, Local, Routine
 from rosetta_jit.kernel.passes.fold import TRUE, folded
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
 from rosetta_jit.kernel.terms import BEGIN, ROW, index
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Block, Expr, Kernel, Routine
 
 KNOWN = {BEGIN.name: index(0), ROW.name: index(0)}
 

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.arithmetic import FLOATS, constant, to_bytes
-from rosetta_jit.kernel.passes.affine import Affine, rounds_of
+from rosetta_jit.kernel.passes.affine import Affine, Rounds, rounds_of
 from rosetta_jit.kernel.passes.fold import FALSE, TRUE, folded
 from rosetta_jit.kernel.rewrite import reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import index, mul, split, type_of
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.passes.affine import Rounds
 
 Move = ir.Copy | ir.Fill
 

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
-from rosetta_jit.kernel.ir import If
+from rosetta_jit.kernel.ir import Block, If, Kernel, Stmt
 from rosetta_jit.kernel.proof.verify import settled
 from rosetta_jit.kernel.rewrite import with_blocks, with_bodies
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.kernel.ir import Block, Kernel, Stmt
 
 
 def drop(kernel: Kernel) -> Kernel:

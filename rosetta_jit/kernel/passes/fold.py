@@ -7,20 +7,15 @@ What is folded must not lose the bits of a NaN nor an obligation that would have
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from rosetta_jit.kernel import arithmetic
-from rosetta_jit.kernel.arithmetic import FLOATS, limits
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Fits, Local, Select, Unary
+from rosetta_jit.kernel.arithmetic import FLOATS, Value, limits
+from rosetta_jit.kernel.ir import Binary, Compare, Comparison, Const, Convert, Expr, Fits, Local, Scalar, Select, Unary
 from rosetta_jit.kernel.terms import add, type_of
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.kernel.arithmetic import Value
-    from rosetta_jit.kernel.ir import Comparison, Scalar
 
 COMMUTATIVE = frozenset({"add", "mul", "and", "or", "xor"})
 OPPOSITE: dict[str, Comparison] = {"eq": "ne", "ne": "eq", "lt": "ge", "ge": "lt", "gt": "le", "le": "gt"}

@@ -7,19 +7,32 @@ needs no rows either.
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterable
 from functools import partial
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import WIDTH, Advance, Capacity, Copy, Fill, Get, HostCall, IsText, Nearest, Place, Reserve, SetField, Used
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Address,
+    Advance,
+    Block,
+    Capacity,
+    Copy,
+    Fill,
+    Get,
+    HostCall,
+    IsText,
+    Kernel,
+    Nearest,
+    Place,
+    Reserve,
+    SetField,
+    Stmt,
+    Used,
+)
 from rosetta_jit.kernel.rewrite import with_blocks, with_bodies
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rosetta_jit.kernel.ir import Address, Block, Kernel, Stmt
 
 
 @dataclass(frozen=True, slots=True)

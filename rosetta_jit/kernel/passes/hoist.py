@@ -7,18 +7,13 @@ up across everything but a Return and what it reads.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Block, Compare, Const, Expect, Failure, Fits, For, If, Local, Part, Require, Site
-from rosetta_jit.kernel.passes.affine import rounds_of
+from rosetta_jit.kernel.ir import Block, Compare, Const, Expect, Expr, Failure, Fits, For, If, Kernel, Local, Part, Require, Site, Stmt
+from rosetta_jit.kernel.passes.affine import Rounds, rounds_of
 from rosetta_jit.kernel.passes.fold import TRUE, folded
 from rosetta_jit.kernel.passes.widen import widened
 from rosetta_jit.kernel.rewrite import may_return, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import add, index, mul
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr, Kernel, Stmt
-    from rosetta_jit.kernel.passes.affine import Rounds
 
 
 def hoist(kernel: Kernel) -> Kernel:

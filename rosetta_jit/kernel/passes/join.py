@@ -6,7 +6,7 @@ is left as it is: LLVM does it for several of them at once.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.limits import MAX_PIECE, MAX_PIECES
@@ -14,9 +14,6 @@ from rosetta_jit.kernel.rewrite import reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.shape import expressions_of, subexpressions
 from rosetta_jit.kernel.terms import add, index, split, type_of
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from operator import is_
-from typing import TYPE_CHECKING
 
+from rosetta_jit.kernel.ir import Block, Kernel
 from rosetta_jit.kernel.passes.bulk import bulk, bulk_of_bytes, group
 from rosetta_jit.kernel.passes.drop import drop, without
 from rosetta_jit.kernel.passes.forget import forget
@@ -19,9 +19,6 @@ from rosetta_jit.kernel.passes.unroll import unroll
 from rosetta_jit.kernel.proof.less import is_less
 from rosetta_jit.kernel.proof.verify import VerificationError, check_shape, settled, verify
 from rosetta_jit.kernel.shape import is_large
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Block, Kernel
 
 Pass = Callable[["Kernel"], "Kernel"]
 

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Let, Load, Local
+from rosetta_jit.kernel.ir import Block, Expr, Kernel, Let, Load, Local, Stmt
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, substituted, with_blocks, with_bodies, with_expressions
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Block, Expr, Kernel, Stmt
 
 
 def postpone(kernel: Kernel) -> Kernel:

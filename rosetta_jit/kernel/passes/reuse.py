@@ -7,21 +7,35 @@ memory; what was checked of one read says nothing of the next, until both are on
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator, Mapping
 from dataclasses import field
 from itertools import count
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Call, Const, Copy, Expr, Fill, Get, HostCall, Let, Load, Local, Place, SetField, Store, While
+from rosetta_jit.kernel.ir import (
+    Address,
+    Block,
+    Call,
+    Const,
+    Copy,
+    Expr,
+    Fill,
+    Get,
+    HostCall,
+    Kernel,
+    Let,
+    Load,
+    Local,
+    Place,
+    SetField,
+    Stmt,
+    Store,
+    While,
+)
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.shape import blocks_of, bound_names, expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.kernel.ir import Address, Block, Kernel, Stmt
 
 MESSAGE = -1
 """Stands for the message among the numbers of the lanes."""

@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Call, Copy, Fill, For, Get, HostCall, IsText, Local, Place, SetField
+from rosetta_jit.kernel.ir import (
+    Address,
+    Binary,
+    Block,
+    Call,
+    Copy,
+    Expr,
+    Fill,
+    For,
+    Get,
+    HostCall,
+    IsText,
+    Kernel,
+    Local,
+    Place,
+    SetField,
+    Stmt,
+)
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import index, mul
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.kernel.ir import Address, Block, Expr, Kernel, Stmt
 
 
 def sink(kernel: Kernel) -> Kernel:

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Assign, Block, Call, Const, For, HostCall, Let, Var, While
+from rosetta_jit.kernel.ir import Assign, Block, Call, Const, Expr, For, HostCall, Kernel, Let, Stmt, Var, While
 from rosetta_jit.kernel.limits import MAX_UNROLLED_ROUNDS, MAX_UNROLLED_STATEMENTS
 from rosetta_jit.kernel.rewrite import ends, substituted, with_blocks, with_bodies, with_expressions
 from rosetta_jit.kernel.shape import bound_names, statements
 from rosetta_jit.kernel.terms import index
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr, Kernel, Stmt
 
 
 def unroll(kernel: Kernel) -> Kernel:

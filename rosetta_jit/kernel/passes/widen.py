@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Failure, Fits
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Expr, Failure, Fits
+from rosetta_jit.kernel.passes.affine import Affine, Rounds
 from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.kernel.passes.affine import Affine, Rounds
 
 
 @dataclass(frozen=True, slots=True)

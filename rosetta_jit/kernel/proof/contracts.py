@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.kernel.ir import Call, Routine
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.linear import Linear
 from rosetta_jit.kernel.proof.obligations import demand, oblige
@@ -13,7 +14,6 @@ from rosetta_jit.kernel.proof.symbolic import condition, evaluate, unknown
 from rosetta_jit.kernel.rewrite import locals_in
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Call, Routine
     from rosetta_jit.kernel.proof.record import Record
 
 MESSAGE = ("begin", "end")

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
-from rosetta_jit.kernel.ir import WIDTH, Copy, Fill, Place, Reserve, SetField, Store, Wire
+from rosetta_jit.kernel.ir import WIDTH, Advance, Copy, Failure, Fill, HostCall, Place, Reserve, SetField, Store, Wire
 from rosetta_jit.kernel.limits import MAX_ROWS, MAX_USED_TERMS
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import All, Any
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus
 from rosetta_jit.kernel.proof.obligations import demand, oblige
+from rosetta_jit.kernel.proof.scope import Scope
 from rosetta_jit.kernel.proof.symbolic import check_extent, check_field, check_lane, check_wire, evaluate, integer, unknown
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Advance, Failure, HostCall
-    from rosetta_jit.kernel.proof.scope import Scope
 
 
 def failure(scope: Scope, what: Failure) -> None:

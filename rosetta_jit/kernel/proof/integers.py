@@ -6,13 +6,9 @@ of them asks whether the result fits its type: that is an obligation of `symboli
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.kernel.proof.formula import equal
 from rosetta_jit.kernel.proof.linear import Linear, coefficient_of, minus, plus, shifted, times
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.proof.prove import Facts
+from rosetta_jit.kernel.proof.prove import Facts
 
 FACTS_TO_MULTIPLY = 8
 

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.rewrite import may_return, with_blocks, with_bodies
 from rosetta_jit.kernel.shape import blocks_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 
 def is_less(kernel: ir.Kernel, proven: ir.Kernel, known: frozenset[int]) -> bool:

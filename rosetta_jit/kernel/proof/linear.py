@@ -6,12 +6,10 @@ is exact: Python's integers do not wrap.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from math import gcd
-from typing import TYPE_CHECKING, NamedTuple
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from typing import NamedTuple
 
 Terms = tuple[tuple[int, int], ...]
 """(atom, coefficient) pairs, by rising atom, no coefficient zero."""

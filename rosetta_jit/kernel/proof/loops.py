@@ -8,28 +8,21 @@ is to walk all loops in it again: what can hardly hold is not tried.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 
 from rosetta_jit.kernel.arithmetic import FLOATS, limits
-from rosetta_jit.kernel.ir import WIDTH, Advance, Assign, Binary, Const, Convert, If, Let, Local, Select
+from rosetta_jit.kernel.ir import WIDTH, Advance, Assign, Binary, Block, Const, Convert, Expr, If, Let, Local, Select, Stmt
 from rosetta_jit.kernel.limits import MAX_LOOP_ROUNDS
 from rosetta_jit.kernel.proof import claims
-from rosetta_jit.kernel.proof.formula import All, Any
+from rosetta_jit.kernel.proof.formula import All, Any, Formula
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
 from rosetta_jit.kernel.proof.paths import anchors, from_begin, grown, variable
+from rosetta_jit.kernel.proof.scope import Scope, Typed
 from rosetta_jit.kernel.proof.symbolic import linear
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.shape import bound_names, expressions_of, statements
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Iterable, Iterator, Mapping
-
-    from rosetta_jit.kernel.ir import Block, Expr, Stmt
-    from rosetta_jit.kernel.proof.formula import Formula
-    from rosetta_jit.kernel.proof.scope import Scope, Typed
-
 
 ZERO = Linear(0)
 

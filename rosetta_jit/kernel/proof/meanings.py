@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, assert_never, cast
 import z3
 
 from rosetta_jit.kernel.arithmetic import limits
-from rosetta_jit.kernel.proof.formula import All, Any
+from rosetta_jit.kernel.ir import Scalar
+from rosetta_jit.kernel.proof.formula import All, Any, Formula
 from rosetta_jit.kernel.proof.linear import Linear
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Scalar
-    from rosetta_jit.kernel.proof.formula import Formula
     from rosetta_jit.kernel.proof.record import RecordedFacts
 
 BITS = 160

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
 
 from rosetta_jit.kernel.proof import claims
-from rosetta_jit.kernel.proof.formula import All, Any, equal
+from rosetta_jit.kernel.proof.formula import All, Any, Formula, equal
 from rosetta_jit.kernel.proof.linear import Linear
-from rosetta_jit.kernel.proof.record import Premise, chain
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rosetta_jit.kernel.proof.formula import Formula
-    from rosetta_jit.kernel.proof.record import Record
-    from rosetta_jit.kernel.proof.scope import Arrival, Scope, Typed, Value
+from rosetta_jit.kernel.proof.record import Premise, Record, chain
+from rosetta_jit.kernel.proof.scope import Arrival, Scope, Typed, Value
 
 
 def meet(

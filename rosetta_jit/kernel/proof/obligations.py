@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.proof.claims import Claim
-    from rosetta_jit.kernel.proof.formula import Formula
-    from rosetta_jit.kernel.proof.scope import Scope
+from rosetta_jit.kernel.proof.claims import Claim
+from rosetta_jit.kernel.proof.formula import Formula
+from rosetta_jit.kernel.proof.scope import Scope
 
 
 class UnprovenError(AssertionError):

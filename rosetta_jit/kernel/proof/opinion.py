@@ -6,23 +6,19 @@ operations stand for (`meanings`). Facts that the proof itself infers are premis
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import field
 from itertools import takewhile
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import z3
 
 from rosetta_jit.kernel.limits import MAX_Z3_STEPS
 from rosetta_jit.kernel.proof import claims
+from rosetta_jit.kernel.proof.formula import Formula
 from rosetta_jit.kernel.proof.meanings import Terms, atoms_in
-from rosetta_jit.kernel.proof.record import chain
+from rosetta_jit.kernel.proof.record import Obligation, Premise, RecordedFacts, chain
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from rosetta_jit.kernel.proof.formula import Formula
-    from rosetta_jit.kernel.proof.record import Obligation, Premise, RecordedFacts
 
 Verdict = Literal["proved", "refuted", "unknown"]
 

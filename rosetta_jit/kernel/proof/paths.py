@@ -6,21 +6,16 @@ the message, its value before), as far as every path shows them.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from rosetta_jit.kernel.arithmetic import limits
+from rosetta_jit.kernel.ir import Scalar
 from rosetta_jit.kernel.limits import MAX_POSITION, MAX_ROWS
 from rosetta_jit.kernel.proof import claims
+from rosetta_jit.kernel.proof.formula import Formula
 from rosetta_jit.kernel.proof.linear import Linear, coefficient_of, minus, plus, shifted, times
-from rosetta_jit.kernel.proof.scope import Arrival
+from rosetta_jit.kernel.proof.scope import Arrival, Scope, Typed
 from rosetta_jit.kernel.proof.symbolic import linear
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.kernel.ir import Scalar
-    from rosetta_jit.kernel.proof.formula import Formula
-    from rosetta_jit.kernel.proof.scope import Scope, Typed
 
 BEGIN_ATOM = 0
 """The first atom of every scope."""

@@ -7,22 +7,15 @@ arithmetic that is not linear, and where paths meet. What is derived is an oblig
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Hashable, Iterable, Iterator
 
-from rosetta_jit.kernel.ir import Expect, HostCall, Require
+from rosetta_jit.kernel.ir import Expect, HostCall, Require, Site, Stmt
 from rosetta_jit.kernel.proof import claims
-from rosetta_jit.kernel.proof.formula import All, equal
+from rosetta_jit.kernel.proof.claims import Claim
+from rosetta_jit.kernel.proof.formula import All, Formula, equal
 from rosetta_jit.kernel.proof.linear import Linear, minus, shifted, times
-from rosetta_jit.kernel.proof.prove import Facts
+from rosetta_jit.kernel.proof.prove import Facts, Procedure
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterable, Iterator
-
-    from rosetta_jit.kernel.ir import Site, Stmt
-    from rosetta_jit.kernel.proof.claims import Claim
-    from rosetta_jit.kernel.proof.formula import Formula
-    from rosetta_jit.kernel.proof.prove import Procedure
 
 
 @dataclass(frozen=True, slots=True)

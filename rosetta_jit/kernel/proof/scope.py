@@ -6,15 +6,14 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.arithmetic import limits
+from rosetta_jit.kernel.ir import Scalar
 from rosetta_jit.kernel.limits import MAX_POSITION, MAX_ROWS
 from rosetta_jit.kernel.proof.formula import All, Any
-from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
+from rosetta_jit.kernel.proof.linear import Linear, Terms, minus, plus, shifted, times
 from rosetta_jit.kernel.proof.prove import Facts
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Scalar
-    from rosetta_jit.kernel.proof.linear import Terms
     from rosetta_jit.kernel.proof.record import Premise, Record
 
 Value = Linear | bool | None | All | Any

@@ -6,6 +6,7 @@ survives where paths meet), `contracts` (routines), `shape` (the text). A failed
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import field
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, assert_never
@@ -15,22 +16,17 @@ from rosetta_jit.kernel.arithmetic import limits
 from rosetta_jit.kernel.limits import MAX_PROOFS, MAX_TERMS
 from rosetta_jit.kernel.printer import statement_text
 from rosetta_jit.kernel.proof import claims, contracts, effects, paths
-from rosetta_jit.kernel.proof.formula import All, equal, negated
+from rosetta_jit.kernel.proof.formula import All, Formula, equal, negated
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted
-from rosetta_jit.kernel.proof.loops import ZERO, Loop, bounds, needless, walk_rounds
+from rosetta_jit.kernel.proof.loops import ZERO, Guess, Loop, bounds, needless, walk_rounds
 from rosetta_jit.kernel.proof.obligations import UnprovenError, demand, oblige
-from rosetta_jit.kernel.proof.scope import entry
+from rosetta_jit.kernel.proof.scope import Scope, Typed, entry
 from rosetta_jit.kernel.proof.symbolic import condition, evaluate, integer, linear
 from rosetta_jit.kernel.shape import shape_error
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rosetta_jit.kernel.proof.formula import Formula
-    from rosetta_jit.kernel.proof.loops import Guess
     from rosetta_jit.kernel.proof.record import Record
-    from rosetta_jit.kernel.proof.scope import Scope, Typed
 
 
 class VerificationError(AssertionError):

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.language.algebra.polynomial import TooComplexError, polynomial_of
-from rosetta_jit.language.algebra.quotients import NOTHING, are_same, mentions, only_atom, reduced
+from rosetta_jit.language.algebra.quotients import NOTHING, Digit, Fact, Facts, are_same, mentions, only_atom, reduced
 from rosetta_jit.language.conversions import bare
 from rosetta_jit.language.typed import (
     BOOL,
@@ -15,23 +15,19 @@ from rosetta_jit.language.typed import (
     Call,
     Const,
     Convert,
+    Expr,
     Has,
     IndexStep,
     LenOf,
     Local,
     Nearest,
     StateVariable,
+    Step,
     Unary,
 )
 from rosetta_jit.language.walk import operands, parts, renamed
+from rosetta_jit.model.expr import Side
 from rosetta_jit.model.types import Bool, Int
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rosetta_jit.language.algebra.quotients import Digit, Fact, Facts
-    from rosetta_jit.language.typed import Expr, Step
-    from rosetta_jit.model.expr import Side
 
 Ranges = tuple[tuple["Expr", "Expr"], ...]
 """Starts and stops of the loops around a rule."""

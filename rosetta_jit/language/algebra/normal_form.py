@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.language import typed
 from rosetta_jit.language.algebra.typed_bits import digits
 from rosetta_jit.language.walk import placed, rebuilt, renamed
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Bytes, String
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 
 def normal(rules: tuple[typed.Rule, ...], names: dict[str, typed.Expr] | None = None) -> tuple[typed.Rule, ...]:

@@ -9,8 +9,9 @@ quotient, a call. Its arguments are polynomials again, so that a substitution re
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import field
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe
@@ -20,9 +21,6 @@ from rosetta_jit.language.places import shown_shape
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Bool, Int
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 
 class TooComplexError(Exception):

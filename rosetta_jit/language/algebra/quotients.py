@@ -8,18 +8,24 @@ nanoseconds(x, y) = x · 10⁹ + y     of which 0 ≤ y < 10⁹ is checked
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from rosetta_jit.language.algebra.polynomial import BIT, ONE, Atom, Polynomial, add, multiply, number, product, shown_atom, subtract
+from rosetta_jit.language.algebra.polynomial import (
+    BIT,
+    ONE,
+    Atom,
+    Monomial,
+    Polynomial,
+    add,
+    multiply,
+    number,
+    product,
+    shown_atom,
+    subtract,
+)
 from rosetta_jit.language.limits import MAX_SUBSTITUTED
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from rosetta_jit.language.algebra.polynomial import Monomial
-
 
 SECOND = 10**9
 

@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.catalogue import layouts as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.limits import MAX_KNOWN_COUNT
-from rosetta_jit.model.expr import Binary, Call, Literal
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.expr import Expr, Operator
-
+from rosetta_jit.model.expr import Binary, Call, Expr, Literal, Operator
 
 ZERO, ONE = Literal(0), Literal(1)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING
@@ -10,18 +11,13 @@ from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.language.arrays.counts import ONE, ZERO, LayoutError, minus, over, plus, times
 from rosetta_jit.language.arrays.layouts import PADDED, SIZES, Axis, NumberType, View
 from rosetta_jit.language.arrays.parts import substituted
-from rosetta_jit.model.expr import Binary, Call, Choice, Index, Literal, Name, Path
-from rosetta_jit.model.mapping import Assign, For
+from rosetta_jit.model.expr import Binary, Call, Choice, Expr, Index, Literal, Name, Path
+from rosetta_jit.model.mapping import Assign, Assignment, For, Rule
 from rosetta_jit.startup.dataclass import dataclass
 
 SHORT = 16
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Assignment, Rule
-
     Inside = Callable[[list[Expr], int], tuple[Rule, ...]]
 
 Padding = tuple["Expr", "Expr", "Expr"]

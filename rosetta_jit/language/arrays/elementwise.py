@@ -7,44 +7,33 @@ rejected. Rules for fields of the elements of one array share a loop.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import count
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import fields
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.catalogue import texts as text_words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.arrays.counts import ONE, LayoutError, times
-from rosetta_jit.language.arrays.element_loops import Moves, element_of
+from rosetta_jit.language.arrays.element_loops import Moves, Padding, element_of
 from rosetta_jit.language.arrays.filters import filter_of, is_filtered, joined
-from rosetta_jit.language.arrays.layouts import ARGUMENTS, NUMBER_BYTES, PADDED, number_type, view_of
+from rosetta_jit.language.arrays.layouts import ARGUMENTS, NUMBER_BYTES, PADDED, NumberType, View, number_type, view_of
 from rosetta_jit.language.arrays.orders import is_of_image
 from rosetta_jit.language.arrays.parts import has_each, is_many, open_parts, sources_in, substituted
 from rosetta_jit.language.conversions import is_single, same, widens
 from rosetta_jit.language.function import functions
 from rosetta_jit.language.limits import MAX_MADE
-from rosetta_jit.language.scope import element_type, members_of
-from rosetta_jit.language.typed import INT64, Const, FieldStep, IndexStep, Local, Place
+from rosetta_jit.language.scope import Scope, element_type, members_of
+from rosetta_jit.language.typed import INT64, Const, FieldStep, IndexStep, Local, Place, Step
 from rosetta_jit.language.units.unit_at import unit_at
-from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Literal, Member, Name, Path
-from rosetta_jit.model.mapping import Arranged, Assign, For, Reject, SetLength, Via, When
+from rosetta_jit.model.expr import Binary, Call, Choice, Each, Expr, Index, Len, Literal, Member, Name, Path
+from rosetta_jit.model.mapping import Arranged, Assign, Assignment, For, Reject, Rule, SetLength, Via, When
 from rosetta_jit.model.printer import show_expr
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Type, Union
 from rosetta_jit.model.walk import every_rule, parts
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.arrays.element_loops import Padding
-    from rosetta_jit.language.arrays.layouts import NumberType, View
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Step
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Assignment, Rule
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
 
 SINGLE = (Bool, Enum, Float, Int, Struct)
 """Types of one value."""

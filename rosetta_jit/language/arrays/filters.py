@@ -6,22 +6,16 @@ Rules with the same condition keep the same elements. Those for fields of the el
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.language.arrays.counts import ZERO, LayoutError
 from rosetta_jit.language.arrays.element_loops import element_at
-from rosetta_jit.language.arrays.layouts import view_of
+from rosetta_jit.language.arrays.layouts import View, view_of
 from rosetta_jit.language.arrays.parts import has_each, open_parts, sources_in, substituted
-from rosetta_jit.model.expr import Call, Each, Index, Len, Name, Path
-from rosetta_jit.model.mapping import For
+from rosetta_jit.model.expr import Call, Each, Expr, Index, Len, Name, Path
+from rosetta_jit.model.mapping import Assignment, For, Rule
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.language.arrays.layouts import View
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Assignment, Rule
 
 FILTERED = "where"
 """What stands for the length of an array that a filter fills: no function that a mapping can call."""

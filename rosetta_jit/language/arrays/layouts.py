@@ -26,17 +26,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import reduce
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.language.arrays.counts import ONE, ZERO, LayoutError, folded, minus, over, plus, times
 from rosetta_jit.language.folding import folded as literal
 from rosetta_jit.language.limits import MAX_LISTED
-from rosetta_jit.model.expr import Binary, Call, Each, Len, List, Literal, Name, Path, Pick, Slice
+from rosetta_jit.model.expr import Binary, Call, Each, Expr, Len, List, Literal, Name, Path, Pick, Slice, Step
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.expr import Expr, Step
 
 PADDED = "padded_rows"
 NUMBERS, NUMBER_BYTES = "numbers", "number_bytes"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeGuard
 
@@ -11,17 +12,13 @@ from rosetta_jit.language.arrays.layouts import ARGUMENTS, NUMBER_BYTES, NUMBERS
 from rosetta_jit.language.conversions import as_int64
 from rosetta_jit.language.function import written
 from rosetta_jit.language.image_orders import COLOURS, COUNT, ORDERED
-from rosetta_jit.language.typed import INT64, Call, Const
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.language.typed import INT64, Call, Const, Expr
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Bool, Bytes, String
 from rosetta_jit.model.walk import rebuilt
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Expr
-
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
 
 BYTES = model.Path("wire", (model.Member(COUNT),))

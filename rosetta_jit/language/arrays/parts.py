@@ -5,19 +5,13 @@ A reduction, `sum(.a[])`, is one value: the `[]` within it are its own, and no r
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS
 from rosetta_jit.language.function import written
-from rosetta_jit.model.expr import Call, Coerced, Each, Index, Len, Path, Pick, Slice
+from rosetta_jit.model.expr import Call, Coerced, Each, Expr, Index, Len, Path, Pick, Slice
 from rosetta_jit.model.walk import parts, rebuilt
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.model.expr import Expr
-
 
 NUMBER = Call("index", ())
 """The number of the element that a rule for each of them is at."""

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, KEEP_LENGTH
 from rosetta_jit.language.both_ways.inverse import fields_in
-from rosetta_jit.model.expr import Call, Coerced, Each, Index, Len, List, Member, Path
-from rosetta_jit.model.walk import path_of, rebuilt
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.walk import Field
+from rosetta_jit.model.expr import Call, Coerced, Each, Expr, Index, Len, List, Member, Path
+from rosetta_jit.model.walk import Field, path_of, rebuilt
 
 
 def equal_lengths(place: Field | List, value: Expr) -> tuple[Len, Len] | None:

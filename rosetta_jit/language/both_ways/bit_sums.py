@@ -7,23 +7,19 @@ to fit its bits (`language.both_ways.inverse_parts`). Fields that other rules kn
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Set
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.inverse import fields_in
 from rosetta_jit.language.masks import MOST_BITS
-from rosetta_jit.model.expr import Binary, Literal, Path
-from rosetta_jit.model.mapping import For, Relation, When
-from rosetta_jit.model.walk import every_rule, expressions_of, fields_of, parts, rebuilt
+from rosetta_jit.model.expr import Binary, Expr, Literal, Path
+from rosetta_jit.model.mapping import For, Relation, Rule, When
+from rosetta_jit.model.walk import Field, every_rule, expressions_of, fields_of, parts, rebuilt
+from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Set
-
     from rosetta_jit.language.both_ways.bits import ConstantOf
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule
-    from rosetta_jit.model.walk import Field
-    from rosetta_jit.source import Span
 
 
 def with_sums(rules: tuple[Rule, ...], is_completed: Callable[[Field], bool], constant_of: ConstantOf) -> tuple[Rule, ...]:

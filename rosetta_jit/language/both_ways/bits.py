@@ -6,23 +6,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.masks import MOST_BITS, lowest_of_run
-from rosetta_jit.model.expr import Binary, Call, Len, Literal, Path, Unary
-from rosetta_jit.model.mapping import For, Relation, When
+from rosetta_jit.model.expr import Binary, Call, Expr, Len, Literal, Path, Unary
+from rosetta_jit.model.mapping import For, Relation, Rule, When
 from rosetta_jit.model.types import Int
 from rosetta_jit.model.walk import rebuilt
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rosetta_jit.language.both_ways.inverse import TypeOf
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule
-    from rosetta_jit.source import Span
 
     ConstantOf = Callable[[Expr], int | None]
     """The integer that a constant expression is; None of others."""

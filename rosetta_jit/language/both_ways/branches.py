@@ -13,14 +13,12 @@ from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in,
 from rosetta_jit.language.both_ways.presence import may_be_absent, presence_between
 from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.limits import MAX_TESTED
-from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
-from rosetta_jit.model.mapping import Reject, Relation, When
+from rosetta_jit.model.expr import Binary, Call, Choice, Expr, Len, Literal, Name, Path, Unary
+from rosetta_jit.model.mapping import Reject, Relation, Rule, When
 from rosetta_jit.model.walk import Field, fields_of, rebuilt
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule
 
 
 Constants = frozenset["Literal | Name"]

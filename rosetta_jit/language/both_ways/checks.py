@@ -6,17 +6,15 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.folding import FALSE, TRUE
-from rosetta_jit.model.expr import Binary, Coerced, Literal, Path, Unary
-from rosetta_jit.model.mapping import Reject, When
+from rosetta_jit.model.expr import Binary, Coerced, Expr, List, Literal, Path, Unary
+from rosetta_jit.model.mapping import Reject, Relation, Rule, When
 from rosetta_jit.model.printer import show_expr
+from rosetta_jit.model.walk import Field
+from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse_parts import Digit
     from rosetta_jit.language.both_ways.knowledge import Beside
-    from rosetta_jit.model.expr import Expr, List
-    from rosetta_jit.model.mapping import Relation, Rule
-    from rosetta_jit.model.walk import Field
-    from rosetta_jit.source import Span
 
 
 def checks_of(beside: Beside) -> tuple[Rule, ...]:

@@ -6,24 +6,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.named_fields import is_among, set_by
-from rosetta_jit.model.expr import Binary, Index, Len, Literal, Path, Unary
-from rosetta_jit.model.mapping import Assign, Ignore, Reject, Relation, SameNames, SetLength, When
+from rosetta_jit.model.expr import Binary, Expr, Index, Len, Literal, Path, Unary
+from rosetta_jit.model.mapping import Assign, Assignment, Ignore, Reject, Relation, Rule, SameNames, SetLength, When
 from rosetta_jit.model.types import Array, Bool, Float
-from rosetta_jit.model.walk import every_rule, fields_of, names_of, parts, path_of
+from rosetta_jit.model.walk import Field, every_rule, fields_of, names_of, parts, path_of
+from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.knowledge import Knowledge
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Assignment, Rule
-    from rosetta_jit.model.walk import Field
-    from rosetta_jit.source import Span
 
     Setting = Assignment | SetLength[Path, Expr]
 

@@ -6,34 +6,31 @@ block.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.both_ways.bit_sums import with_sums
 from rosetta_jit.language.both_ways.bits import Bits
 from rosetta_jit.language.both_ways.checks import checks_of
 from rosetta_jit.language.both_ways.demanded import demanded, known_to_pack
 from rosetta_jit.language.both_ways.inverse import condition_in
+from rosetta_jit.language.both_ways.knowledge import Beside
 from rosetta_jit.language.both_ways.packing import Packing
 from rosetta_jit.language.both_ways.presence import with_flags
 from rosetta_jit.language.groups import component
 from rosetta_jit.language.limits import MAX_CONDITIONS
-from rosetta_jit.model.expr import Len, List, Path
-from rosetta_jit.model.mapping import Arranged, Assign, For, Relation, SameNames, SetLength, When
+from rosetta_jit.model import mapping as model
+from rosetta_jit.model.expr import Expr, Len, List, Path
+from rosetta_jit.model.mapping import Arranged, Assign, For, Relation, Rule, SameNames, SetLength, Via, When
 from rosetta_jit.model.walk import every_rule
+from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.both_ways.bits import ConstantOf
     from rosetta_jit.language.both_ways.inverse import TypeOf
-    from rosetta_jit.language.both_ways.knowledge import Beside
-    from rosetta_jit.model import mapping as model
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule, Via
-    from rosetta_jit.source import Span
 
 
 def derive(mapping: model.Mapping, type_of: TypeOf, constant_of: ConstantOf, problems: list[Diagnostic], depth: int = 0) -> model.Mapping:

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language.both_ways.inverse import CONVERSIONS, Solution, condition_in, fields_in, may_round, named, solve
 from rosetta_jit.language.both_ways.inverse_parts import Digit, until
 from rosetta_jit.language.folding import folded
-from rosetta_jit.model.expr import Binary, Call, Literal, Nearest
+from rosetta_jit.model.expr import Binary, Call, Expr, Literal, Nearest
+from rosetta_jit.model.mapping import Relation
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 from rosetta_jit.model.walk import fields_of, parts
 from rosetta_jit.startup.dataclass import dataclass
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.knowledge import Loops
     from rosetta_jit.language.both_ways.together import Related
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Relation
 
 BEYOND = 1 << 63
 

@@ -8,11 +8,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.model.mapping import Mapping
+
 if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.both_ways.bits import ConstantOf
     from rosetta_jit.language.both_ways.inverse import TypeOf
-    from rosetta_jit.model.mapping import Mapping
 
 
 def in_each_direction(mapping: Mapping, type_of: TypeOf, constant_of: ConstantOf, problems: list[Diagnostic]) -> Mapping:

@@ -11,15 +11,14 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.inverse import NoInverseError, Solution, fields_in, solve
 from rosetta_jit.language.both_ways.inverse_parts import until
-from rosetta_jit.model.expr import Call
+from rosetta_jit.model.expr import Call, Expr
+from rosetta_jit.model.mapping import Relation
 from rosetta_jit.model.walk import fields_of, parts, rebuilt
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.together import Related
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Relation
 
 MEASURES = ("image_width", "image_height", "image_channels")
 

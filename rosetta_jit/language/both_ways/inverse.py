@@ -13,27 +13,21 @@ undone. Arrays are in `language.arrays.layouts`, and expressions of several fiel
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, put_back, rounded_bytes
 from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.function import SEVERAL, Affine, ByType, Function, written
-from rosetta_jit.language.groups import arguments_of, component, function_of
+from rosetta_jit.language.groups import GroupFunction, arguments_of, component, function_of
 from rosetta_jit.language.operators import form_of, rounds, why_lost
-from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Given, Item, Len, List, Literal, Name, Nearest, Path, Unary
-from rosetta_jit.model.types import Float, Int, String
-from rosetta_jit.model.walk import parts, rebuilt, side_of
+from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Expr, Given, Item, Len, List, Literal, Name, Nearest, Path, Unary
+from rosetta_jit.model.types import Float, Int, String, Type
+from rosetta_jit.model.walk import Field, parts, rebuilt, side_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rosetta_jit.language.groups import GroupFunction
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.model.walk import Field
-
     TypeOf = Callable[[Expr], Type | None]
     """The type of an expression, that of each element where it has a `[]`; None where it has none, which is reported elsewhere."""
 

@@ -16,6 +16,7 @@ The terms of a sum are digits: what stands behind one must be less than its fact
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -23,20 +24,16 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.both_ways.inverse import CONVERSIONS, NoInverseError, Solution, fields_in, nearest, solve, undone_group
 from rosetta_jit.language.folding import folded
-from rosetta_jit.language.function import functions, written
+from rosetta_jit.language.function import Function, functions, written
 from rosetta_jit.language.groups import component, function_of
-from rosetta_jit.model.expr import Binary, Call, Choice, Len, List, Literal, Path
+from rosetta_jit.model.expr import Binary, Call, Choice, Expr, Len, List, Literal, Path
 from rosetta_jit.model.types import Float, Int
 from rosetta_jit.model.walk import parts, rebuilt
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
     from rosetta_jit.language.both_ways.inverse import TypeOf
-    from rosetta_jit.language.function import Function
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.source import Span
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,15 +11,14 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.limits import MAX_PARTS
-from rosetta_jit.model.expr import Call, Coerced, Each, Expr, Index, Keyed, Len, Name, Path
+from rosetta_jit.model.expr import Call, Coerced, Each, Expr, Index, Keyed, Len, Name, Path, Side
+from rosetta_jit.model.mapping import Relation
 from rosetta_jit.model.walk import Field, names_of, parts, path_of, rebuilt, renamed, with_indices
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.inverse_parts import Digit
-    from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.mapping import Relation
 
 
 @dataclass(frozen=True, slots=True)

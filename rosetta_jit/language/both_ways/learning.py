@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.array_relations import equal_lengths
@@ -16,17 +17,13 @@ from rosetta_jit.language.both_ways.signal_relations import frames_of, told_in_a
 from rosetta_jit.language.both_ways.text_parts import numbers_of_texts
 from rosetta_jit.language.function import Affine, written
 from rosetta_jit.language.operators import form_of
-from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
-from rosetta_jit.model.mapping import Arranged, For, Relation, When
+from rosetta_jit.model.expr import Binary, Call, Choice, Expr, Len, Literal, Name, Path, Unary
+from rosetta_jit.model.mapping import Arranged, For, Relation, Rule, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.walk import Field, fields_of, parts, path_of, rebuilt
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
     from rosetta_jit.language.both_ways.together import Together
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule
 
 
 def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops, is_assigned: Callable[[Field], bool]) -> None:

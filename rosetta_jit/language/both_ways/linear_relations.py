@@ -10,6 +10,7 @@ integer of which floats were computed is the nearest one, and packing checks the
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from math import isfinite, lcm
 from typing import TYPE_CHECKING
@@ -17,18 +18,15 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language.both_ways.inverse import NoInverseError, Solution, fields_in, nearest, step
 from rosetta_jit.language.folding import folded
 from rosetta_jit.language.limits import MAX_TOGETHER
-from rosetta_jit.model.expr import Binary, Call, Len, Literal, Path, Unary
+from rosetta_jit.model.expr import Binary, Call, Expr, Len, Literal, Operator, Path, Unary
 from rosetta_jit.model.types import Float, Int
+from rosetta_jit.model.walk import Field
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.knowledge import Loops
-    from rosetta_jit.model.expr import Expr, Operator
-    from rosetta_jit.model.walk import Field
-    from rosetta_jit.source import Span
 
     Factor = Fraction | Expr
     """What a field is multiplied by: a constant, or an expression that packing has."""

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.language.both_ways.inverse import fields_in
-from rosetta_jit.model.mapping import Assign, Default, Relation, SetLength, When
-from rosetta_jit.model.walk import every_rule, names_of, path_of
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.mapping import Rule
-    from rosetta_jit.model.walk import Field
+from rosetta_jit.model.mapping import Assign, Default, Relation, Rule, SetLength, When
+from rosetta_jit.model.walk import Field, every_rule, names_of, path_of
 
 
 def is_among(place: Field, fields: frozenset[tuple[str, ...]]) -> bool:

@@ -8,12 +8,14 @@ them.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
 from rosetta_jit.catalogue import groups, layouts
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.both_ways.array_relations import with_layouts
 from rosetta_jit.language.both_ways.branches import asked_of_holder, facts_of, test_between
 from rosetta_jit.language.both_ways.checks import agreement, checks_of, guard
@@ -27,7 +29,7 @@ from rosetta_jit.language.function import written
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_BLOCKS
 from rosetta_jit.model.element_rules import ignored_elements, ignoring
-from rosetta_jit.model.expr import Binary, Call, Coerced, Item, Len, List, Literal, Path
+from rosetta_jit.model.expr import Binary, Call, Coerced, Expr, Item, Len, List, Literal, Path
 from rosetta_jit.model.mapping import (
     Arranged,
     Assign,
@@ -37,24 +39,21 @@ from rosetta_jit.model.mapping import (
     Reject,
     Relation,
     Rest,
+    Rule,
     SameNames,
     SetLength,
     SetState,
     Several,
+    Way,
     When,
 )
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.walk import Field, fields_of, parts, path_of
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.both_ways.inverse import TypeOf
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule, Way
-    from rosetta_jit.source import Span
 
 
 NOTHING: Mapping[Field, Expr] = MappingProxyType({})

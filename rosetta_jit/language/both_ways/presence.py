@@ -7,22 +7,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.both_ways.knowledge import key_of
-from rosetta_jit.model.expr import Call, List, Literal, Member, Path, Unary
-from rosetta_jit.model.mapping import Arranged, Default, For, Ignore, Relation, SameNames, When
+from rosetta_jit.language.both_ways.knowledge import Knowledge, Loops, key_of
+from rosetta_jit.model.expr import Call, Expr, List, Literal, Member, Path, Side, Unary
+from rosetta_jit.model.mapping import Arranged, Default, For, Ignore, Relation, Rule, SameNames, When
 from rosetta_jit.model.types import Optional, Struct, Union
 from rosetta_jit.model.walk import fields_of, names_of, parts, path_of, rebuilt
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
     from rosetta_jit.language.both_ways.inverse import TypeOf
-    from rosetta_jit.language.both_ways.knowledge import Knowledge, Loops
-    from rosetta_jit.model.expr import Expr, Side
-    from rosetta_jit.model.mapping import Rule
 
 Names = tuple[str, ...]
 """The fields on the way to a place."""

@@ -5,25 +5,21 @@ Packing writes all bits of the frame: those of no relation are 0. It has as many
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.inverse import NoInverseError, Solution, fields_in, may_round, named, solve
 from rosetta_jit.language.both_ways.inverse_parts import until
-from rosetta_jit.language.signal_bits import MOST_BITS, signal_of
-from rosetta_jit.model.expr import Call, Literal, Nearest
-from rosetta_jit.model.mapping import Reject, Relation, When
+from rosetta_jit.language.signal_bits import MOST_BITS, Signal, signal_of
+from rosetta_jit.model.expr import Call, Expr, Literal, Nearest
+from rosetta_jit.model.mapping import Reject, Relation, Rule, When
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float
 from rosetta_jit.model.walk import fields_of, parts
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.together import Related
-    from rosetta_jit.language.signal_bits import Signal
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule
 
 
 @dataclass(frozen=True, slots=True)

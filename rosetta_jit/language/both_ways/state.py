@@ -7,16 +7,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from operator import is_
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import state as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.model.expr import Name
-from rosetta_jit.model.mapping import For, Reject, SetState, When
+from rosetta_jit.model.mapping import For, Reject, Rule, SetState, When
 from rosetta_jit.model.walk import expressions_of, parts
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.mapping import Rule
 
 
 def without_state(rules: tuple[Rule, ...], names: frozenset[str], problems: list[Diagnostic]) -> tuple[Rule, ...]:

@@ -11,15 +11,14 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.both_ways.inverse import Solution, fields_in, solve
 from rosetta_jit.language.both_ways.inverse_parts import separates, until
-from rosetta_jit.model.expr import Binary, Call, Literal
+from rosetta_jit.model.expr import Binary, Call, Expr, Literal
+from rosetta_jit.model.mapping import Relation
 from rosetta_jit.model.walk import fields_of, parts
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.together import Related
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Relation
 
 
 @dataclass(frozen=True, slots=True)

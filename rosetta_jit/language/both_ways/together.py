@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
+from rosetta_jit.model.expr import Expr
+from rosetta_jit.model.mapping import Relation
+
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import Solution, TypeOf
     from rosetta_jit.language.both_ways.knowledge import Loops
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Relation
 
 Related = tuple["Relation", "Loops"]
 

@@ -8,19 +8,14 @@ those of which it asks whether one has: what it reads of them is 0 until then.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
 
 from rosetta_jit.language import typed
-from rosetta_jit.language.typed import FieldStep
+from rosetta_jit.language.typed import Expr, FieldStep, Place
 from rosetta_jit.language.untouched import asks_arrival, places_read
 from rosetta_jit.language.walk import operands, parts
 from rosetta_jit.model.types import Bool, Float, Int
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from rosetta_jit.language.typed import Expr, Place
 
 Wires = frozenset[str]
 """Some of the wires of a mapping, by their names."""

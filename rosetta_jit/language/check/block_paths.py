@@ -8,19 +8,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import product
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.limits import MAX_CHECKED_WAYS
-from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, SetState, When
-from rosetta_jit.model.types import Optional, Struct, Union
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.typed import Rule, Step
-    from rosetta_jit.model.types import Field
-    from rosetta_jit.source import Span
-
+from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, Rule, SetLength, SetState, Step, When
+from rosetta_jit.model.types import Field, Optional, Struct, Union
+from rosetta_jit.source import Span
 
 Ways = list[tuple["Rule", ...]]
 

@@ -7,33 +7,25 @@ its length and all of its elements. Fields that the schema fixes need no rule.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.algebra.polynomial import Polynomial, TooComplexError, number
 from rosetta_jit.language.check.block_paths import TooManyWaysError, ways
 from rosetta_jit.language.check.coverage import contradictions, contradictions_in_elements, coverage, implied
+from rosetta_jit.language.check.tiling import Run
 from rosetta_jit.language.check.written_places import Write, enter, writes_of
 from rosetta_jit.language.limits import MAX_CHECKED_WAYS
 from rosetta_jit.language.places import field_names, places_in
-from rosetta_jit.language.scope import element_type
-from rosetta_jit.language.typed import Const
-from rosetta_jit.model.expr import Literal
-from rosetta_jit.model.types import Array, Bytes, Map, Optional, Struct, Union
+from rosetta_jit.language.resolve.rules import TypedRules
+from rosetta_jit.language.scope import Message, element_type
+from rosetta_jit.language.typed import Const, Rule
+from rosetta_jit.model.expr import Literal, Side
+from rosetta_jit.model.types import Array, Bytes, Field, Map, Optional, Struct, Type, Union
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.check.tiling import Run
-    from rosetta_jit.language.resolve.rules import TypedRules
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Rule
-    from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.types import Field, Type
-    from rosetta_jit.source import Span
 
 
 def check_complete(rules: TypedRules, target: Message, missing: Missing) -> list[Diagnostic]:

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.algebra.polynomial import Polynomial, TooComplexError, add, number
-from rosetta_jit.language.check.tiling import interval, join, overlap
-from rosetta_jit.language.check.written_places import enter
+from rosetta_jit.language.check.tiling import Run, interval, join, overlap
+from rosetta_jit.language.check.written_places import Write, enter
 from rosetta_jit.language.limits import MAX_ELEMENTS_SHOWN
+from rosetta_jit.language.scope import Message
 from rosetta_jit.language.typed import Const
 from rosetta_jit.model.initial_values import selected, selecting
-from rosetta_jit.model.types import Field, Union
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.check.tiling import Run
-    from rosetta_jit.source import Span
+from rosetta_jit.model.types import Field, Struct, Union
+from rosetta_jit.source import Span
 
 
 def coverage(path: str, runs: list[Run], length: Polynomial, span: Span | None, *, optional: bool) -> list[Diagnostic]:
@@ -74,14 +73,6 @@ def _shown(run: Run) -> str:
 
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.check.tiling import Run
-    from rosetta_jit.language.check.written_places import Write
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.model.types import Struct
-
     Writes = Mapping[str, list[Write]]
 
 

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from rosetta_jit.catalogue import rest as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.places import field_names, shown_place
-from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, SetLength
-from rosetta_jit.model.types import Array, Bytes, Int, Struct
+from rosetta_jit.language.scope import Message
+from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, Place, Rule, SetLength
+from rosetta_jit.model.types import Array, Bytes, Int, Struct, Type
 from rosetta_jit.model.walk import every_rule, fields_of, names_of, path_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Place, Rule
-    from rosetta_jit.model.types import Type
 
 
 def defaulted_counts(rules: tuple[Rule, ...], target: Message) -> list[Diagnostic]:

@@ -6,27 +6,23 @@ that rules which set the discriminator of each spot themselves can stand anywher
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from graphlib import CycleError, TopologicalSorter
 from heapq import heappop, heappush
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
-from rosetta_jit.language.check.discriminators import discriminator_of
+from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.language.check.discriminators import Discriminator, Names, discriminator_of
 from rosetta_jit.language.limits import MAX_LABELS
 from rosetta_jit.language.places import field_names, rules_within, shown_fields
-from rosetta_jit.language.typed import Assign, Const, Default, For, IndexStep, Local, SetLength, When
+from rosetta_jit.language.typed import Assign, Assignment, Const, Default, Expr, For, IndexStep, Local, Place, Rule, SetLength, When
 from rosetta_jit.language.walk import indices
 from rosetta_jit.model.types import Array, Bool, Map
+from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.check.discriminators import Discriminator, Names
-    from rosetta_jit.language.typed import Assignment, Expr, Place, Rule
-    from rosetta_jit.source import Span
-
     Spot = tuple[Names, tuple[Expr, ...]]
     Node = int | tuple[Names, tuple[Expr, ...] | str | int]
 

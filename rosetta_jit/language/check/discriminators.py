@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.language.places import field_names, places_in
-from rosetta_jit.language.scope import element_type
-from rosetta_jit.language.typed import FieldStep
+from rosetta_jit.language.scope import Message, element_type
+from rosetta_jit.language.typed import FieldStep, Place, Rule
 from rosetta_jit.model.initial_values import selecting
-from rosetta_jit.model.types import Array, Bytes, Map, Struct, Union
+from rosetta_jit.model.types import Array, Bytes, Field, Map, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Place, Rule
-    from rosetta_jit.model.types import Field, Type
 
 Names = tuple[str, ...]
 

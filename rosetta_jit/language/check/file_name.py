@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import PurePath
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.limits import MAX_NAME
-from rosetta_jit.model.types import Struct, name_parts
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.mapping import Mapping
-    from rosetta_jit.model.types import Schema
+from rosetta_jit.model.mapping import Mapping
+from rosetta_jit.model.types import Schema, Struct, name_parts
 
 QUALIFIED = re.compile(r"[A-Za-z][A-Za-z0-9_]*(?:\.[A-Za-z][A-Za-z0-9_]*)+")
 

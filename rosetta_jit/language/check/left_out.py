@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 from rosetta_jit.catalogue import check as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.places import shown_names
+from rosetta_jit.language.scope import Message
+from rosetta_jit.language.typed import Rule
 from rosetta_jit.language.untouched import unread, unset
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Rule
-    from rosetta_jit.model.expr import Side
-    from rosetta_jit.source import Span
+from rosetta_jit.model.expr import Side
+from rosetta_jit.source import Span
 
 
 def left_out(

@@ -5,11 +5,14 @@ Imports are read by the front ends, names and types resolved, and each direction
 
 from __future__ import annotations
 
+from collections.abc import Mapping as Dictionary
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.catalogue.check import Block
 from rosetta_jit.catalogue.state import in_used
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError
 from rosetta_jit.language.check.causes import OF_WHOLE, causes, relations_of, rules_first, unclear
 from rosetta_jit.language.check.completeness import Missing, check_complete
@@ -23,37 +26,24 @@ from rosetta_jit.language.check.unequal_lengths import other_lengths
 from rosetta_jit.language.check.unreachable import unreachable
 from rosetta_jit.language.check.wire_shares import wrong_wires
 from rosetta_jit.language.check.wires import message_of_wires
-from rosetta_jit.language.imports.declarations import Imports, merge, reached, read_imports
+from rosetta_jit.language.imports.declarations import Imported, Imports, merge, reached, read_imports
 from rosetta_jit.language.imports.mappings import read_others
-from rosetta_jit.language.imports.search import Reading
+from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parameters.bind import bind, handed_on
-from rosetta_jit.language.parameters.state import NO_STATE, declared
+from rosetta_jit.language.parameters.state import NO_STATE, Declared, declared
 from rosetta_jit.language.resolve.relations import derived
-from rosetta_jit.language.resolve.rules import Resolved, resolve
+from rosetta_jit.language.resolve.rules import Resolved, TypedRules, resolve
+from rosetta_jit.language.scope import Message
+from rosetta_jit.language.typed import Rule, StateVariable
 from rosetta_jit.language.units.hand_factors import wrong_factors
 from rosetta_jit.language.units.side_files import annotated
-from rosetta_jit.model.types import name_parts
+from rosetta_jit.language.uses import Signature, UsableMappings, Use
+from rosetta_jit.model.expr import Side
+from rosetta_jit.model.mapping import Mapping
+from rosetta_jit.model.types import Schema, name_parts
+from rosetta_jit.parsing.idl import FrontEnds
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping as Dictionary
-    from collections.abc import Sequence
-
-    from rosetta_jit.catalogue.check import Block
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.imports.declarations import Imported
-    from rosetta_jit.language.imports.search import SearchPath
-    from rosetta_jit.language.parameters.state import Declared
-    from rosetta_jit.language.resolve.rules import TypedRules
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Rule, StateVariable
-    from rosetta_jit.language.uses import Signature, UsableMappings, Use
-    from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.mapping import Mapping
-    from rosetta_jit.model.types import Schema
-    from rosetta_jit.parsing.idl import FrontEnds
-    from rosetta_jit.source import Span
-
 
 SIDES: tuple[Side, ...] = ("holder", "wire")
 

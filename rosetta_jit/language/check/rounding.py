@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.conversions import describe, is_single, rounded_constant, same, widens
-from rosetta_jit.language.typed import Assign, Binary, Const, Convert, For, Rescale, SetLength, When
+from rosetta_jit.language.typed import Assign, Assignment, Binary, Const, Convert, Expr, For, Place, Rescale, Rule, SetLength, When
 from rosetta_jit.language.units.wholes import inserted
 from rosetta_jit.language.walk import expressions_of, parts
 from rosetta_jit.model.walk import every_rule
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.typed import Assignment, Expr, Place, Rule
 
 
 def rounded(rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.catalogue import check
 from rosetta_jit.catalogue import state as words
-from rosetta_jit.language.typed import For, SetState, When
+from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.language.typed import For, Rule, SetState, When
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.expr import Name
 from rosetta_jit.model.walk import every_rule, expressions_of, parts
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.typed import Rule
-    from rosetta_jit.source import Span
+from rosetta_jit.source import Span
 
 Set = dict[str, "Span | None"]
 """The variables that rules have set, each with the rule."""

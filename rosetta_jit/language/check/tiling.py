@@ -14,14 +14,10 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import field, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
-from rosetta_jit.language.algebra.polynomial import add, multiply, number
+from rosetta_jit.language.algebra.polynomial import Polynomial, add, multiply, number
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.language.algebra.polynomial import Polynomial
-    from rosetta_jit.source import Span
 
 Dimension = tuple["Polynomial", "Polynomial"]
 """Stride and count."""

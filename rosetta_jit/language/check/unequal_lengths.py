@@ -6,19 +6,30 @@ say so: `reject "…" when len(.position) != len(.name)`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from rosetta_jit.catalogue import check as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.places import shown_shape
-from rosetta_jit.language.typed import Assign, Binary, Const, FieldStep, For, IndexStep, LenOf, Local, Reject, SetLength, When
+from rosetta_jit.language.typed import (
+    Assign,
+    Binary,
+    Const,
+    Expr,
+    FieldStep,
+    For,
+    IndexStep,
+    LenOf,
+    Local,
+    Place,
+    Reject,
+    Rule,
+    SetLength,
+    Step,
+    When,
+)
 from rosetta_jit.language.untouched import places_read
 from rosetta_jit.model.types import Array, Bytes
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.typed import Expr, Place, Rule, Step
 
 Steps = tuple["Step", ...]
 Pairs = frozenset[frozenset["Steps"]]

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from rosetta_jit.catalogue import check as words
-from rosetta_jit.model.expr import Choice
+from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.model.expr import Choice, Expr
+from rosetta_jit.model.mapping import Mapping
 from rosetta_jit.model.walk import every_rule, expressions_of, parts
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Mapping
 
 
 def unreachable(mapping: Mapping) -> list[Diagnostic]:

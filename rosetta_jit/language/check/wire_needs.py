@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.language.check.across_wires import (
     Wires,
@@ -13,18 +13,13 @@ from rosetta_jit.language.check.across_wires import (
     wires_read,
 )
 from rosetta_jit.language.places import places_in, shown_place
-from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, SetLength, When
+from rosetta_jit.language.scope import Message
+from rosetta_jit.language.typed import Assign, Default, Expr, FieldStep, For, Ignore, Place, Rule, SetLength, When
 from rosetta_jit.language.walk import expressions_of
+from rosetta_jit.model.expr import Side
 from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.types import Ref, Struct
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Expr, Place, Rule
-    from rosetta_jit.model.expr import Side
 
 Names = tuple[str, ...]
 NO_WIRE: frozenset[str] = frozenset()

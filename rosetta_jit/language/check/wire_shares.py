@@ -6,27 +6,20 @@ arrays of numbers whose elements several wires set: those are *joined*.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from rosetta_jit.catalogue import wires as words
-from rosetta_jit.language.check.wire_needs import cutter, owners_of, with_needs
+from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.language.check.across_wires import Wires
+from rosetta_jit.language.check.wire_needs import Names, Needs, cutter, owners_of, with_needs
 from rosetta_jit.language.check.wires import rules_of
 from rosetta_jit.language.places import places_in, shown_names
-from rosetta_jit.language.typed import Assign, FieldStep, SetLength
-from rosetta_jit.model.types import Array, Bool, Enum, Float, Int
+from rosetta_jit.language.scope import Message
+from rosetta_jit.language.typed import Assign, FieldStep, Place, Rule, SetLength
+from rosetta_jit.model.expr import Side
+from rosetta_jit.model.types import Array, Bool, Enum, Float, Int, Type
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.check.across_wires import Wires
-    from rosetta_jit.language.check.wire_needs import Names, Needs
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Place, Rule
-    from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
 
 
 @dataclass(frozen=True, slots=True)

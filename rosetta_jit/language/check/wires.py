@@ -7,12 +7,14 @@ then runs the rules that read that wire, and those that read none; a rule that r
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.across_wires import (
     NOTHING_KEPT,
+    Memory,
     Wires,
     asked_for,
     remembered,
@@ -20,23 +22,16 @@ from rosetta_jit.language.check.across_wires import (
     wire_of,
     wires_read,
 )
-from rosetta_jit.language.check.wire_needs import NO_WIRE, NOTHING_AROUND, Needs, cutter, own_expressions, owners_of, with_needs
+from rosetta_jit.language.check.wire_needs import NO_WIRE, NOTHING_AROUND, Names, Needs, cutter, own_expressions, owners_of, with_needs
 from rosetta_jit.language.places import places_in
-from rosetta_jit.language.typed import Assign, Default, For, Ignore, Reject, SetLength, SetState, When
+from rosetta_jit.language.scope import Message
+from rosetta_jit.language.typed import Assign, Default, Expr, For, Ignore, Place, Reject, Rule, SetLength, SetState, When
 from rosetta_jit.language.untouched import asks_arrival
 from rosetta_jit.language.walk import placed, rebuilt
+from rosetta_jit.model import mapping as model
+from rosetta_jit.model.expr import Side
 from rosetta_jit.model.types import Field, Ref, Schema, Struct, same_name
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rosetta_jit.language.check.across_wires import Memory
-    from rosetta_jit.language.check.wire_needs import Names
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Expr, Place, Rule
-    from rosetta_jit.model import mapping as model
-    from rosetta_jit.model.expr import Side
 
 
 def message_of_wires(mapping: model.Mapping, schema: Schema) -> Schema:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.catalogue import check as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.algebra.polynomial import (
     Polynomial,
     TooComplexError,
@@ -18,18 +19,13 @@ from rosetta_jit.language.algebra.polynomial import (
     substitute,
     subtract,
 )
-from rosetta_jit.language.check.tiling import Run
+from rosetta_jit.language.check.tiling import Dimension, Run
 from rosetta_jit.language.places import field_names, places_in
-from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, SetState, When
+from rosetta_jit.language.typed import Assign, Default, Expr, FieldStep, For, Ignore, Place, Reject, Rule, SetLength, SetState, When
 from rosetta_jit.model.rules import Kept
+from rosetta_jit.model.types import Field
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.check.tiling import Dimension
-    from rosetta_jit.language.typed import Expr, Place, Rule
-    from rosetta_jit.model.types import Field
-    from rosetta_jit.source import Span
 
 
 @dataclass(frozen=True, slots=True)

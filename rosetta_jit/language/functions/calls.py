@@ -9,6 +9,7 @@ Functions have a record each (`language.function`), which says what they take. `
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal, cast
@@ -20,23 +21,17 @@ from rosetta_jit.language import conversions
 from rosetta_jit.language.arrays.layouts import ARGUMENTS
 from rosetta_jit.language.arrays.orders import is_of_image, is_order, takes_orders, type_order
 from rosetta_jit.language.conversions import as_int64, as_single, convert, describe, in_single, is_single, same, wrap
-from rosetta_jit.language.function import Numbers, Texts, names, written
+from rosetta_jit.language.function import Function, Numbers, Texts, names, written
 from rosetta_jit.language.functions.texts import constant_named, is_textual, type_texts
 from rosetta_jit.language.groups import function_of, group_functions
-from rosetta_jit.language.typed import Call, Const, Convert
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.language.typed import Call, Const, ConversionRule, Convert, Expr
 from rosetta_jit.language.units.conversion import check_arguments
+from rosetta_jit.model import expr as model
 from rosetta_jit.model.expr import Name
-from rosetta_jit.model.types import Array, Bool, Enum, Float, Int
+from rosetta_jit.model.types import Array, Bool, Enum, Float, Int, Type
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rosetta_jit.language.function import Function
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import ConversionRule, Expr
-    from rosetta_jit.model import expr as model
-    from rosetta_jit.model.types import Type
-
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
 
 NO_ENUMS: Mapping[str, Enum] = MappingProxyType({})

@@ -6,6 +6,7 @@ byte, an enum with its constants, a bool with another.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -13,19 +14,14 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language.conversions import FLOAT64, as_int64, convert, describe, same
 from rosetta_jit.language.functions.texts import comparison, is_textual, type_pieces
 from rosetta_jit.language.limits import MAX_CASES, MAX_COMPARED
-from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Choice, Const, IsText, Unary
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Choice, Const, Expr, IsText, Unary
 from rosetta_jit.language.units.conversion import check_agree
+from rosetta_jit.model import expr as model
 from rosetta_jit.model.expr import Literal
-from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, String
+from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, String, Type
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.model import expr as model
-    from rosetta_jit.model.types import Type
-
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
     CompareTexts = Callable[[Expr, Expr, model.Binary], Expr | None]
 

@@ -5,27 +5,23 @@ A text is a string, bytes, or an array of 8-bit integers. What is computed from 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import texts as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.conversions import FLOAT64, as_int64, convert, describe
 from rosetta_jit.language.function import Texts
 from rosetta_jit.language.limits import MAX_COMPARED, MAX_PADDED, MAX_PATTERN, MAX_WRITTEN
-from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Call, Const, Convert, Given
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Call, Const, Convert, Expr, Given
+from rosetta_jit.model import expr as model
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Type
+from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.model import expr as model
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
-
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
 
 TEXT, BYTES = String(), Bytes()

@@ -5,27 +5,24 @@ A mapping is checked without the functions themselves: their types stand in it.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import functions as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.conversions import convert, describe, word_for
 from rosetta_jit.language.function import names
 from rosetta_jit.language.functions.calls import FLOATS, INTEGERS, named_type
 from rosetta_jit.language.groups import group_functions
 from rosetta_jit.language.limits import MAX_PARAMETERS
-from rosetta_jit.language.typed import HostCall
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.language.typed import Expr, HostCall
 from rosetta_jit.language.uses import Signature
+from rosetta_jit.model import expr as model
+from rosetta_jit.model.mapping import Function, Mapping, TypeName
+from rosetta_jit.model.types import Type
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.model import expr as model
-    from rosetta_jit.model.mapping import Function, Mapping, TypeName
-    from rosetta_jit.model.types import Type
-
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
 
 SCALARS = (*INTEGERS, *FLOATS, "bool")

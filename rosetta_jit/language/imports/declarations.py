@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError, ReportError
 from rosetta_jit.language.imports.mappings import MAPPING_SUFFIX
-from rosetta_jit.language.imports.search import refusal
+from rosetta_jit.language.imports.search import Reading, SearchPath, refusal
 from rosetta_jit.language.parse import unit_file
-from rosetta_jit.model.types import Array, Enum, Map, Optional, Ref, Schema, Struct, Union
+from rosetta_jit.language.parse.unit_file import UnitFile
+from rosetta_jit.model.mapping import Import, Mapping
+from rosetta_jit.model.types import Array, Declaration, Enum, Map, NamedConstant, Optional, Ref, Schema, Struct, Type, Union
+from rosetta_jit.parsing.idl import FrontEnds
+from rosetta_jit.source import Source
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.imports.search import Reading, SearchPath
-    from rosetta_jit.language.parse.unit_file import UnitFile
-    from rosetta_jit.model.mapping import Import, Mapping
-    from rosetta_jit.model.types import Declaration, NamedConstant, Type
-    from rosetta_jit.parsing.idl import FrontEnds
-    from rosetta_jit.source import Source
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
 
 from rosetta_jit.catalogue import nested as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import ReportError
+from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.limits import MAX_MAPPINGS
 from rosetta_jit.language.parameters.bind import bind
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.language.uses import UsableMappings
-from rosetta_jit.model.mapping import Assign, Relation, Via
+from rosetta_jit.model import mapping as model
+from rosetta_jit.model.mapping import Assign, Relation, Rule, Via
 from rosetta_jit.model.walk import every_rule
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.imports.search import Reading, SearchPath
-    from rosetta_jit.model import mapping as model
-    from rosetta_jit.model.mapping import Rule
-    from rosetta_jit.source import Source, Span
+from rosetta_jit.source import Source, Span
 
 MAPPING_SUFFIX = ".mapping"
 """Of an import that is a mapping."""

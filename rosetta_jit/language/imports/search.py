@@ -9,24 +9,20 @@ or by an absolute path.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import field, replace
 from itertools import islice
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.language.limits import MAX_FILE_BYTES, MAX_LISTED_FILES, MAX_TEXT_BYTES
+from rosetta_jit.parsing.idl import Load
 from rosetta_jit.source import Source, shipped_folders
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from rosetta_jit.parsing.idl import Load
 
 ENVIRONMENT_VARIABLE = "ROSETTA_JIT_PATH"
 

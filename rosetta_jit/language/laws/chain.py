@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
 from rosetta_jit.language.affine_steps import LARGEST, PRECISION, LostError, Value, rounded, scaled
@@ -20,14 +19,9 @@ from rosetta_jit.language.affine_steps import UNSHOWN as NOT_SHOWN
 from rosetta_jit.language.conversions import EXACT_BITS, bounds
 from rosetta_jit.language.function import Affine, NotFollowed, Undone, functions
 from rosetta_jit.language.operators import form_of, why_lost
-from rosetta_jit.language.typed import Binary, Call, Choice, Const, Convert, Given, Nearest, Unary
-from rosetta_jit.model.types import Float, Int
+from rosetta_jit.language.typed import Binary, Call, Choice, Const, Convert, Expr, Given, Nearest, Unary
+from rosetta_jit.model.types import Float, Int, Type
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.model.types import Type
-
 
 NEGLIGIBLE = 2.0**-800
 """A floor below that is that of no value of a float32."""

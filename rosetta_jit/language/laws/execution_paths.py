@@ -6,12 +6,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.limits import MAX_WAYS
-from rosetta_jit.language.typed import For, Reject, When
+from rosetta_jit.language.typed import Expr, For, Reject, Rule, When
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.language.algebra.equality import Ranges
-    from rosetta_jit.language.typed import Expr, Rule
 
 Known = tuple[tuple["Expr", bool, "Ranges"], ...]
 """Conditions, whether they hold, and the loops in all of whose rounds."""

@@ -6,29 +6,24 @@ one may refuse is lost.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Iterator
+from typing import Literal
 
 from rosetta_jit.language.algebra.equality import given_back, has_state, is_of_digits, is_part, reads_other, same_number
 from rosetta_jit.language.algebra.normal_form import normal
-from rosetta_jit.language.laws.chain import UNSHOWN, Lost, Rounding, come_back
+from rosetta_jit.language.laws.chain import UNSHOWN, Lost, Outcome, Rounding, come_back
 from rosetta_jit.language.laws.execution_paths import ExecutionPath, UnfollowedError, execution_paths
 from rosetta_jit.language.laws.roundtrip import Result, Trip
 from rosetta_jit.language.laws.sums import comes_back_rounded
 from rosetta_jit.language.laws.writes import FILTERED
 from rosetta_jit.language.limits import MAX_WORK
 from rosetta_jit.language.places import field_names, shown_names, shown_place
-from rosetta_jit.language.typed import Access, Const, For, IndexStep, LenOf, Local
+from rosetta_jit.language.scope import Message
+from rosetta_jit.language.typed import Access, Const, For, IndexStep, LenOf, Local, Rule
 from rosetta_jit.language.untouched import untouched
 from rosetta_jit.model.walk import every_rule
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.language.laws.chain import Outcome
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Rule
-    from rosetta_jit.source import Span
 
 ORDINARY = (1e-30, 1e30)
 """Magnitudes beyond which a bound is not shown."""

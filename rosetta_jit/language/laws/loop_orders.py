@@ -7,9 +7,11 @@ planar and interleaved channels. As each place is set once, no other round can h
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.algebra.polynomial import (
+    Polynomial,
     TooComplexError,
     atom,
     coefficient_of,
@@ -19,17 +21,12 @@ from rosetta_jit.language.algebra.polynomial import (
     substitute,
     subtract,
 )
-from rosetta_jit.language.algebra.quotients import are_same
+from rosetta_jit.language.algebra.quotients import Facts, are_same
 from rosetta_jit.language.limits import MAX_LOOPS
-from rosetta_jit.language.typed import INT64, Binary, Const, IndexStep, Local
+from rosetta_jit.language.typed import INT64, Binary, Const, Expr, IndexStep, Local, Place
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.language.algebra.equality import Ranges
-    from rosetta_jit.language.algebra.polynomial import Polynomial
-    from rosetta_jit.language.algebra.quotients import Facts
-    from rosetta_jit.language.typed import Expr, Place
 
 
 Strides = tuple["Polynomial", ...]

@@ -6,18 +6,13 @@ to come back, it fits.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
 
 from rosetta_jit.language.conversions import bounds, same
 from rosetta_jit.language.laws.chain import come_back, source_of
-from rosetta_jit.language.typed import Access, Convert, LenOf
+from rosetta_jit.language.typed import Access, Convert, Expr, LenOf
 from rosetta_jit.language.walk import parts
 from rosetta_jit.model.types import Float, Int
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rosetta_jit.language.typed import Expr
 
 
 def may_refuse(value: Expr, of: Callable[[Expr], Expr]) -> bool:

@@ -6,56 +6,60 @@ conditions of the path, are known. The second direction then decides its own con
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.algebra.equality import digit, fact, has_local, own_part, reads_other, same_number, same_place, same_ranges, unify
+from rosetta_jit.language.algebra.equality import (
+    Ranges,
+    digit,
+    fact,
+    has_local,
+    own_part,
+    reads_other,
+    same_number,
+    same_place,
+    same_ranges,
+    unify,
+)
 from rosetta_jit.language.algebra.quotients import Facts
-from rosetta_jit.language.conversions import adapt, same
-from rosetta_jit.language.function import functions
-from rosetta_jit.language.laws.chain import come_back, source_of
 from rosetta_jit.language.laws.loop_orders import round_of
 from rosetta_jit.language.laws.refusals import may_refuse
+from rosetta_jit.language.laws.simplest import simplest
 from rosetta_jit.language.laws.writes import Write, changed, is_left_absent, is_part_of, is_within, union_depths, writes_of
 from rosetta_jit.language.limits import MAX_LOOKED, MAX_ORDERED
 from rosetta_jit.language.places import field_names
+from rosetta_jit.language.scope import Message
 from rosetta_jit.language.typed import (
     BOOL,
     Access,
     Assign,
     Binary,
-    Call,
-    Choice,
     Const,
-    Convert,
     Default,
+    Expr,
     FieldStep,
     For,
     Has,
     IndexStep,
     LenOf,
     Local,
-    Nearest,
+    Place,
     Reject,
+    Rule,
     SetLength,
     Unary,
     When,
 )
 from rosetta_jit.language.walk import indices, placed, rebuilt, renamed
-from rosetta_jit.model.expr import Literal
+from rosetta_jit.model.expr import Literal, Side
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Array, Float, Map, Struct, Union
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.language.algebra.equality import Ranges
     from rosetta_jit.language.laws.execution_paths import ExecutionPath
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Expr, Place, Rule
-    from rosetta_jit.model.expr import Side
-    from rosetta_jit.source import Span
 
 
 @dataclass(frozen=True, slots=True)
@@ -313,70 +317,11 @@ class Trip:
     def simple(self, expr: Expr) -> Expr:
         """An expression in place of which something simpler can stand."""
         known = self.truth(expr)
-        if known is not None:
-            return Const(known, BOOL)
-        match expr:
-            case Convert(Const() as constant, type_, rule) if rule in {"widen", "exact", "nearest"}:
-                return adapt(constant, type_) or expr
-            case Unary("not", Const(bool(value))):
-                return Const(not value, BOOL)
-            case Binary("differs", left, right) if left == right:
-                return Const(value=False, type=BOOL)
-            case Binary("differs", Const(a), Const(b)):
-                return Const(repr(a) != repr(b), BOOL)
-            case Binary("==" | "!=" as operator, left, right) if left == right and not isinstance(left.type, Float):
-                return Const(operator == "==", BOOL)
-            case Binary("==" | "!=" as operator, Const(a), Const(b)):
-                return Const((a == b) == (operator == "=="), BOOL)
-            case Binary("and" | "or" as operator, left, right):
-                return _logic(operator == "and", left, right, expr)
-            case Choice(cases, otherwise):
-                return _decided(cases, otherwise, expr)
-            case Convert() | Unary() | Nearest():
-                return _before(expr) or expr
-            case Binary() | Call():
-                return _before(expr) or self.own_part(expr) or _undoing(expr) or expr
-            case _:
-                return expr
+        return simplest(expr, self.own_part) if known is None else Const(known, BOOL)
 
     def own_part(self, expr: Expr) -> Expr | None:
         """The part of an integer that it is the same as."""
         return None if reads_other(expr, self.origin) else own_part(expr, lambda: self.facts(self.origin))
-
-
-def _logic(is_and: bool, left: Expr, right: Expr, expr: Expr) -> Expr:
-    match left, right:
-        case (Const(bool(value)), other) | (other, Const(bool(value))):
-            return other if value == is_and else Const(value, BOOL)
-        case _:
-            return expr
-
-
-def _decided(cases: tuple[tuple[Expr, Expr], ...], otherwise: Expr | None, choice: Choice) -> Expr:
-    """A choice without the cases that cannot be."""
-    left: list[tuple[Expr, Expr]] = []
-    for condition, value in cases:
-        match condition:
-            case Const(bool(holds)):
-                if holds:
-                    return replace(choice, cases=tuple(left), otherwise=value) if left else value
-            case _:
-                left.append((condition, value))
-    if not left and otherwise is not None:
-        return otherwise
-    return replace(choice, cases=tuple(left), otherwise=otherwise)
-
-
-def _before(expr: Expr) -> Expr | None:
-    """The value before all steps of an expression, if they leave it as it was."""
-    source = source_of(expr)
-    return source if source is not expr and same(source.type, expr.type) and come_back(expr, source) is None else None
-
-
-def _undoing(expr: Expr) -> Expr | None:
-    """What a call comes to that undoes the calls in its arguments."""
-    undoes = functions()[expr.function].undoes if isinstance(expr, Call) else None
-    return None if undoes is None or not isinstance(expr, Call) else undoes(expr)
 
 
 def _without_span(expr: Expr) -> Expr:

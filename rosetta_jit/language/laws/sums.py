@@ -7,13 +7,9 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import isfinite, pi
-from typing import TYPE_CHECKING
 
-from rosetta_jit.language.typed import Access, Binary, Call, Const, Convert, Unary
+from rosetta_jit.language.typed import Access, Binary, Call, Const, Convert, Expr, Unary
 from rosetta_jit.model.types import Float
-
-if TYPE_CHECKING:
-    from rosetta_jit.language.typed import Expr
 
 ALMOST = Fraction(1, 1 << 40)
 """How far factors may be from those of the field itself: constants that undo each other are rounded."""

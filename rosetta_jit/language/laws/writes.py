@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.places import field_names
-from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Given, Local, SetLength, When
+from rosetta_jit.language.scope import Message
+from rosetta_jit.language.typed import Assign, Assignment, Default, Expr, FieldStep, For, Given, Local, Place, Rule, SetLength, When
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Array, Map, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.language.algebra.equality import Ranges
-    from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Assignment, Expr, Place, Rule
 
 
 FILTERED = Local("filtered")

@@ -6,29 +6,23 @@ known with the values leaves one of its blocks, and the other is not looked at.
 
 from __future__ import annotations
 
+from collections.abc import Mapping as Dictionary
 from dataclasses import field, replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bind as words
 from rosetta_jit.catalogue import groups
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.folding import folded
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_CHOSEN
 from rosetta_jit.language.parameters.several_places import one_by_one, spread
 from rosetta_jit.language.parameters.values import SCALARS, accepted, written
-from rosetta_jit.model.expr import Call, Choice, Given, Item, List, Literal, Name
-from rosetta_jit.model.mapping import For, Several, When
+from rosetta_jit.model.expr import Call, Choice, Expr, Given, Item, List, Literal, Name
+from rosetta_jit.model.mapping import For, Mapping, Parameter, Rule, Several, When
 from rosetta_jit.model.types import Int
 from rosetta_jit.model.walk import parts, rebuilt, with_expressions
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping as Dictionary
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Mapping, Parameter, Rule
-    from rosetta_jit.source import Span
 
 
 def bind(mapping: Mapping, arguments: Dictionary[str, object] | None, problems: list[Diagnostic]) -> Mapping:

@@ -11,21 +11,16 @@ length is not known, is assigned in a loop.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import groups as words
 from rosetta_jit.catalogue.derive import OTHER_PARTS
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.groups import component, group_functions, group_of
 from rosetta_jit.language.limits import MAX_SINGLE
-from rosetta_jit.model.expr import Binary, Call, Given, Index, Item, Len, List, Literal, Name, Path
-from rosetta_jit.model.mapping import Assign, Default, For, Reject, Relation, SetLength, When
+from rosetta_jit.model.expr import Binary, Call, Expr, Given, Index, Item, Len, List, Literal, Name, Path
+from rosetta_jit.model.mapping import Assign, Assignment, Default, For, Reject, Relation, Rule, SetLength, Several, When
 from rosetta_jit.model.types import Int
 from rosetta_jit.model.walk import parts, rebuilt
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Assignment, Rule, Several
 
 
 def one_by_one(rule: Several, problems: list[Diagnostic]) -> tuple[Rule, ...]:

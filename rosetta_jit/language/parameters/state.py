@@ -5,23 +5,18 @@ A variable has a number, which is that of the kernel's register that holds it. B
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 from rosetta_jit.catalogue import state as words
 from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.limits import MAX_STATE
 from rosetta_jit.language.parameters.values import SCALARS, accepted, written
 from rosetta_jit.language.typed import StateVariable
 from rosetta_jit.model import mapping as model
-from rosetta_jit.model.expr import Given, Literal
+from rosetta_jit.model.expr import Given, Literal, Side
 from rosetta_jit.model.types import String
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.expr import Side
 
 TYPES = {name: type_ for name, type_ in SCALARS.items() if not isinstance(type_, String)}
 """The types of state variables by name."""

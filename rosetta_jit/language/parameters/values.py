@@ -4,21 +4,15 @@ from __future__ import annotations
 
 import math
 import struct
-from typing import TYPE_CHECKING, cast
+from collections.abc import Mapping
+from typing import cast
 
 from rosetta_jit.language.conversions import holds
 from rosetta_jit.language.limits import MAX_ITEMS, MAX_LIST_BYTES, MAX_PARAMETER_BYTES
-from rosetta_jit.model.expr import List, Literal
-from rosetta_jit.model.types import Bool, Float, Int, String
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Parameter
-    from rosetta_jit.model.scalars import Scalar
-    from rosetta_jit.model.types import Type
-
+from rosetta_jit.model.expr import Expr, List, Literal
+from rosetta_jit.model.mapping import Parameter
+from rosetta_jit.model.scalars import Scalar
+from rosetta_jit.model.types import Bool, Float, Int, String, Type
 
 SCALARS: Mapping[str, Scalar] = {
     "bool": Bool(),

@@ -5,18 +5,14 @@ Expressions are those of the mapping language. Its names are what lines before d
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError
 from rosetta_jit.language.parse.rules import Context, read_expression
 from rosetta_jit.language.parse.templates import expression_tree
+from rosetta_jit.model.expr import Expr
 from rosetta_jit.source import Source, Span
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.expr import Expr
 
 
 def read_definitions(name: str, text: str) -> Iterator[tuple[str, Expr]]:

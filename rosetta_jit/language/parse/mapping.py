@@ -6,28 +6,21 @@ an index within the place included, is on the other side: a target has nothing t
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import islice
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError
 from rosetta_jit.language.limits import MAX_CHARACTERS, MAX_IMPORTS, MAX_LIMIT, MAX_LIMIT_DIGITS, MAX_NESTING, MAX_TOKENS
 from rosetta_jit.language.parse.rules import Context, read_parameter, read_rule, read_state, read_string
 from rosetta_jit.language.parse.templates import grammar
 from rosetta_jit.language.parse.wires import message_of, read_type_name, read_wires
-from rosetta_jit.model.mapping import Function, Import, Mapping, TypeName
+from rosetta_jit.model.mapping import Function, Import, Mapping, Rule, TypeName
 from rosetta_jit.parsing.lalr import Token, Tree
 from rosetta_jit.parsing.syntax import Recovery, parse_tokens
-from rosetta_jit.source import Span
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.mapping import Rule
-    from rosetta_jit.source import Source
-
 
 """Brackets, blocks, operators of one expression, steps of one path: deeper is refused, so that every walk is bounded."""
 

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.limits import MAX_DIGITS
 from rosetta_jit.language.parse.templates import pieces_of
 from rosetta_jit.model import expr
@@ -24,6 +25,7 @@ from rosetta_jit.model.mapping import (
     Relation,
     Renamed,
     Rest,
+    Rule,
     SameNames,
     SetLength,
     SetState,
@@ -33,13 +35,8 @@ from rosetta_jit.model.mapping import (
     When,
 )
 from rosetta_jit.parsing.lalr import Token, Tree
-from rosetta_jit.source import Span
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.mapping import Rule
-    from rosetta_jit.source import Source
 
 ESCAPES = {'"': '"', "\\": "\\", "n": "\n", "t": "\t", "r": "\r"}
 

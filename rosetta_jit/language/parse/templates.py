@@ -6,25 +6,19 @@ What stands in braces is parsed as the condition of a rejection, the only rule o
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.limits import MAX_PIECES, MAX_TOKENS, MAX_VALUE_TOKENS
-from rosetta_jit.model.expr import Literal
-from rosetta_jit.parsing.lalr import Token, Tree
+from rosetta_jit.model.expr import Expr, Literal
+from rosetta_jit.parsing.lalr import Grammar, Token, Tree
 from rosetta_jit.parsing.parsers import parser_of
 from rosetta_jit.parsing.syntax import Recovery, parse_tokens
 from rosetta_jit.source import Span
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.parsing.lalr import Grammar
 
 GRAMMAR = Path(__file__).with_name("mapping.lark")
 MISTAKES = ("UNCLOSED", "STRANGE")

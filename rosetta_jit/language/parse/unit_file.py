@@ -11,18 +11,13 @@ The text is read line by line; what is wrong with one line does not keep the oth
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from rosetta_jit.catalogue import unit_files as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.limits import MAX_UNIT_FIELDS, MAX_UNIT_PROBLEMS, MAX_UNIT_STEPS
-from rosetta_jit.source import Span
+from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Source
 
 SUFFIX = ".units"
 

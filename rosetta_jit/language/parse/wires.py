@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.catalogue import wires as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.limits import MAX_WIRES
 from rosetta_jit.language.parse.rules import read_string
 from rosetta_jit.model.mapping import OF_WIRES, Wire
 from rosetta_jit.parsing.lalr import Token, Tree
-from rosetta_jit.source import Span
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Source
+from rosetta_jit.source import Source, Span
 
 
 def read_type_name(statement: Tree, source: Source, problems: list[Diagnostic]) -> tuple[str, Span]:

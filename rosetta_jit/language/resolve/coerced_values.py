@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.conversions import convert
 from rosetta_jit.language.functions.calls import rules_between
 from rosetta_jit.language.functions.texts import is_textual, name_of
-from rosetta_jit.language.scope import Broken, resolve_path
-from rosetta_jit.language.typed import Binary, Convert, Local, Nearest
+from rosetta_jit.language.scope import Broken, Scope, Sought, resolve_path
+from rosetta_jit.language.typed import Binary, Convert, Expr, Local, Nearest
 from rosetta_jit.language.units.conversion import in_unit
+from rosetta_jit.model import expr as model
 from rosetta_jit.model.expr import NEAREST, Coerced, Path
 from rosetta_jit.model.expr import Binary as Operation
-from rosetta_jit.model.types import Enum
+from rosetta_jit.model.types import Enum, Type
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.language.scope import Scope, Sought
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.model import expr as model
-    from rosetta_jit.model.types import Type
-
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
     TypeIndex = Callable[[model.Expr | Sought, Scope], Expr | None]
 

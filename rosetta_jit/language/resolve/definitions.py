@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError
 from rosetta_jit.language.constants import Constants
 from rosetta_jit.language.conversions import FLOAT64
-from rosetta_jit.language.groups import group_functions
+from rosetta_jit.language.groups import GroupFunction, group_functions
 from rosetta_jit.language.parse.definitions import read_definitions
 from rosetta_jit.language.resolve.expressions import type_expr
 from rosetta_jit.language.scope import Scope
+from rosetta_jit.language.typed import Expr
 from rosetta_jit.language.uses import UsableMappings
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.groups import GroupFunction
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.model.types import Type
+from rosetta_jit.model.types import Type
 
 
 def arguments_in(function: GroupFunction) -> tuple[str, ...]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import rest as words
 from rosetta_jit.catalogue.resolve import many_defaults
@@ -11,21 +11,15 @@ from rosetta_jit.language.limits import MAX_DEFAULTS
 from rosetta_jit.language.places import field_names, value_inside
 from rosetta_jit.language.resolve.defaults import ManyDefaultsError, default_rules
 from rosetta_jit.language.resolve.expressions import type_index
-from rosetta_jit.language.scope import Broken, resolve_path
-from rosetta_jit.language.typed import INT64, Const, FieldStep, For, IndexStep, Local, Place, SetLength, When
+from rosetta_jit.language.scope import Broken, Message, Scope, resolve_path
+from rosetta_jit.language.typed import INT64, Const, Expr, FieldStep, For, IndexStep, Local, Place, Rule, SetLength, When
+from rosetta_jit.language.untouched import Names
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.expr import Each, Index, Literal
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array, Struct
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.language.scope import Message, Scope
-    from rosetta_jit.language.typed import Expr, Rule
-    from rosetta_jit.language.untouched import Names
-    from rosetta_jit.source import Span
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,10 +9,11 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import reduce
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.catalogue import fields
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.arrays.parts import is_reduction
 from rosetta_jit.language.constants import constant_of
 from rosetta_jit.language.conversions import FLOAT64, as_int64, as_single, convert, describe, in_single, is_single
@@ -27,18 +28,13 @@ from rosetta_jit.language.resolve.groups import type_component
 from rosetta_jit.language.resolve.key_search import is_found, type_search
 from rosetta_jit.language.resolve.list_items import compared_text, type_listed
 from rosetta_jit.language.resolve.reductions import type_reduction
-from rosetta_jit.language.scope import Broken, Sought, members_of, resolve_path
-from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, FieldStep, Has, IndexStep, Local, Search, Unary
+from rosetta_jit.language.scope import Broken, Scope, Sought, members_of, resolve_path
+from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, Expr, FieldStep, Has, IndexStep, Local, Search, Unary
 from rosetta_jit.language.units.conversion import check_agree
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.mapping import OF_WIRES
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, Optional, String, Union
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.source import Span
+from rosetta_jit.source import Span
 
 CONSTANTS = {"pi": math.pi}
 SUMS = frozenset("+-%")

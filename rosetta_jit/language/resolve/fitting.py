@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.catalogue import texts
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.language.function import functions
 from rosetta_jit.language.functions.texts import is_bytes, is_textual
 from rosetta_jit.language.limits import MAX_TEXT_CASES
 from rosetta_jit.language.resolve.list_items import adapted
-from rosetta_jit.language.typed import Access, Binary, Call, Choice, Const, Convert, Listed
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Expr, Place
-    from rosetta_jit.model.types import Type
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.language.typed import Access, Binary, Call, Choice, Const, Convert, Expr, Listed, Place
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Type, Union
 
 
 def fit(value: Expr, place: Place, scope: Scope) -> Expr | None:

@@ -6,29 +6,23 @@ the components go to depends on the type of the place: a struct has fields of th
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import groups as words
 from rosetta_jit.catalogue import resolve as names
 from rosetta_jit.language.conversions import FLOAT64, convert, describe
-from rosetta_jit.language.groups import FLOATS, arguments_of, component, function_of, group_of
-from rosetta_jit.language.scope import Broken, members_of, resolve_path
-from rosetta_jit.language.typed import Call
+from rosetta_jit.language.groups import FLOATS, Group, GroupFunction, Member, arguments_of, component, function_of, group_of
+from rosetta_jit.language.scope import Broken, Scope, Sought, members_of, resolve_path
+from rosetta_jit.language.typed import Call, Expr
 from rosetta_jit.language.units.conversion import factors_between, scaled, unit_of
 from rosetta_jit.model import expr as model
 from rosetta_jit.model import mapping
-from rosetta_jit.model.types import Array, Struct
+from rosetta_jit.model.types import Array, Struct, Type
+from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.language.groups import Group, GroupFunction, Member
-    from rosetta_jit.language.scope import Scope, Sought
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
-
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
     TypeIndex = Callable[[model.Expr | Sought, Scope], Expr | None]
 

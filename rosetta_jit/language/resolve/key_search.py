@@ -5,6 +5,7 @@ The condition is a comparison like any other, of the key with a value, for an el
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -12,19 +13,13 @@ from rosetta_jit.language.functions.decisions import type_comparison
 from rosetta_jit.language.limits import MAX_KEY_SHOWN
 from rosetta_jit.language.resolve.defaults import text_there
 from rosetta_jit.language.resolve.list_items import compared_text
-from rosetta_jit.language.scope import Broken, element_type, resolve_path
-from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, FieldStep, IndexStep, LenOf, Local, Place, Search
+from rosetta_jit.language.scope import Broken, Message, Scope, Sought, element_type, resolve_path
+from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, Expr, FieldStep, IndexStep, LenOf, Local, Place, Search
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.printer import show_expr
-from rosetta_jit.model.types import Array, Bytes, Map
+from rosetta_jit.model.types import Array, Bytes, Map, Type
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.language.scope import Message, Scope, Sought
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.model.types import Type
-
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
 
 

@@ -15,19 +15,15 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.resolve.expressions import type_index
-from rosetta_jit.language.scope import Broken, resolve_path
-from rosetta_jit.model.expr import Given, Index, Item, Keyed, List, Literal, Member, Name, Path
-from rosetta_jit.model.mapping import Arranged, Assign, Default, For, SetLength, When
+from rosetta_jit.language.scope import Broken, Scope, resolve_path
+from rosetta_jit.model.expr import Expr, Given, Index, Item, Keyed, List, Literal, Member, Name, Path
+from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Rule, SetLength, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array
 from rosetta_jit.model.walk import parts
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule
-
     Loop = For[Rule, Expr]
 
 Key = tuple[tuple[str, ...], "Expr"]

@@ -5,15 +5,10 @@ Only a length behind the first rule for an element of its array is moved, to bef
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from rosetta_jit.language.places import places_in
-from rosetta_jit.language.typed import IndexStep, SetLength
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.language.typed import Place, Rule, Step
+from rosetta_jit.language.typed import IndexStep, Place, Rule, SetLength, Step
 
 Array = tuple["Step", ...]
 

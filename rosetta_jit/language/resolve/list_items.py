@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,17 +12,12 @@ from rosetta_jit.language.conversions import as_int64, convert, describe
 from rosetta_jit.language.functions.decisions import unified
 from rosetta_jit.language.functions.texts import is_textual
 from rosetta_jit.language.limits import MAX_ITEMS
-from rosetta_jit.language.typed import BOOL, Access, Const, Given, IsText, Listed, Unary
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.language.typed import BOOL, Access, Const, Expr, Given, IsText, Listed, Unary
 from rosetta_jit.model import expr as model
-from rosetta_jit.model.types import Array, Bytes, String
+from rosetta_jit.model.types import Array, Bytes, String, Type
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.model.types import Type
-
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
 
 

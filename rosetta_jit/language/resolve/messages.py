@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.catalogue.pipeline import too_large
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.constants import constants_of
 from rosetta_jit.language.functions.user_functions import signatures
 from rosetta_jit.language.scope import Message, Scope, enums_of
+from rosetta_jit.language.uses import UsableMappings
 from rosetta_jit.model.expansion import excess
-from rosetta_jit.model.types import Struct, same_name
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.uses import UsableMappings
-    from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.mapping import Mapping
-    from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.source import Span
+from rosetta_jit.model.expr import Side
+from rosetta_jit.model.mapping import Mapping
+from rosetta_jit.model.types import Schema, Struct, Type, same_name
+from rosetta_jit.source import Span
 
 
 def message_named(schema: Schema, name: str) -> Message | None:

@@ -6,6 +6,7 @@ mapping that is imported is found by the two types. A mapping may be used in the
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -16,18 +17,13 @@ from rosetta_jit.language.limits import MAX_COPIED, MAX_USES, MAX_VIA_DEPTH
 from rosetta_jit.language.resolve.expressions import type_index
 from rosetta_jit.language.scope import Broken, Message, Scope, resolve_path
 from rosetta_jit.language.uses import EnoughError, Use
-from rosetta_jit.model.expr import Path
+from rosetta_jit.model import mapping as model
+from rosetta_jit.model.expr import Path, Side
 from rosetta_jit.model.mapping import Via
-from rosetta_jit.model.types import Array, Optional, Struct, same_name
+from rosetta_jit.model.types import Array, Optional, Struct, Type, same_name
+from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.model import mapping as model
-    from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
-
     RulesOf = Callable[[tuple[model.Rule, ...], Scope], tuple[typed.Rule, ...]]
 
 

@@ -12,22 +12,17 @@ that is set twice, as in every mapping.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import count
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import shown_place
-from rosetta_jit.model.types import Array, Bool, Enum, Float, Int, Optional, Struct, Union
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.model.types import Array, Bool, Enum, Float, Int, Optional, Struct, Type, Union
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
 
 
 def last_ones(rules: tuple[typed.Rule, ...], scope: Scope) -> tuple[typed.Rule, ...]:

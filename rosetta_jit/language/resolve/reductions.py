@@ -6,6 +6,7 @@ each element.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -13,24 +14,18 @@ from rosetta_jit.catalogue import functions as words
 from rosetta_jit.catalogue import layouts
 from rosetta_jit.language.arrays.counts import LayoutError
 from rosetta_jit.language.arrays.element_loops import element_of
-from rosetta_jit.language.arrays.layouts import view_of
+from rosetta_jit.language.arrays.layouts import View, view_of
 from rosetta_jit.language.arrays.parts import sources_in, substituted
 from rosetta_jit.language.conversions import as_int64
-from rosetta_jit.language.function import written
+from rosetta_jit.language.function import Function, Reduction, written
 from rosetta_jit.language.functions.calls import type_numbers
 from rosetta_jit.language.functions.decisions import is_condition, type_condition
-from rosetta_jit.language.typed import INT64, Call, Choice, Const, Local, Reduce
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.language.typed import INT64, Call, Choice, Const, Expr, Local, Reduce
+from rosetta_jit.model import expr as model
 from rosetta_jit.model.expr import Binary, Each, Name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.language.arrays.layouts import View
-    from rosetta_jit.language.function import Function, Reduction
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Expr
-    from rosetta_jit.model import expr as model
-
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import wires as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.arrays.counts import LayoutError
 from rosetta_jit.language.arrays.element_loops import element_at
 from rosetta_jit.language.arrays.layouts import view_of
@@ -14,21 +15,14 @@ from rosetta_jit.language.arrays.parts import sources_in, substituted
 from rosetta_jit.language.both_ways.directions import in_each_direction
 from rosetta_jit.language.resolve.expressions import type_expr
 from rosetta_jit.language.resolve.messages import message_named, scope_between
+from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import Const
-from rosetta_jit.model.expr import Call, Literal, Member, Path
-from rosetta_jit.model.mapping import For
+from rosetta_jit.language.typed import Expr as Typed
+from rosetta_jit.language.uses import UsableMappings
+from rosetta_jit.model.expr import Call, Expr, Literal, Member, Path
+from rosetta_jit.model.mapping import For, Mapping
+from rosetta_jit.model.types import Schema, Type
 from rosetta_jit.model.walk import every_rule, expressions_of, fields_of, parts
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Expr as Typed
-    from rosetta_jit.language.uses import UsableMappings
-    from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Mapping
-    from rosetta_jit.model.types import Schema, Type
 
 FIRST = Literal(0)
 

@@ -6,25 +6,19 @@ A note says which fields they are, so that a field which a schema gets later is 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import rest as words
 from rosetta_jit.language import typed
 from rosetta_jit.language.limits import MAX_DEFAULTS
 from rosetta_jit.language.places import field_names, places_in, rules_within, shown_names, shown_place, value_inside
-from rosetta_jit.language.resolve.element_defaults import elements_of, lengths_in
-from rosetta_jit.language.typed import INT64, Assign, Const, FieldStep, Ignore, IndexStep, Place, SetLength
-from rosetta_jit.language.untouched import never_set, unread, untouched
+from rosetta_jit.language.resolve.element_defaults import Elements, elements_of, lengths_in
+from rosetta_jit.language.scope import Message, Scope
+from rosetta_jit.language.typed import INT64, Assign, Const, Expr, FieldStep, Ignore, IndexStep, Place, Rule, SetLength
+from rosetta_jit.language.untouched import Names, never_set, unread, untouched
 from rosetta_jit.model.expr import Member, Path
 from rosetta_jit.model.mapping import Default, Rest
 from rosetta_jit.model.types import Array, Bool, Float, Int, Struct, Union
-
-if TYPE_CHECKING:
-    from rosetta_jit.language.resolve.element_defaults import Elements
-    from rosetta_jit.language.scope import Message, Scope
-    from rosetta_jit.language.typed import Expr, Rule
-    from rosetta_jit.language.untouched import Names
-    from rosetta_jit.source import Span
+from rosetta_jit.source import Span
 
 
 def ignored(rest: Rest, rules: tuple[Rule, ...], scope: Scope) -> list[Ignore[Place]]:

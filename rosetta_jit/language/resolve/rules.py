@@ -6,20 +6,22 @@ the checks that follow do not report the same mistake in other words.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import field, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.catalogue import rest as about_rest
 from rosetta_jit.catalogue import state as states
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language import typed
 from rosetta_jit.language.arrays.elementwise import elementwise
 from rosetta_jit.language.conversions import FLOAT64, describe, is_single, same
 from rosetta_jit.language.functions.decisions import type_condition
 from rosetta_jit.language.functions.texts import type_pieces
-from rosetta_jit.language.groups import group_of
+from rosetta_jit.language.groups import Group, group_of
 from rosetta_jit.language.limits import MAX_DEFAULTS, MAX_PROBLEMS
 from rosetta_jit.language.places import field_names, places_in
 from rosetta_jit.language.resolve.coerced_values import fitted
@@ -38,22 +40,14 @@ from rosetta_jit.language.resolve.same_names import OF_TYPES, rules_of, unlike
 from rosetta_jit.language.scope import Broken, Message, Scope, element_type, resolve_path
 from rosetta_jit.language.units.conversion import in_unit
 from rosetta_jit.language.units.wholes import change_within
-from rosetta_jit.language.uses import EnoughError
+from rosetta_jit.language.uses import EnoughError, Signature, UsableMappings
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
+from rosetta_jit.model.expr import Side
 from rosetta_jit.model.rules import Kept
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Schema, String, Type
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.groups import Group
-    from rosetta_jit.language.uses import Signature, UsableMappings
-    from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.source import Span
 
 
 @dataclass(frozen=True, slots=True)

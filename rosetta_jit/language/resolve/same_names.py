@@ -7,26 +7,20 @@ float is rounded, and the law says so. All else that takes a word is reported wi
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.conversions import describe, same, widens, word_for
 from rosetta_jit.language.resolve.expressions import type_index
-from rosetta_jit.language.scope import Broken, resolve_path
+from rosetta_jit.language.scope import Broken, Scope, resolve_path
 from rosetta_jit.model.expr import Member, Path
-from rosetta_jit.model.mapping import Assign
+from rosetta_jit.model.mapping import Assign, Assignment, SameNames
 from rosetta_jit.model.printer import show_expr
-from rosetta_jit.model.types import Array, Float, Int
+from rosetta_jit.model.types import Array, Float, Int, Type
+from rosetta_jit.source import Span
 
 OF_TYPES = frozenset(("lossy-conversion", "type-clash"))
 """Mistakes that a field's name alone makes."""
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.model.mapping import Assignment, SameNames
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
 
 
 def rules_of(rule: SameNames, names: list[str], scope: Scope) -> list[Assignment]:

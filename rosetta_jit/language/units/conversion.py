@@ -7,32 +7,23 @@ multiplied or divided is taken to have been converted by hand.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import units as words
 from rosetta_jit.catalogue.resolve import written_at
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.conversions import FLOAT64, describe
-from rosetta_jit.language.function import functions
+from rosetta_jit.language.function import Function, functions
 from rosetta_jit.language.places import field_names
-from rosetta_jit.language.typed import Access, Binary, Call, Choice, Convert, IndexStep, Nearest, Reduce, Unary
+from rosetta_jit.language.scope import Scope
+from rosetta_jit.language.typed import Access, Binary, Call, Choice, Convert, Expr, IndexStep, Nearest, Place, Reduce, Unary
 from rosetta_jit.language.units.dimensions import conversion
-from rosetta_jit.language.units.numbers import exactly, nearest, scaled, scaled_before_rounding
-from rosetta_jit.language.units.unit_at import Mixed, pairs_in_step, unit_at
-from rosetta_jit.model.types import Enum, Float, Int
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.function import Function
-    from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Expr, Place
-    from rosetta_jit.language.units.numbers import Factors
-    from rosetta_jit.language.units.unit_at import Unit
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
+from rosetta_jit.language.units.numbers import Factors, exactly, nearest, scaled, scaled_before_rounding
+from rosetta_jit.language.units.unit_at import Mixed, Unit, pairs_in_step, unit_at
+from rosetta_jit.model.types import Enum, Float, Int, Type
+from rosetta_jit.source import Span
 
 
 def in_unit(value: Expr, place: Place, scope: Scope, *, packs: bool = False) -> Expr | None:

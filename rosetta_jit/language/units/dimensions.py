@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.language.limits import MAX_UNIT
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
     from fractions import Fraction
 
 WORD = r"[A-Za-z_°µΩ]+((\^|\*\*)?-?[0-9]{1,2})?"

@@ -7,19 +7,14 @@ for degrees and radians even where only the unit of the value is known.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from rosetta_jit.catalogue import units as words
-from rosetta_jit.language.typed import Access, Assign, Binary, Const, Convert
+from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.language.typed import Access, Assign, Binary, Const, Convert, Expr, Place, Rule
 from rosetta_jit.language.units.dimensions import conversion
 from rosetta_jit.language.units.unit_at import unit_at
 from rosetta_jit.model.walk import every_rule
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.typed import Expr, Place, Rule
 
 TOLERANCE = 1e-3
 """How far a factor that somebody wrote, rounded, is from the right one."""

@@ -7,24 +7,19 @@ the way give to what is within them.
 from __future__ import annotations
 
 from dataclasses import field
-from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import units as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.limits import MAX_WHOLE_DEPTH, MAX_WHOLE_VALUES
-from rosetta_jit.language.typed import Access, Binary, Const, Convert, EachElement, EachMember, Rescale
+from rosetta_jit.language.scope import Message, Scope
+from rosetta_jit.language.typed import Access, Assignment, Binary, Change, Const, Convert, EachElement, EachMember, Expr, Place, Rescale
 from rosetta_jit.language.units.conversion import factors_between, shown, unit_of
 from rosetta_jit.language.units.dimensions import conversion
 from rosetta_jit.language.units.unit_at import contexts_at, unit_at
-from rosetta_jit.model.types import Array, Float, Int, Map, Struct, Union
+from rosetta_jit.model.types import Array, Field, Float, Int, Map, Struct, Type, Union
+from rosetta_jit.model.units import Context
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.scope import Message, Scope
-    from rosetta_jit.language.typed import Assignment, Change, Expr, Place
-    from rosetta_jit.model.types import Field, Type
-    from rosetta_jit.model.units import Context
 
 
 def change_within(value: Expr, place: Place, scope: Scope) -> Change | None:

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Callable
+from typing import Literal
 
 from rosetta_jit.catalogue import logs as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.logs.base import Connection
-from rosetta_jit.logs.reading.chunked_records import Head
+from rosetta_jit.logs.reading.chunked_records import Head, Kind
 from rosetta_jit.logs.reading.chunks import Packed
 from rosetta_jit.logs.reading.fields import Fields
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.reading.chunked_records import Kind
 
 MESSAGE, BAG_HEADER, INDEX, CHUNK, CHUNK_INFO, CONNECTION = range(2, 8)
 

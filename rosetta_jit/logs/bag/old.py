@@ -13,10 +13,12 @@ The index is not needed: all headers are read when a bag is opened, and none of 
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.logs.bag.grammar import EMPTY_MD5, header_of, number
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted, widened
 from rosetta_jit.logs.limits import MAX_HEADER_BYTES
@@ -25,9 +27,6 @@ from rosetta_jit.logs.reading.chunked_records import PEEK
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.reading.storage import Storage
 
 MAGIC = b"#ROSBAG V1.2\n"

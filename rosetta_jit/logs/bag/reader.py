@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.bag.grammar import CHUNK_INFO, CONNECTION, BagGrammar, header_of, number, time_ns
 from rosetta_jit.logs.bag.old import MAGIC as OLD_MAGIC
 from rosetta_jit.logs.bag.old import OldBagReader
-from rosetta_jit.logs.base import Extent, widened
+from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Reader, Wanted, widened
 from rosetta_jit.logs.limits import MAX_INDEX_BYTES
 from rosetta_jit.logs.reading.chunked_records import PEEK, Records, Scanned
 from rosetta_jit.logs.reading.segments import Chunk, Region, pieces_of, segments_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.base import Block, Connection, Piece, Reader, Wanted
     from rosetta_jit.logs.reading.storage import Storage
 
 MAGIC = b"#ROSBAG V2.0\n"

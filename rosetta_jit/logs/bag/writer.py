@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING, BinaryIO
+from typing import BinaryIO
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.bag.grammar import BAG_HEADER, CHUNK, CHUNK_INFO, CONNECTION, INDEX, MESSAGE
-
-if TYPE_CHECKING:
-    from rosetta_jit.logs.base import Connection
+from rosetta_jit.logs.base import Connection
 
 MAGIC = b"#ROSBAG V2.0\n"
 HEADER_SIZE = 4096

@@ -8,28 +8,25 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
-from rosetta_jit.logs.base import Wanted
+from rosetta_jit.logs.base import Block, Wanted
 from rosetta_jit.logs.converting.journal import NAME, PART, Journal, Progress
 from rosetta_jit.logs.converting.parts import Parts
 from rosetta_jit.logs.converting.rejected import Damaged, Rejected
 from rosetta_jit.logs.folder_names import folder_names
-from rosetta_jit.logs.parts import CLOCKS, LARGE_BYTES, Collector
+from rosetta_jit.logs.parts import CLOCKS, LARGE_BYTES, Collector, Part
 from rosetta_jit.logs.tables import table_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
-
-    from rosetta_jit.logs.base import Block
     from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.log import Log
-    from rosetta_jit.logs.parts import Part
 
 STEP_BYTES = 256 << 20
 """Messages between one writing of the journal and the next."""

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from rosetta_jit.logs.base import Wanted
     from rosetta_jit.logs.converting.routes import Route
     from rosetta_jit.logs.log import Log

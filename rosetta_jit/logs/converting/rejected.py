@@ -5,17 +5,16 @@ from __future__ import annotations
 import json
 import os
 from base64 import b64encode
+from collections.abc import Mapping
 from dataclasses import field
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TextIO, TypeAlias
 
+from rosetta_jit.errors import DecodeError
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
     from pathlib import Path
-    from typing import TextIO
 
-    from rosetta_jit.errors import DecodeError
     from rosetta_jit.logs.parts import OnError, Refused
 
 Damaged: TypeAlias = Literal["stop", "skip", "quarantine"]

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import secrets
 from bisect import bisect_right
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rosetta_jit.catalogue import logs as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted, widened
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
@@ -17,11 +19,8 @@ from rosetta_jit.logs.reading.chunked_records import WINDOW, add_counts
 from rosetta_jit.logs.reading.walking import Rows, Why, walk
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
     from numpy.typing import NDArray
 
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.reading.storage import Storage
 
 SYNC = bytes.fromhex("eda1da01")

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Callable
+from typing import Literal
 
 from rosetta_jit.catalogue import logs as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.logs.base import Connection
-from rosetta_jit.logs.reading.chunked_records import Head
+from rosetta_jit.logs.reading.chunked_records import Head, Kind
 from rosetta_jit.logs.reading.chunks import Packed
 from rosetta_jit.logs.reading.fields import Fields
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.reading.chunked_records import Kind
 
 MAGIC = b"\x89MCAP0\r\n"
 HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, CHUNK_INDEX = range(1, 9)

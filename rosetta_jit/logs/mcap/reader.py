@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import zlib
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import LogError
-from rosetta_jit.logs.base import Extent
+from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.limits import MAX_SUMMARY_BYTES
 from rosetta_jit.logs.mcap.grammar import CHANNEL, CHUNK_INDEX, FOOTER, HEADER, MAGIC, PREFIX, SCHEMA, STATISTICS, McapGrammar
 from rosetta_jit.logs.reading.chunked_records import Records, Scanned
@@ -17,10 +19,6 @@ from rosetta_jit.logs.reading.segments import Chunk, Region, pieces_of, segments
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.base import Block, Connection, Piece, Wanted
     from rosetta_jit.logs.reading.storage import Storage
 
 FOOTER_SIZE = PREFIX.size + 20

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -10,9 +11,6 @@ from rosetta_jit.logs.base import Block
 from rosetta_jit.logs.reading.walking import Rows
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from typing import TypeAlias
-
     One: TypeAlias = tuple[int, int, int, bytes]
     """A message: its channel, when it was logged and published, its bytes."""
 

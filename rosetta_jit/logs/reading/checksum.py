@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import ctypes
 import zlib
+from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rosetta_jit.logs.reading.walking import library_of
+from rosetta_jit.runtime.code.native import Library
 from rosetta_jit.runtime.code.processor import carryless_bits
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.code.native import Library
 
 LEAST = 4096
 """Bytes below which zlib takes no longer."""

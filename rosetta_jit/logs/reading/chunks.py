@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rosetta_jit.catalogue import logs as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.logs.reading.checksum import crc32
-from rosetta_jit.logs.reading.compression import UNCOMPRESSED, decompressed
+from rosetta_jit.logs.reading.compression import UNCOMPRESSED, Scratch, decompressed
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.reading.compression import Scratch
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ Memory is taken for no more than the compressed bytes can become, whatever the c
 from __future__ import annotations
 
 import bz2
+from collections.abc import Callable
 from sys import getrefcount
 from threading import Lock, local
 from typing import TYPE_CHECKING, Any
@@ -17,8 +18,6 @@ from rosetta_jit.errors import LogError
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     Bytes = NDArray[np.uint8]

@@ -7,6 +7,7 @@ import os
 import shutil
 import sys
 import tempfile
+from collections.abc import Callable
 from errno import ENOENT
 from importlib import import_module
 from pathlib import Path
@@ -20,8 +21,6 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
 

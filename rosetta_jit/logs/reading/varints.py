@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from rosetta_jit.logs.limits import MAX_VARINT_BYTES
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 
 def varint(data: bytes | memoryview, at: int) -> tuple[int, int]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import threading
+from collections.abc import Collection
 from enum import IntEnum
 from functools import cache
 from pathlib import Path
@@ -17,14 +18,12 @@ import numpy as np
 
 from rosetta_jit.runtime.cache.texts import kept
 from rosetta_jit.runtime.code import native
+from rosetta_jit.runtime.code.native import Library
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
-
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.code.native import Library
 
 WALKS = ("mcap", "lcm", "bag")
 ROOM = 65_536

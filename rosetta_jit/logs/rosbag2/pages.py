@@ -7,13 +7,12 @@ https://www.sqlite.org/fileformat2.html, sections 1.6 and 1.7. Rows that were wr
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.logs.reading.storage import Storage
 
 LEAF, INTERIOR = 13, 5

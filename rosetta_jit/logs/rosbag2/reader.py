@@ -4,28 +4,24 @@ from __future__ import annotations
 
 import shutil
 import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 from weakref import finalize
 
 from rosetta_jit.catalogue import logs as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Reader, Wanted
 from rosetta_jit.logs.limits import MAX_METADATA_BYTES, MAX_RECORD_BYTES
 from rosetta_jit.logs.mcap.reader import McapReader
 from rosetta_jit.logs.reading.blocks import blocks_of
 from rosetta_jit.logs.reading.compression import Scratch, decompressed, zstd_size
-from rosetta_jit.logs.reading.storage import open_storage
+from rosetta_jit.logs.reading.storage import Storage, open_storage
 from rosetta_jit.logs.rosbag2.sqlite import SqliteReader
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.reading.storage import Storage
 
 PART = 1 << 32
 """Connections of file n are numbered from n times this on."""

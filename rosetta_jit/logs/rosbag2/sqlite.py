@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import sqlite3
 import struct
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 from weakref import finalize
 
 from rosetta_jit.catalogue import logs as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
@@ -18,9 +20,6 @@ from rosetta_jit.logs.reading.blocks import blocks_of
 from rosetta_jit.logs.rosbag2.pages import Pages
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.reading.storage import Storage
 
 HEADER_BYTES, MOST_OF_PAGE = 100, 1 << 16

@@ -12,10 +12,12 @@ from __future__ import annotations
 
 import re
 import struct
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted, widened
 from rosetta_jit.logs.limits import MAX_DEFINITION_BYTES, MAX_RECORD_BYTES
@@ -24,9 +26,6 @@ from rosetta_jit.logs.reading.fields import Fields
 from rosetta_jit.logs.reading.varints import fields
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.reading.storage import Storage
 
 HEAD = 12

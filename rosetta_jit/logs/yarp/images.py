@@ -14,12 +14,11 @@ from typing import TYPE_CHECKING, Any
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.limits import MAX_PIXELS
-from rosetta_jit.logs.yarp.videos import FRAME
+from rosetta_jit.logs.yarp.videos import FRAME, Frames
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosetta_jit.logs.yarp.videos import Frames
 
 HEAD = struct.Struct("<II i4s i4s ii iiiii ii")
 NETPBM = re.compile(rb"P([56])\s(\d+)\s(\d+)\s255\s")

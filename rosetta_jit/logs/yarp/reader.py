@@ -11,10 +11,13 @@ Bottles come out as YARP 3 writes them. The text has lost the widths of integers
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterator, Mapping
 from decimal import Decimal
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import EncodeError, LogError
 from rosetta_jit.frameworks.yarp import bottle
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
@@ -27,10 +30,6 @@ from rosetta_jit.logs.yarp.videos import Frames, VideoError
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-    from pathlib import Path
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.reading.storage import Storage
 
 DIALECT = DIALECTS["yarp3"]

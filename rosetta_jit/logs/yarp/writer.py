@@ -5,12 +5,12 @@ Bottles are written as text, which loses the widths of integers and that a float
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, BinaryIO
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import DecodeError, LogError
 from rosetta_jit.frameworks.yarp import bottle
-from rosetta_jit.frameworks.yarp.tags import DIALECTS
+from rosetta_jit.frameworks.yarp.tags import DIALECTS, Dialect
 from rosetta_jit.frameworks.yarp.text import to_text
 from rosetta_jit.logs.folder_names import folder_names
 from rosetta_jit.logs.yarp.images import ImageError, image_file
@@ -18,9 +18,7 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from pathlib import Path
-    from typing import BinaryIO
 
-    from rosetta_jit.frameworks.yarp.tags import Dialect
     from rosetta_jit.logs.base import Connection
 
 IMAGES = ("yarp.sig.ImageOfPixelRgb", "yarp.sig.ImageOfPixelMono", "yarp.sig.ImageOfPixelFloat")

@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from rosetta_jit.kernel.ir import Binary, Compare, Convert, Expr, Get
+from rosetta_jit.kernel.ir import Binary, Compare, Convert, Expr, Get, Scalar
 from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.lowering.arithmetic import align, binary
-from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.lowering.codec.fields import Fields, scalar_name
 from rosetta_jit.lowering.limits import MAX_SIZE
-from rosetta_jit.lowering.writer import integer
+from rosetta_jit.lowering.writer import Where, Writer, integer
 from rosetta_jit.model import expr
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Scalar
-    from rosetta_jit.lowering.codec.fields import Fields
-    from rosetta_jit.lowering.writer import Where, Writer
-    from rosetta_jit.wire.codec import Count
-
+from rosetta_jit.wire.codec import Count
 
 LIMITS = {"i8": 1 << 7, "u8": 1 << 8, "i16": 1 << 15, "u16": 1 << 16, "i32": 1 << 31, "u32": 1 << 32}
 """The first count that a number on the wire cannot carry."""

@@ -8,10 +8,10 @@ for these.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import field, replace
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Expr, Get, If, Local, SetField, Switch, Used, While
+from rosetta_jit.kernel.ir import Binary, Block, Compare, Const, Expect, Expr, Get, If, Local, SetField, Switch, Used, While
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
 from rosetta_jit.lowering.codec.fields import Cell, HolderElements, HolderFields
 from rosetta_jit.lowering.codec.walk import begin_elements, if_present, switch_cases, walk
@@ -21,14 +21,8 @@ from rosetta_jit.lowering.limits import MAX_RECURSION, MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, block, integer
 from rosetta_jit.model.layout import LINK_WORDS
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.wire.codec import Cases, Delimited, Maybe, Recursion, Repeat, Seq
+from rosetta_jit.wire.codec import Cases, Codec, Delimited, Maybe, Path, Recursion, Repeat, Seq
 from rosetta_jit.wire.recursion import MAX_OPEN_SIZES, open_sizes, recurses
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.kernel.ir import Block
-    from rosetta_jit.wire.codec import Codec, Path
 
 ROW_WORD, STATE_WORD, LEFT_WORD, OPEN_WORD = range(4)
 """The hidden words of a row: the row around it, the state to go on with there, how many neighbours follow it; then those of `Delimited`."""

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from rosetta_jit.kernel.ir import WIDTH, Binary, Compare, Const, Convert, For, If, Load, Local, Store
+from rosetta_jit.kernel.ir import WIDTH, Binary, Compare, Const, Convert, Expr, For, If, Load, Local, Store
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.codec.leaves import align, distance
-from rosetta_jit.lowering.writer import MESSAGE, block, integer
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.lowering.writer import Writer
-    from rosetta_jit.wire.codec import Encoding, Ending
+from rosetta_jit.lowering.writer import MESSAGE, Writer, block, integer
+from rosetta_jit.wire.codec import Encoding, Ending
 
 BITS = 3
 """Those of the byte that say how much padding there is."""

@@ -12,18 +12,12 @@ costs several times what it saves, so that what may be absent is not guessed.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
 
-from rosetta_jit.kernel.ir import Assign, Binary, Compare, Const, Convert, If, Load, Select, Switch, While
+from rosetta_jit.kernel.ir import Assign, Binary, Block, Compare, Const, Convert, Expr, If, Load, Local, Select, Switch, While
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
-from rosetta_jit.lowering.writer import block
+from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from rosetta_jit.kernel.ir import Block, Expr, Local
-    from rosetta_jit.lowering.writer import Where, Writer
 
 NONE = -1
 """The guess where there is none: no tag is negative."""

@@ -7,7 +7,7 @@ holder. The fields of a wire that a mapping relates to another type are `rosetta
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import ROW, add, index, mul, type_of
@@ -15,9 +15,7 @@ from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
 from rosetta_jit.model.layout import UNKNOWN, Layout, Member, Number, Row, Slot, Span, Variant
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.wire.codec import Choice, Codec, Path
+from rosetta_jit.wire.codec import Choice, Codec, Path
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,21 +5,17 @@ A number is loaded, stored, or counted; a constant is expected, stored, or count
 
 from __future__ import annotations
 
+from collections.abc import Generator, Iterable
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.lowering.codec.counts import LIMITS, agrees, as_scalar, evaluate, read_count, write_count
-from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.lowering.codec.fields import Fields, scalar_name
 from rosetta_jit.lowering.writer import Where, Writer, integer
+from rosetta_jit.model import expr
 from rosetta_jit.wire.codec import Align, Blob, Computed, Constant, Number, Padding, Table, Unsent, Utf16
-
-if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable
-
-    from rosetta_jit.lowering.codec.fields import Fields
-    from rosetta_jit.model import expr
 
 Leaf = Number | Unsent | Table | Constant | Computed | Padding | Align | Blob | Utf16
 

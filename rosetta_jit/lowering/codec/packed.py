@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import add, index, mul
@@ -10,12 +10,7 @@ from rosetta_jit.lowering.codec.fields import HolderFields, converted, scalar_na
 from rosetta_jit.lowering.codec.varint import SEVEN_BITS, from_varint
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import Number as NumberSlot
-from rosetta_jit.wire.codec import Varint
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.wire.codec import Entry, Tagged
+from rosetta_jit.wire.codec import Entry, Tagged, Varint
 
 WORD = 8
 """Bytes that are looked at together."""

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Expr, Get, If, Place, Used, While
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Expr, Get, If, Local, Place, Used, While
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.codec.fields import Cell, HolderFields
 from rosetta_jit.lowering.codec.tagged import read_message
 from rosetta_jit.lowering.codec.work_list import BEGIN_WORD, DEPTH_WORD, END_WORD, MORE_WORD, in_scratch, link
 from rosetta_jit.lowering.limits import MAX_RECURSION
 from rosetta_jit.lowering.writer import Where, Writer, block
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Local
-    from rosetta_jit.model.layout import Layout
-    from rosetta_jit.wire.codec import Encoding, Tagged
+from rosetta_jit.model.layout import Layout
+from rosetta_jit.wire.codec import Encoding, Tagged
 
 
 def cursors(writer: Writer, layout: Layout) -> dict[int, Local]:

@@ -6,8 +6,6 @@ before children), then the lengths. To measure, the list is made and gone throug
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
 from rosetta_jit.lowering.codec.fields import Cell, HolderFields, span_of
@@ -17,10 +15,7 @@ from rosetta_jit.lowering.codec.work_list import BEGIN_WORD, MORE_WORD, SIZE_WOR
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.wire.codec import Entry, Recursion, Tagged
-
-if TYPE_CHECKING:
-    from rosetta_jit.wire.codec import Encoding
+from rosetta_jit.wire.codec import Encoding, Entry, Recursion, Tagged
 
 HEADER = 2
 """Rows of the scratch lane before the list."""

@@ -9,8 +9,8 @@ else is appended to it while its message is being read. So a message notes where
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, add, index
@@ -33,10 +33,6 @@ from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import Number as NumberSlot
 from rosetta_jit.model.layout import Slot, Span
 from rosetta_jit.wire.codec import Blob, Entry, Number, Recursion, Tagged, Varint
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
 
 BYTES, GROUP, END_GROUP = 2, 3, 4
 

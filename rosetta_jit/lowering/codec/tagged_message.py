@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.kernel.ir import WIDTH, Binary, Compare, Const, Expr, Fill, Get, If, Local, Select, SetField, Used
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.lowering.codec.fields import HolderFields, converted, span_of
+from rosetta_jit.lowering.writer import Writer
 from rosetta_jit.model.layout import UNKNOWN, Row, Slot, Span, Variant
 from rosetta_jit.model.layout import Number as NumberSlot
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.lowering.writer import Writer
-    from rosetta_jit.wire.codec import Path, Tagged
+from rosetta_jit.wire.codec import Path, Tagged
 
 
 @dataclass(frozen=True, slots=True)

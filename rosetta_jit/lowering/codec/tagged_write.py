@@ -6,7 +6,7 @@ A message within another comes after its length. `size` computes all lengths and
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
@@ -18,9 +18,6 @@ from rosetta_jit.model.layout import UNKNOWN, Row, Span, Variant
 from rosetta_jit.model.layout import Number as NumberSlot
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Blob, Entry, Number, Recursion, Tagged, Varint
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 
 @dataclass(frozen=True, slots=True)

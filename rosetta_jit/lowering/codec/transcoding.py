@@ -7,20 +7,18 @@ lane.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
-from rosetta_jit.lowering.codec.fields import root_fields, span_of
+from rosetta_jit.lowering.codec.fields import HolderFields, root_fields, span_of
 from rosetta_jit.lowering.limits import MAX_LIST_NESTING
 from rosetta_jit.lowering.writer import MESSAGE, References, Writer, block, integer
+from rosetta_jit.model.layout import Layout
 from rosetta_jit.model.types import Array, Bytes, Field, Int, Ref, Schema, Struct
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.lowering.codec.fields import HolderFields
-    from rosetta_jit.model.layout import Layout
     from rosetta_jit.wire.tree import Header, Scalar, Tree
 
 SCALAR_BYTES = 8

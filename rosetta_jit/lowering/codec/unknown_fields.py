@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
+from rosetta_jit.lowering.codec.fields import HolderFields
 from rosetta_jit.lowering.codec.varint import read_length, read_tag, read_varint
 from rosetta_jit.lowering.limits import MAX_GROUPS
-from rosetta_jit.lowering.writer import MESSAGE, Contract, block
-
-if TYPE_CHECKING:
-    from rosetta_jit.lowering.codec.fields import HolderFields
-    from rosetta_jit.lowering.writer import Where, Writer
+from rosetta_jit.lowering.writer import MESSAGE, Contract, Where, Writer, block
 
 VARINT, FIXED64, DELIMITED, GROUP, END_GROUP, FIXED32 = 0, 1, 2, 3, 4, 5
 

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
+from rosetta_jit.errors import Kind
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If, Load, Local, Select, While
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, type_of
 from rosetta_jit.lowering.writer import MESSAGE, Contract, Where, Writer, block
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.errors import Kind
-    from rosetta_jit.wire.codec import Varint
+from rosetta_jit.wire.codec import Varint
 
 SEVEN_BITS = Const("u64", 0x7F)
 ONE, ZERO = Const("u64", 1), Const("u64", 0)

@@ -5,24 +5,19 @@ Direction is known to the leaves (`rosetta_jit.lowering.codec.leaves`), and here
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from collections.abc import Callable
+from typing import assert_never
 
-from rosetta_jit.kernel.ir import Assign, Binary, Compare, Const, Convert, Expect, Expr, For, If, Local, Switch, While
+from rosetta_jit.kernel.ir import Assign, Binary, Block, Compare, Const, Convert, Expect, Expr, For, If, Local, Switch, While
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.codec import leaves
-from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.lowering.codec.fields import Elements, Fields, scalar_name
 from rosetta_jit.lowering.codec.xcdr1_members import parameter, parameters
 from rosetta_jit.lowering.codec.xcdr2_members import members, store_size
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, block, integer
 from rosetta_jit.wire import codec as wire
 from rosetta_jit.wire.size import fixed_size, minimum_size
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.kernel.ir import Block
-    from rosetta_jit.lowering.codec.fields import Elements, Fields
 
 EMPTY_ELEMENTS = 1 << 16
 """How many elements that take no bytes a message may have, whatever its own size."""

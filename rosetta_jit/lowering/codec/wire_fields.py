@@ -7,8 +7,9 @@ fill afterwards. In the alternatives of a `Choice` the same fields are bound in 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import field, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from rosetta_jit.kernel.ir import Const, Copy, Expr, Local, Place, Scalar, Wire
 from rosetta_jit.kernel.terms import add, index
@@ -19,9 +20,6 @@ from rosetta_jit.model.walk import names_of, parts
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Blob, Choice, Codec, Computed, Number, Path, Repeat, Seq, Table
 from rosetta_jit.wire.size import fixed_size
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 EACH = "[]"
 """In a path, stands for any element of the array before it."""

@@ -16,11 +16,11 @@ from rosetta_jit.lowering.codec.unknown_fields import skip
 from rosetta_jit.lowering.codec.varint import read_length
 from rosetta_jit.lowering.limits import MAX_RECURSION
 from rosetta_jit.lowering.writer import Where, Writer, block
+from rosetta_jit.model.layout import Layout
+from rosetta_jit.wire.codec import Entry, Recursion
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering.codec.tagged_message import Message
-    from rosetta_jit.model.layout import Layout
-    from rosetta_jit.wire.codec import Entry, Recursion
 
 BEGIN_WORD, END_WORD, MORE_WORD, LAST_WORD, DEPTH_WORD, SIZE_WORD = range(6)
 """The hidden words of a row: its first piece, the chain of more pieces (1 + a row of the scratch lane), its depth, its size."""

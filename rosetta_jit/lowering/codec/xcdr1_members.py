@@ -8,19 +8,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Assign, Binary, Compare, Const, If, Local, Select, Switch, While
+from rosetta_jit.kernel.ir import Assign, Binary, Block, Compare, Const, Expr, If, Local, Select, Switch, While
 from rosetta_jit.kernel.terms import BEGIN, END, index
 from rosetta_jit.lowering.codec import leaves
+from rosetta_jit.lowering.codec.fields import Fields
 from rosetta_jit.lowering.codec.xcdr2_members import Seen, if_present, member_here, store_size
-from rosetta_jit.lowering.writer import Writer, block, integer
+from rosetta_jit.lowering.writer import Where, Writer, block, integer
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.wire.codec import Member, Parameter, Parameters
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Block, Expr
-    from rosetta_jit.lowering.codec.fields import Fields
     from rosetta_jit.lowering.codec.xcdr2_members import Walk
-    from rosetta_jit.lowering.writer import Where
-    from rosetta_jit.wire.codec import Member, Parameter, Parameters
 
 EXTENDED, LIST_END, IGNORE = 0x3F01, 0x3F02, 0x3F03
 """Ids that name no member."""

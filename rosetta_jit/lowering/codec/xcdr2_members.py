@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If, Select, Store, Switch, While
+from rosetta_jit.kernel.ir import Binary, Block, Compare, Const, Convert, Expr, If, Local, Select, Store, Switch, While
 from rosetta_jit.kernel.terms import BEGIN, add, index
 from rosetta_jit.lowering.codec import leaves
 from rosetta_jit.lowering.codec.absent_members import elements_given, give
+from rosetta_jit.lowering.codec.fields import Fields
 from rosetta_jit.lowering.limits import MAX_ABSENT, MAX_ABSENT_EACH
-from rosetta_jit.lowering.writer import Writer, block, integer
+from rosetta_jit.lowering.writer import Where, Writer, block, integer
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.wire.codec import Codec, Member, Members, Order, Parameter
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.kernel.ir import Block, Local
-    from rosetta_jit.lowering.codec.fields import Fields
-    from rosetta_jit.lowering.writer import Where
-    from rosetta_jit.wire.codec import Codec, Member, Members, Order, Parameter
-
     Walk = Callable[[Codec, Fields, Writer], None]
 
 ID_BITS, CODE_SHIFT, MUST_UNDERSTAND = 0x0FFF_FFFF, 28, 1 << 31

@@ -6,9 +6,11 @@ time that rules run, and what is in the way of binding one.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import field
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
+from rosetta_jit.kernel.ir import Direction
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.codec.wire_fields import EACH, leaves, numbers_of_counts
 from rosetta_jit.lowering.rules.packed_values import rule_for
@@ -17,11 +19,6 @@ from rosetta_jit.model.walk import names_of, parts
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire import codec as wire
 from rosetta_jit.wire.size import fixed_size
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.kernel.ir import Direction
 
 
 @dataclass(frozen=True, slots=True)

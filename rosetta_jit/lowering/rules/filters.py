@@ -6,26 +6,38 @@ element that is kept takes its place. So nothing waits for a branch that the pro
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import partial, reduce
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
-from rosetta_jit.kernel.ir import Assign, Binary, Compare, Convert, Expect, For, Get, If, Let, Load, Local, Require, SetField, Unary
+from rosetta_jit.kernel.ir import (
+    Assign,
+    Binary,
+    Compare,
+    Convert,
+    Expect,
+    Expr,
+    For,
+    Get,
+    If,
+    Let,
+    Load,
+    Local,
+    Require,
+    SetField,
+    Stmt,
+    Unary,
+)
 from rosetta_jit.kernel.shape import bound_names, subexpressions
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import places_in
 from rosetta_jit.lowering.arithmetic import inside
 from rosetta_jit.lowering.rules.look_ahead import look_ahead
-from rosetta_jit.lowering.writer import block
-
-if TYPE_CHECKING:
-    from contextlib import AbstractContextManager
-
-    from rosetta_jit.kernel.ir import Expr, Stmt
-    from rosetta_jit.lowering.rules.values import Values
-    from rosetta_jit.lowering.writer import Writer
-    from rosetta_jit.model.rules import Kept
+from rosetta_jit.lowering.rules.values import Values
+from rosetta_jit.lowering.writer import Writer, block
+from rosetta_jit.model.rules import Kept
 
 
 class Runs(Protocol):

@@ -5,37 +5,35 @@ It can be read (`lowering.evaluation.Source`) and be written; which one it is de
 
 from __future__ import annotations
 
+from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from dataclasses import field, replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Address, Assign, Binary, Compare, Const, Expr, Get, If, Place, Select, SetField, Switch, Used
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
-from rosetta_jit.language.check.discriminators import discriminator_of
+from rosetta_jit.language.check.discriminators import Discriminator, discriminator_of
 from rosetta_jit.language.places import field_names
 from rosetta_jit.language.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.arithmetic import inside
-from rosetta_jit.lowering.codec.fields import OTHER_CASE, has_gaps, member_of, negated, presence_bit, scalar_name
+from rosetta_jit.lowering.codec.fields import (
+    OTHER_CASE,
+    HolderElements,
+    HolderFields,
+    has_gaps,
+    member_of,
+    negated,
+    presence_bit,
+    scalar_name,
+)
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.rules.initial_values import initialise, initialise_each
-from rosetta_jit.lowering.writer import block, integer
-from rosetta_jit.model.initial_values import selected
-from rosetta_jit.model.layout import Number, Row, Span, Variant
-from rosetta_jit.model.types import Array, Bytes, Field, String, Struct
+from rosetta_jit.lowering.writer import Writer, block, integer
+from rosetta_jit.model.initial_values import InitialValues, selected
+from rosetta_jit.model.layout import Member, Number, Row, Span, Variant
+from rosetta_jit.model.types import Array, Bytes, Constant, Field, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Generator, Mapping
-
-    from rosetta_jit.language.check.discriminators import Discriminator
-    from rosetta_jit.lowering.codec.fields import HolderElements, HolderFields
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.lowering.writer import Writer
-    from rosetta_jit.model.initial_values import InitialValues
-    from rosetta_jit.model.layout import Member
-    from rosetta_jit.model.types import Constant, Union
-    from rosetta_jit.wire.codec import Path
-
+from rosetta_jit.wire.codec import Path
 
 Key = tuple[object, ...]
 """A place by names and the expressions of its indices."""

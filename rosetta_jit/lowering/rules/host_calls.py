@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from rosetta_jit.kernel.ir import HostCall, Local
+from rosetta_jit.kernel.ir import Expr, HostCall, Local
+from rosetta_jit.language import typed
 from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Float, Int
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language import typed
-    from rosetta_jit.lowering.evaluation import Evaluation
 
 
 def called(call: typed.HostCall, values: Evaluation) -> Expr:

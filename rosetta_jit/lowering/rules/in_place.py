@@ -8,8 +8,9 @@ set later must have its room by then. An `Obstacle` says what is in the way of t
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
+from rosetta_jit.kernel.ir import Direction
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import rules_within
 from rosetta_jit.language.resolve.defaults import has_array
@@ -19,15 +20,9 @@ from rosetta_jit.lowering.rules.bound_fields import BoundFields, Obstacle
 from rosetta_jit.lowering.rules.filters import filtered_arrays
 from rosetta_jit.lowering.rules.rescaling import UINT16
 from rosetta_jit.lowering.rules.wire_side import wire_key
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Schema, String, Type
 from rosetta_jit.model.walk import every_rule
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.kernel.ir import Direction
-    from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.wire.codec import Codec, Encoding, Path
+from rosetta_jit.wire.codec import Codec, Encoding, Path
 
 NESTED = "an array within an element has no place that is known beforehand"
 UNKNOWN = "the walk over the message leaves no place or number for it"

@@ -5,22 +5,16 @@ An array that a rule gives a length, or sets as a whole, is opened there; all ot
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
-from rosetta_jit.kernel.ir import Fill, For, Local, Place, SetField
+from rosetta_jit.kernel.ir import Expr, Fill, For, Local, Place, SetField
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import rules_within
-from rosetta_jit.lowering.codec.fields import member_of
+from rosetta_jit.lowering.codec.fields import HolderFields, member_of
 from rosetta_jit.lowering.writer import block
-from rosetta_jit.model.initial_values import FirstCase, FixedArray
-from rosetta_jit.model.layout import Number, Row, Span, Variant
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.lowering.codec.fields import HolderFields
-    from rosetta_jit.model.initial_values import InitialValue
-    from rosetta_jit.model.layout import Layout, Slot
+from rosetta_jit.model.initial_values import FirstCase, FixedArray, InitialValue
+from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span, Variant
 
 
 def initialise(fields: HolderFields, initial: tuple[InitialValue, ...], row: Expr, opened: frozenset[int]) -> None:

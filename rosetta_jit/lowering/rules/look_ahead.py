@@ -7,19 +7,15 @@ without rounds, and a round that does not ask, fail as they would alone.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Const
 from rosetta_jit.language import typed
 from rosetta_jit.language.walk import expressions_of, parts
-from rosetta_jit.lowering.evaluation import Awaited
+from rosetta_jit.lowering.evaluation import Awaited, Evaluation
 from rosetta_jit.lowering.rules.reductions import zero_of
 from rosetta_jit.model.expr import COMPARISONS, LOGIC
 from rosetta_jit.model.types import Float
 from rosetta_jit.model.walk import every_rule
-
-if TYPE_CHECKING:
-    from rosetta_jit.lowering.evaluation import Evaluation
 
 
 def look_ahead(rules: tuple[typed.Rule, ...], values: Evaluation) -> None:

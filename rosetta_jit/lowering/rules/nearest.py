@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.kernel.ir import Convert, Expr, Unary
+from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.model.layout import scalar_of
-
-if TYPE_CHECKING:
-    from rosetta_jit.language import typed
-    from rosetta_jit.lowering.evaluation import Evaluation
 
 
 def nearest(value: typed.Nearest, values: Evaluation) -> Expr:

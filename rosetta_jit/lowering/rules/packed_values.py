@@ -3,28 +3,22 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.functions.texts import is_textual
 from rosetta_jit.language.walk import expressions_of, operands
-from rosetta_jit.lowering.rules.values import constant, scalar_type
+from rosetta_jit.lowering.rules.holder_side import HolderSide
+from rosetta_jit.lowering.rules.values import Values, constant, scalar_type
 from rosetta_jit.lowering.rules.wire_side import wire_key
 from rosetta_jit.lowering.writer import Where, block
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Type, Union
 from rosetta_jit.model.walk import every_rule
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rosetta_jit.lowering.rules.holder_side import HolderSide
-    from rosetta_jit.lowering.rules.values import Values
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.wire.codec import Path
+from rosetta_jit.wire.codec import Path
 
 
 @dataclass(frozen=True, slots=True)

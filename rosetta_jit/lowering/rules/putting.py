@@ -2,32 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import field, replace
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Copy, For, Get, If, Local, Place, Switch
+from rosetta_jit.kernel.ir import Binary, Block, Compare, Const, Convert, Copy, Expr, For, Get, If, Local, Place, Scalar, Switch
 from rosetta_jit.kernel.terms import index, mul, type_of
-from rosetta_jit.lowering.codec.fields import presence_bit
+from rosetta_jit.language import typed
+from rosetta_jit.language.typed import Change
+from rosetta_jit.lowering.codec.fields import HolderFields, presence_bit
 from rosetta_jit.lowering.limits import MAX_SIZE
+from rosetta_jit.lowering.made_arrays import Put
+from rosetta_jit.lowering.rules.holder_side import HolderSide
 from rosetta_jit.lowering.rules.rescaling import by_number, change_of_member, rescaled
-from rosetta_jit.lowering.rules.values import NAMES, RANGES, scalar_type
-from rosetta_jit.lowering.writer import block
-from rosetta_jit.model.layout import Number, Row, Slot, Span, Variant
+from rosetta_jit.lowering.rules.values import NAMES, RANGES, Values, scalar_type
+from rosetta_jit.lowering.writer import Where, block
+from rosetta_jit.model.layout import Layout, Member, Number, Row, Slot, Span, Variant
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.kernel.ir import Block, Expr, Scalar
-    from rosetta_jit.language import typed
-    from rosetta_jit.language.typed import Change
-    from rosetta_jit.lowering.codec.fields import HolderFields
-    from rosetta_jit.lowering.made_arrays import Put
-    from rosetta_jit.lowering.rules.holder_side import HolderSide
-    from rosetta_jit.lowering.rules.values import Values
-    from rosetta_jit.lowering.writer import Where
-    from rosetta_jit.model.layout import Layout, Member
-    from rosetta_jit.wire.codec import Path
+from rosetta_jit.wire.codec import Path
 
 
 @dataclass(slots=True)

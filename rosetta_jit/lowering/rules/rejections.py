@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Const, Expect, Failure, If, Site
+from rosetta_jit.kernel.ir import Binary, Const, Expect, Expr, Failure, If, Site
 from rosetta_jit.kernel.terms import add
+from rosetta_jit.language import typed
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.limits import MAX_VALUE_SHOWN
 from rosetta_jit.lowering.texts.values import text_of
 from rosetta_jit.lowering.texts.views import Quoted, Text, joined, sound
 from rosetta_jit.lowering.writer import block
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language import typed
-    from rosetta_jit.lowering.evaluation import Evaluation
 
 
 def reject_with(pieces: tuple[typed.Expr, ...], reason: str, when: Expr | None, values: Evaluation) -> None:

@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import count
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import FLOAT64
 from rosetta_jit.language.units.numbers import scaled
-from rosetta_jit.lowering.writer import block
+from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model.types import Array, Bool, Enum, Float, Int, String
 
 UINT16 = Int(16, signed=False)
 """A unit of a text that is kept in such units."""
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rosetta_jit.lowering.writer import Writer
 
 
 def rescaled(value: Expr, change: typed.Change) -> Expr:

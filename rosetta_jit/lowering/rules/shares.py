@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
-from rosetta_jit.kernel.ir import Binary, Const, Get, SetField
+from rosetta_jit.kernel.ir import Binary, Const, Get, Scalar, SetField
 from rosetta_jit.kernel.terms import index
-from rosetta_jit.lowering.codec.fields import member_of, presence_bit, scalar_name
+from rosetta_jit.language.check.wire_needs import Names
+from rosetta_jit.language.check.wire_shares import Share
+from rosetta_jit.lowering.codec.fields import HolderFields, member_of, presence_bit, scalar_name
 from rosetta_jit.lowering.rules.initial_values import lanes_below
-from rosetta_jit.model.layout import Number, Row, Span, Variant
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Scalar
-    from rosetta_jit.language.check.wire_needs import Names
-    from rosetta_jit.language.check.wire_shares import Share
-    from rosetta_jit.lowering.codec.fields import HolderFields
-    from rosetta_jit.model.initial_values import InitialValue
-    from rosetta_jit.model.layout import Layout, Slot
+from rosetta_jit.model.initial_values import InitialValue
+from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span, Variant
 
 
 def kept_lanes(share: Share, layout: Layout) -> tuple[int, ...]:

@@ -6,18 +6,14 @@ What a rule sets one to is kept in a variable of the kernel until the message is
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Bits, Convert, Register
+from rosetta_jit.kernel.ir import Bits, Convert, Expr, Register, Scalar
 from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.language import typed
 from rosetta_jit.language.places import rules_within
 from rosetta_jit.language.typed import SetState
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr, Scalar
-    from rosetta_jit.language import typed
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.lowering.writer import Writer
+from rosetta_jit.lowering.evaluation import Evaluation
+from rosetta_jit.lowering.writer import Writer
 
 BITS: dict[Scalar, Scalar] = {"f32": "u32", "f64": "i64"}
 """Floats, and the integers of their width."""

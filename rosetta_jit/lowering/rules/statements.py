@@ -6,18 +6,19 @@ lays out the message (`packed_values`), and the rules then fill the elements int
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TYPE_CHECKING, assert_never, cast
+from typing import assert_never, cast
 
 from rosetta_jit.catalogue.pipeline import endless_copy
 from rosetta_jit.errors import MappingError
-from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, If, IsText, Local, Wire
+from rosetta_jit.kernel.ir import Block, Compare, Copy, Expr, For, If, IsText, Local, Wire
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.evaluation import lowered
-from rosetta_jit.lowering.made_arrays import UINT8
+from rosetta_jit.lowering.made_arrays import UINT8, MadeArray
 from rosetta_jit.lowering.rules.filters import filtered
 from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
 from rosetta_jit.lowering.rules.look_ahead import look_ahead
@@ -25,23 +26,15 @@ from rosetta_jit.lowering.rules.packed_values import place_of, units_of
 from rosetta_jit.lowering.rules.putting import Putting, copy, is_endless
 from rosetta_jit.lowering.rules.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.rules.state import remember
+from rosetta_jit.lowering.rules.values import Values
 from rosetta_jit.lowering.rules.wire_side import WireSide, wire_key
 from rosetta_jit.lowering.texts.separated import count_of_parts, parts_of
 from rosetta_jit.lowering.texts.values import checked, text_of
-from rosetta_jit.lowering.texts.views import placed
+from rosetta_jit.lowering.texts.views import View, placed
 from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Array, Bytes, Map, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Generator
-
-    from rosetta_jit.kernel.ir import Block
-    from rosetta_jit.lowering.made_arrays import MadeArray
-    from rosetta_jit.lowering.rules.values import Values
-    from rosetta_jit.lowering.texts.views import View
-
 
 Side = HolderSide | WireSide
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import field, replace
 from pathlib import PurePath
-from typing import TYPE_CHECKING, assert_never, cast
+from typing import TypeGuard, assert_never, cast
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.shape import statements
@@ -15,7 +16,7 @@ from rosetta_jit.language.function import functions
 from rosetta_jit.language.walk import parts
 from rosetta_jit.lowering.arithmetic import COMPARISONS, binary, differ
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
-from rosetta_jit.lowering.evaluation import lowered
+from rosetta_jit.lowering.evaluation import Awaited, Source, lowered
 from rosetta_jit.lowering.rules.host_calls import called
 from rosetta_jit.lowering.rules.look_ahead import look_ahead_of
 from rosetta_jit.lowering.rules.nearest import nearest
@@ -24,18 +25,11 @@ from rosetta_jit.lowering.rules.rejections import reject_with
 from rosetta_jit.lowering.rules.state import remembered
 from rosetta_jit.lowering.texts.search import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
+from rosetta_jit.model.expr import Operator
 from rosetta_jit.model.layout import scalar_of
-from rosetta_jit.model.types import Bool, Enum, Float, Int
+from rosetta_jit.model.types import Bool, Enum, Float, Int, Type
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from typing import TypeGuard
-
-    from rosetta_jit.lowering.evaluation import Awaited, Source
-    from rosetta_jit.model.expr import Operator
-    from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,6 @@ It can be read (`lowering.evaluation.Source`) and be written; which one it is de
 from __future__ import annotations
 
 from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import WIDTH, Address, Binary, Compare, Const, Expr, Load, Require, Store, Wire
 from rosetta_jit.kernel.terms import add, index, mul
@@ -14,16 +13,12 @@ from rosetta_jit.language import typed
 from rosetta_jit.language.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.arithmetic import inside
 from rosetta_jit.lowering.codec.fields import converted
-from rosetta_jit.lowering.codec.wire_fields import EACH
+from rosetta_jit.lowering.codec.wire_fields import EACH, Region, WireFields
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.views import between
-from rosetta_jit.lowering.writer import Where
+from rosetta_jit.lowering.writer import Where, Writer
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.lowering.codec.wire_fields import Region, WireFields
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.lowering.writer import Writer
-    from rosetta_jit.wire.codec import Path
+from rosetta_jit.wire.codec import Path
 
 
 @dataclass(slots=True)

@@ -6,9 +6,7 @@ The calendar's arithmetic counts years from March, so that the leap day is the l
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from rosetta_jit.kernel.ir import Binary, Compare, Convert, If, Select, Unary
+from rosetta_jit.kernel.ir import Binary, Compare, Convert, Expr, If, Local, Select, Unary
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.texts.views import (
     TRUE,
@@ -24,12 +22,8 @@ from rosetta_jit.lowering.texts.views import (
     room,
     scanning,
 )
-from rosetta_jit.lowering.writer import MESSAGE, Contract, block
+from rosetta_jit.lowering.writer import MESSAGE, Contract, Writer, block
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr, Local
-    from rosetta_jit.lowering.writer import Writer
 
 SECOND = 10**9
 """In nanoseconds."""

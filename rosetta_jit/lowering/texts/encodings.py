@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, If, Select
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If, Local, Select
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.texts.views import TRUE, View, has_room, kept, parameters, put, room, scanning
-from rosetta_jit.lowering.writer import MESSAGE, Contract, block
+from rosetta_jit.lowering.writer import MESSAGE, Contract, Writer, block
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.kernel.ir import Expr, Local
-    from rosetta_jit.lowering.writer import Writer
 
 LEAD, TRAIL, BEYOND, PLANE = 0xD800, 0xDC00, 0xE000, 0x10000
 """The first surrogates of a pair, the first unit behind them, and the first character that takes a pair."""

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from rosetta_jit.kernel.ir import Binary, Capacity, Compare, Const, Copy, Fill, If, Place, Select, While
+from rosetta_jit.kernel.ir import Binary, Capacity, Compare, Const, Copy, Expr, Fill, If, Local, Place, Select, While
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.texts.search import find, next_start, parts
 from rosetta_jit.lowering.texts.views import LOST, View, has_room, is_between, kept, lane_of, parameters, put, room, scanning
-from rosetta_jit.lowering.writer import MESSAGE, Contract, block
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr, Local
-    from rosetta_jit.lowering.writer import Writer
+from rosetta_jit.lowering.writer import MESSAGE, Contract, Writer, block
 
 CASE_BIT = 0x20
 """What tells an ASCII letter from the same in the other case."""

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Fits, If, Nearest, Select, Unary
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Fits, If, Local, Nearest, Select, Stmt, Unary
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.limits import MAX_EXPONENT
 from rosetta_jit.lowering.texts.number_writing import INFINITE, NAN
 from rosetta_jit.lowering.texts.views import TRUE, Scan, View, between, byte_at, is_between, is_one_of, parameters, scanning, sound, within
-from rosetta_jit.lowering.writer import MESSAGE, Contract, block
+from rosetta_jit.lowering.writer import MESSAGE, Contract, Writer, block
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr, Local, Stmt
-    from rosetta_jit.lowering.writer import Writer
 
 GOOD, NO_NUMBER, TOO_LARGE = 0, 1, 2
 LEAST = -(1 << 63)

@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.decimals import LARGEST_SCALE
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Digits, Get, If, Place, Scale, Select, Unary, While
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Digits, Expr, Get, If, Local, Place, Scale, Select, Unary, While
 from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.lowering.texts.views import View, between, has_room, kept, lane_of, put, room
-from rosetta_jit.lowering.writer import MESSAGE, Contract, block
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Expr, Local
-    from rosetta_jit.lowering.writer import Writer
+from rosetta_jit.lowering.writer import MESSAGE, Contract, Writer, block
 
 INTEGER_ROOM = 21
 """Bytes of an integer of 64 bits: 20 digits and a sign."""

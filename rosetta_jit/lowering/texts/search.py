@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from rosetta_jit.kernel.ir import WIDTH, Binary, Compare, Const, Expr, Get, If, Load, Place, Select, While, Wire
+from rosetta_jit.kernel.ir import WIDTH, Address, Binary, Compare, Const, Expr, Get, If, Load, Local, Place, Scalar, Select, While, Wire
 from rosetta_jit.kernel.terms import add, index
+from rosetta_jit.language import typed
+from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.views import TRUE, View, between, byte_at, is_one_of, parameters, scanning, sound, within
-from rosetta_jit.lowering.writer import MESSAGE, Contract, block
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Address, Local, Scalar
-    from rosetta_jit.language import typed
-    from rosetta_jit.lowering.evaluation import Evaluation
-    from rosetta_jit.lowering.writer import Writer
+from rosetta_jit.lowering.writer import MESSAGE, Contract, Writer, block
 
 
 def compared(writer: Writer, left: View, right: View) -> Expr:

@@ -5,20 +5,14 @@ An empty text has no parts, and no element holds a separator, so that what was j
 
 from __future__ import annotations
 
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, For, Local, Select, Unary, Used
+from rosetta_jit.kernel.ir import Binary, Compare, Expr, For, Local, Select, Unary, Used
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.texts.search import find, parts
 from rosetta_jit.lowering.texts.views import Quoted, View, append, between, lane_of, sound
-from rosetta_jit.lowering.writer import block
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
-
-    from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.lowering.writer import Writer
+from rosetta_jit.lowering.writer import Writer, block
 
 
 def count_of_parts(writer: Writer, view: View, pattern: bytes) -> Expr:

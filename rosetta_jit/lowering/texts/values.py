@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, If, IsText, Used, Wire
+from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Expr, If, IsText, Local, Used, Wire
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
-from rosetta_jit.lowering.evaluation import lowered
+from rosetta_jit.lowering.evaluation import Evaluation, lowered
 from rosetta_jit.lowering.texts.views import LOST, TRUE, Quoted, Text, View, joined, lane_of, placed, sound
 from rosetta_jit.lowering.writer import block
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Address, Expr, Local
-    from rosetta_jit.lowering.evaluation import Evaluation
 
 
 def text_of(value: typed.Expr, values: Evaluation) -> Text:

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
-from rosetta_jit.lowering.writer import MESSAGE, block
+from rosetta_jit.lowering.writer import MESSAGE, Writer, block
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterable
-
-    from rosetta_jit.lowering.writer import Writer
 
 LANE = "texts"
 """The hidden lane of what is computed: one byte a row."""

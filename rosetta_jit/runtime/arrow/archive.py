@@ -6,10 +6,11 @@ How many rows an array has stands before them: so the arrays of each column wait
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from dataclasses import field
 from importlib import import_module
 from tempfile import TemporaryFile
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 from zipfile import ZIP_DEFLATED, ZipFile
 
 import numpy as np
@@ -18,9 +19,7 @@ from rosetta_jit.runtime.arrow.tables import flat
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
     from pathlib import Path
-    from typing import BinaryIO
 
     import pyarrow as pa
     from numpy.typing import NDArray

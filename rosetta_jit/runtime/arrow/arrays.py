@@ -10,7 +10,7 @@ Offsets have 64 bits, except in maps, for which Arrow has none of that width.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING, Any, Literal, assert_never, cast, get_args
 
@@ -22,18 +22,15 @@ from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 from rosetta_jit.runtime.arrow.texts import NoTextError, text_array
 from rosetta_jit.runtime.arrow.times import Unit, time_array
-from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.record import Blob, Child, Entry, Items, Node, Numbers, Pairs, Record, Scalar, ScalarType, Text
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, lent, offsets, picked, read, room_for, spans
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.handed import Handed
-    from rosetta_jit.runtime.holder.record import Entry, Node, ScalarType
-    from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.rows import Flags, Indices
 
     Arrow = pa.Array

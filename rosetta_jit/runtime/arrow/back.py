@@ -7,6 +7,7 @@ absence, so that all arrays below have none.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
@@ -20,18 +21,31 @@ from rosetta_jit.runtime.arrow.leaves import blob_of, listed_of, numbers_of, ref
 from rosetta_jit.runtime.arrow.times import moment_columns
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder.paths import no_such_field
-from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.record import (
+    Bit,
+    Blob,
+    Case,
+    Cell,
+    Child,
+    Choice,
+    Entry,
+    Items,
+    Node,
+    Numbers,
+    Pairs,
+    Record,
+    Scalar,
+    Spanned,
+    Text,
+)
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.rows import offsets
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.arrow.sources import Columns
-    from rosetta_jit.runtime.holder.record import Cell, Choice, Entry, Node, Spanned
-    from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.rows import Flags, Indices
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Self, cast
 
@@ -12,7 +13,6 @@ from rosetta_jit.runtime.arrow.archive import plain, write_archive
 from rosetta_jit.runtime.arrow.tables import flat
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
     from pathlib import Path
 
 ROWS, BYTES = 1 << 17, 16 << 20

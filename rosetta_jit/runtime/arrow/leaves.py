@@ -10,17 +10,16 @@ from pyarrow import types
 
 from rosetta_jit.errors import ValuesError
 from rosetta_jit.model.layout import scalar_of
-from rosetta_jit.model.types import Bool, Enum, Float, Int
+from rosetta_jit.model.types import Bool, Enum, Float, Int, String
 from rosetta_jit.runtime.arrow.plain import is_text, pairs
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder.coerce import UTF_16
+from rosetta_jit.runtime.holder.record import ScalarType
 from rosetta_jit.runtime.rows import offsets
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rosetta_jit.model.types import String
-    from rosetta_jit.runtime.holder.record import ScalarType
     from rosetta_jit.runtime.rows import Indices
 
 

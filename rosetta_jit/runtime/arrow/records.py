@@ -6,6 +6,7 @@ fields become columns.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import fields, make_dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +14,6 @@ import numpy as np
 from pyarrow.types import is_dictionary
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import pyarrow as pa
     from numpy.typing import NDArray
 

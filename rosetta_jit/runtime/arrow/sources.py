@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import sys
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,12 +20,10 @@ from rosetta_jit.runtime.arrow.arrays import Form
 from rosetta_jit.runtime.arrow.plain import plain
 from rosetta_jit.runtime.arrow.tables import record_batch
 from rosetta_jit.runtime.holder.record import Record
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.rows import Flags
 
 _INDEX = re.compile("__index_level_[0-9]+__")

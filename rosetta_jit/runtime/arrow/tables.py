@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
 from pyarrow.types import is_struct
 
-from rosetta_jit.runtime.arrow.arrays import Place, entry_array, room
+from rosetta_jit.errors import DecodeError
+from rosetta_jit.runtime.arrow.arrays import Form, Place, entry_array, room
 from rosetta_jit.runtime.holder.paths import entries_to
 from rosetta_jit.runtime.holder.record import Record
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.rows import Rows
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from rosetta_jit.errors import DecodeError
-    from rosetta_jit.runtime.arrow.arrays import Form
-    from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.rows import Indices
 
 

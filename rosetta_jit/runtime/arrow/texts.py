@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
+from rosetta_jit.model.types import String
 from rosetta_jit.runtime.holder.coerce import UTF_16
 from rosetta_jit.runtime.rows import offsets
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rosetta_jit.model.types import String
     from rosetta_jit.runtime.rows import Indices
 
 

@@ -10,14 +10,13 @@ import pyarrow as pa
 from rosetta_jit.errors import EncodeError, ValuesError
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Int
-from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
-from rosetta_jit.runtime.rows import read
+from rosetta_jit.runtime.holder.record import Blob, Child, Items, Node, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.rows import Rows, read
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.record import Node
-    from rosetta_jit.runtime.lanes import Lanes
-    from rosetta_jit.runtime.rows import Indices, Rows
+    from rosetta_jit.runtime.rows import Indices
 
 Unit = Literal["s", "ms", "us", "ns"]
 SECOND_NS = 1_000_000_000

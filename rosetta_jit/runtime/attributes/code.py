@@ -5,23 +5,19 @@ from __future__ import annotations
 import ctypes
 import sys
 import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
-from rosetta_jit.runtime.attributes.groups import BEGINNING, END, GROUPS, group_of, part_of, symbols
+from rosetta_jit.runtime.attributes.groups import BEGINNING, END, GROUPS, Group, group_of, part_of, symbols
 from rosetta_jit.runtime.cache.texts import kept, known
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.allowed import ForeignCodeError
 from rosetta_jit.runtime.code.lazy import Stubs, is_supported, stubs_text
+from rosetta_jit.runtime.code.native import Library
 from rosetta_jit.runtime.specs import function_of, size_with_weak_list, weak_list_offset
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from rosetta_jit.runtime.attributes.groups import Group
-    from rosetta_jit.runtime.code.native import Library
 
 FILES = (
     *("shared/message.ll", "shared/boxes.ll"),

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.attributes.field_table import PLACE_BYTES, KeptFields
 from rosetta_jit.runtime.attributes.names import Names
 from rosetta_jit.runtime.cells import SCALARS
-from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.record import Blob, Entry, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.limits import MAX_VIEWS
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from rosetta_jit.runtime.holder.record import Entry
 
 
 def slots(entries: Iterable[Entry]) -> tuple[str, ...]:

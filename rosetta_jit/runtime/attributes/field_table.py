@@ -15,13 +15,12 @@ from rosetta_jit.kernel.state import ADDRESS, LANE_WORDS, LANES, lane_word
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.cells import SCALARS, dtype_of
-from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Items, Numbers, Pairs, Record, Scalar, Text, extent
+from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Entry, Items, Numbers, Pairs, Presence, Record, Scalar, Spanned, Text, extent
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.holder.record import Entry, Presence, Spanned
 
 Getter = Callable[[Any], Any]
 Setter = Callable[[Any, Any], None]

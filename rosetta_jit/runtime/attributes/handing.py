@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -11,8 +12,6 @@ from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.callable import putting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rosetta_jit.runtime.holder.objects.in_c import InC
 
 Kind = Literal["hand_in", "hand_out"]

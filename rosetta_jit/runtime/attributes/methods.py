@@ -7,16 +7,14 @@ Python function that the class would have otherwise: views, subclasses, other ar
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from functools import cache
 from types import MethodType
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import Any, Literal, cast
 
 from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.callable import putting
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 Kind = Literal["encode", "write", "decode", "parse", "make", "build", "turn"]
 """``x.encode()``, ``x.serialize(file)``, ``x.deserialize(message)``, ``x.ParseFromString(message)``, ``cls.FromString(message)``,

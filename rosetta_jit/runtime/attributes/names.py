@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from rosetta_jit.runtime.attributes.code import HEAP_TYPE_BYTES, library
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.specs import address_of, read_word, write_word
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 GETATTRO = 144
 """Where in a class stands what reads attributes: of PyTypeObject, Include/cpython/object.h."""

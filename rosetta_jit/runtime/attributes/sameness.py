@@ -16,17 +16,14 @@ are empty or absent), the answer is `ASK`: Python looks.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import Any, assert_never
 
 import numpy as np
 
 from rosetta_jit.kernel.state import ADDRESS, lane_word
 from rosetta_jit.model.layout import WIDTH, scalar_of
 from rosetta_jit.runtime.cells import SCALARS
-from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Child, Items, Numbers, Pairs, Record, Scalar, Text, extent
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.record import Cell, Entry, Node
+from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Cell, Child, Entry, Items, Node, Numbers, Pairs, Record, Scalar, Text, extent
 
 END, CELLS, BIT, CASE, WHEN, LEAF, ROWS = range(7)
 KINDS = {"bool": 1, "f32": 2, "f64": 3}

@@ -13,6 +13,7 @@ import errno
 import os
 import sys
 import warnings
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import lru_cache
 from typing import TYPE_CHECKING, cast
@@ -24,7 +25,6 @@ from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
     from rosetta_jit.diagnostics import Diagnostic

@@ -9,15 +9,12 @@ from __future__ import annotations
 import json
 import os
 import sys
+from collections.abc import Mapping
 from functools import cache
 from importlib.util import find_spec
-from typing import TYPE_CHECKING
 
 from rosetta_jit.runtime.code.processor import processor
 from rosetta_jit.startup.sha import sha256
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 NO_CODE = frozenset(("bridge", "cli", "demo", "draft", "explain", "generate", "logs", "transports"))
 """Our packages that use compiled code and have no part in it: nothing that compiles or loads it imports them."""

@@ -11,13 +11,11 @@ from __future__ import annotations
 
 import json
 import struct
-from typing import TYPE_CHECKING, cast
+from collections.abc import Mapping
+from typing import cast
 
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 MAGIC = b"rosetta\x01"
 """The last byte is the version of this format."""

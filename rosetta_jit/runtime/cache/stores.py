@@ -12,13 +12,11 @@ import os
 import stat
 import sys
 import time
-from typing import TYPE_CHECKING, BinaryIO, Protocol
+from collections.abc import Callable, Generator
+from io import FileIO
+from typing import BinaryIO, Protocol
 
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
-    from io import FileIO
 
 STALE_S = 3600.0
 """A temporary file that is older belongs to a writer that was killed."""

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from rosetta_jit.runtime.cache.kernels import Cache
 from rosetta_jit.runtime.cache.names import entry_name
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 
 def known(text: str) -> bytes | None:

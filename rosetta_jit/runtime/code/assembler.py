@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from functools import cache
-from typing import TYPE_CHECKING
 
 from llvmlite import binding
 from llvmlite.binding.newpassmanagers import NewPassManager
 
 from rosetta_jit.runtime.code.prelink import prelinked
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
 
 
 def target_machine(*, hurried: bool = False) -> binding.TargetMachine:

@@ -8,10 +8,8 @@ Any thread may call, with the interpreter lock or without it. An exception that 
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 SHAPES = {
     "image.measure": (1, 1, False),

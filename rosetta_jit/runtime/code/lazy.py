@@ -5,12 +5,9 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping, Sequence
 
 from rosetta_jit.runtime.code import native
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
 
 TABLES = ("slots", "finders", "failures")
 STUB = """.globl {name}

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
 
 from llvmlite import binding
 
 from rosetta_jit.runtime.code.allowed import ForeignCodeError, check_wanted
 from rosetta_jit.runtime.code.object_file import undefined_symbols
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
 
 
 def link(image: bytes, symbols: Sequence[str]) -> tuple[dict[str, int], Callable[[], object]]:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING
 from weakref import WeakValueDictionary, finalize
 
 from rosetta_jit.runtime.code import prelinked
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
 
 
 @dataclass(frozen=True, slots=True, weakref_slot=True)

@@ -7,13 +7,10 @@ from __future__ import annotations
 
 import struct
 import sys
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from rosetta_jit.runtime.code.allowed import ForeignCodeError
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 MAGIC = b"\x7fELF"
 X86_64 = 62

@@ -11,18 +11,27 @@ from __future__ import annotations
 import os
 import struct
 import sys
+from collections.abc import Container, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.runtime.code import object_file
-from rosetta_jit.runtime.code.object_file import EXECUTABLE, IN_MEMORY, NOTE, THREAD_LOCAL, UNDEFINED, UNWIND, WRITABLE, X86_64
+from rosetta_jit.runtime.code.object_file import (
+    EXECUTABLE,
+    IN_MEMORY,
+    NOTE,
+    THREAD_LOCAL,
+    UNDEFINED,
+    UNWIND,
+    WRITABLE,
+    X86_64,
+    ObjectFile,
+    Section,
+    Symbol,
+)
 from rosetta_jit.runtime.code.prelinked import PAGE, Prelinked, data_offset, to_bytes
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Mapping, Sequence
-
-    from rosetta_jit.runtime.code.object_file import ObjectFile, Section, Symbol
-
     _Key = tuple[int, int]
     """A section: the number of its file, and its number there."""
 

@@ -15,14 +15,12 @@ import json
 import mmap
 import os
 import struct
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 from rosetta_jit.runtime.code.allowed import ForeignCodeError, check_wanted
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
 
 MAGIC = b"prelink\x01"
 """The last byte is the version of this format."""

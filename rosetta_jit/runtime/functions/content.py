@@ -9,10 +9,11 @@ from __future__ import annotations
 import builtins
 import dis
 import enum
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 from itertools import takewhile
 from types import CodeType, FunctionType, ModuleType
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 
@@ -22,10 +23,6 @@ from rosetta_jit.runtime.functions.known import has_known_attributes, is_known, 
 from rosetta_jit.runtime.limits import MAX_FUNCTION_DEPTH, MAX_FUNCTION_VALUES, MAX_FUNCTIONS
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
 
 _ABSENT = object()
 

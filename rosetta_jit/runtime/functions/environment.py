@@ -9,15 +9,13 @@ from __future__ import annotations
 import importlib.util
 import os
 import sys
-from typing import TYPE_CHECKING, Any, cast
+from collections.abc import Iterator
+from typing import Any, cast
 
 import numpy as np
 
 from rosetta_jit.catalogue import uncertain as words
 from rosetta_jit.runtime.cache.names import numba_version
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 SETTINGS = ".numba_config.yaml"
 """The name of numba's own file of settings (numba/core/config.py)."""

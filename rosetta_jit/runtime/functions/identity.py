@@ -7,17 +7,14 @@ dispatchers that a function calls must not be compiled yet, or must have been co
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import WeakKeyDictionary
 
 from rosetta_jit.catalogue import uncertain as words
 from rosetta_jit.runtime.functions import environment, registered
-from rosetta_jit.runtime.functions.content import content_of
+from rosetta_jit.runtime.functions.content import Content, content_of
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.functions.content import Content
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,17 +13,15 @@ from __future__ import annotations
 import enum
 import os
 import sys
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from types import CellType, FunctionType, MethodType
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 from weakref import ReferenceType
 
 from rosetta_jit.catalogue import uncertain as words
 from rosetta_jit.runtime.functions.known import is_known
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
 
 MAKERS = frozenset(("numba", "rosetta_jit", "abc", "builtins", "typing"))
 """Packages whose classes numba's are made of; `abc` is the module of classes that numba makes as it goes."""

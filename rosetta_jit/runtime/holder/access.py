@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache as cached
-from typing import TYPE_CHECKING, Any, assert_never, cast
+from typing import Any, assert_never, cast
 
 import numpy as np
 
@@ -15,12 +15,9 @@ from rosetta_jit.errors import EncodeError
 from rosetta_jit.model.limits import MAX_INITIAL_BYTES
 from rosetta_jit.runtime.holder import arena, coerce, grid, undo, values
 from rosetta_jit.runtime.holder.message import Family, Getter, Message, Setter, View, beside, element, place, writable
-from rosetta_jit.runtime.holder.record import Bit, Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.record import Bit, Blob, Child, Entry, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_DEPTH
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.record import Entry
-    from rosetta_jit.runtime.lanes import Lanes
 
 Read = Callable[[Message, "Lanes", int], Any]
 """What reads a field of a message that has been found in a row of lanes."""

@@ -6,16 +6,31 @@ their children, which encoders do not accept: such lanes are unsettled, and `ros
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 import numpy as np
 
 from rosetta_jit.model.initial_values import FixedArray
-from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Child, Items, Numbers, Pairs, Record, Scalar, Text, extent
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.record import Cell, Choice, Entry, Node, Presence, Spanned
-    from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.holder.record import (
+    Bit,
+    Blob,
+    Case,
+    Cell,
+    Child,
+    Choice,
+    Entry,
+    Items,
+    Node,
+    Numbers,
+    Pairs,
+    Presence,
+    Record,
+    Scalar,
+    Spanned,
+    Text,
+    extent,
+)
+from rosetta_jit.runtime.lanes import Lanes
 
 
 def span_of(lanes: Lanes, span: Cell, row: int) -> tuple[int, int]:

@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar, cast
 
 import numpy as np
 
 from rosetta_jit.errors import InUse
 from rosetta_jit.kernel.state import CLEAN, VALID, WASTED
+from rosetta_jit.model.layout import Layout
 from rosetta_jit.runtime.attributes.code import functions
 from rosetta_jit.runtime.attributes.makers import call_as_any, class_of_holder_classes, let_call
 from rosetta_jit.runtime.attributes.names import take_names
-from rosetta_jit.runtime.holder.message import Family, Message, View, in_row, place
-from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Text
+from rosetta_jit.runtime.holder.message import Access, Family, Message, View, in_row, place
+from rosetta_jit.runtime.holder.objects.foreign import Foreign, Wholes
+from rosetta_jit.runtime.holder.record import Blob, Entry, Items, Numbers, Record, Text
 from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.plan import Plan
 from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
     from numpy.typing import NDArray
 
-    from rosetta_jit.model.layout import Layout
     from rosetta_jit.runtime.holder import access, arena, grid, paths, values
-    from rosetta_jit.runtime.holder.message import Access
-    from rosetta_jit.runtime.holder.objects.foreign import Foreign, Wholes
-    from rosetta_jit.runtime.holder.record import Entry, Record
-    from rosetta_jit.runtime.plan import Plan
 else:
     access, arena, grid, paths, values = late("rosetta_jit.runtime.holder", "access", "arena", "grid", "paths", "values")
 

@@ -7,20 +7,16 @@ a float or a boolean, and never out of range.
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from operator import index
-from typing import TYPE_CHECKING, Any, SupportsFloat, SupportsIndex, assert_never, cast
+from typing import Any, SupportsFloat, SupportsIndex, assert_never, cast
 
 import numpy as np
 
 from rosetta_jit.model.layout import scalar_of
-from rosetta_jit.model.types import Bool, Enum, Float, Int
+from rosetta_jit.model.types import Bool, Enum, Float, Int, String
 from rosetta_jit.runtime.cells import dtype_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rosetta_jit.model.types import String
-    from rosetta_jit.runtime.holder.record import ScalarType
+from rosetta_jit.runtime.holder.record import ScalarType
 
 UTF_16 = "utf-16-le" if sys.byteorder == "little" else "utf-16-be"
 """How the code units of strings lie in lanes. Surrogates without a partner are code units too."""

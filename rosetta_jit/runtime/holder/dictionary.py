@@ -6,13 +6,12 @@ from collections.abc import ItemsView, Iterator, Mapping, MutableMapping, Values
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.runtime.holder.message import View, element, place, writable
-from rosetta_jit.runtime.holder.record import Blob, Numbers, Scalar, Text
+from rosetta_jit.runtime.holder.record import Blob, Entry, Numbers, Pairs, Scalar, Text
 from rosetta_jit.runtime.holder.sequence import detached, store_row
 from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import access, arena, coerce, values
-    from rosetta_jit.runtime.holder.record import Entry, Pairs
 else:
     access, arena, coerce, values = late("rosetta_jit.runtime.holder", "access", "arena", "coerce", "values")
 

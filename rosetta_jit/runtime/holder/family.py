@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakValueDictionary
@@ -13,15 +14,17 @@ import numpy as np
 from rosetta_jit.kernel.state import VALID, WASTED
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import from_plain, to_plain
-from rosetta_jit.model.types import Ref, Struct
+from rosetta_jit.model.types import Ref, Schema, Struct, Type
 from rosetta_jit.runtime.attributes import descriptors
 from rosetta_jit.runtime.attributes.code import functions, library
+from rosetta_jit.runtime.attributes.field_table import KeptFields, OfSequences
 from rosetta_jit.runtime.attributes.makers import make_quickly, set_recipe
 from rosetta_jit.runtime.attributes.methods import put
-from rosetta_jit.runtime.holder.classes import Holder, HolderClass
+from rosetta_jit.runtime.holder.classes import Holder, HolderClass, HolderFamily
 from rosetta_jit.runtime.holder.manners import PLAIN, Manners, manners_at
 from rosetta_jit.runtime.holder.message import OWN_NAMES, Access, View, in_row, read_field, recipe, write_field
-from rosetta_jit.runtime.holder.objects.foreign import Wholes
+from rosetta_jit.runtime.holder.objects.foreign import Foreign, Wholes
+from rosetta_jit.runtime.holder.record import Record
 from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES
 from rosetta_jit.runtime.holder.serialising import building_method, serialising_methods
 from rosetta_jit.runtime.holder.tree import Tree, written_within
@@ -29,25 +32,17 @@ from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes
 from rosetta_jit.runtime.limits import MAX_RECIPES
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.looks.described import Constructor, Described
-from rosetta_jit.runtime.plan import plan
+from rosetta_jit.runtime.plan import Plan, plan
 from rosetta_jit.runtime.room import begun_as, initialised, roomier
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.late import Late
 from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.runtime.attributes.field_table import KeptFields, OfSequences
     from rosetta_jit.runtime.attributes.sameness import Sameness
     from rosetta_jit.runtime.holder import access
-    from rosetta_jit.runtime.holder.classes import HolderFamily
-    from rosetta_jit.runtime.holder.objects.foreign import Foreign
     from rosetta_jit.runtime.holder.objects.giving import Givers
     from rosetta_jit.runtime.holder.objects.taking import Takers
-    from rosetta_jit.runtime.holder.record import Record
-    from rosetta_jit.runtime.plan import Plan
 else:
     access = Late("rosetta_jit.runtime.holder.access")
 

@@ -6,18 +6,15 @@ Its rows lie together wherever they were initialised or decoded. Where they do n
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder import arena, coerce
-from rosetta_jit.runtime.holder.record import Numbers
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.record import Items, ScalarType
-    from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.holder.record import Items, Numbers, ScalarType
+from rosetta_jit.runtime.lanes import Lanes
 
 Array = np.ndarray[Any, Any]
 

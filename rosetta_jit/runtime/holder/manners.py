@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
+from rosetta_jit.runtime.attributes.methods import Kind
 from rosetta_jit.runtime.holder.classes import Holder
 from rosetta_jit.runtime.holder.dictionary import Dictionary
+from rosetta_jit.runtime.holder.message import View
 from rosetta_jit.runtime.holder.objects.foreign import ORDINARY, Foreign
+from rosetta_jit.runtime.holder.record import Entry
 from rosetta_jit.runtime.holder.sequence import Sequence
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import object_at
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rosetta_jit.runtime.attributes.methods import Kind
-    from rosetta_jit.runtime.holder.message import View
-    from rosetta_jit.runtime.holder.record import Entry
 
 
 def no_methods(family: Any) -> Mapping[str, Kind]:  # noqa: ARG001  a plain class has none

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, assert_never, cast
+from typing import Any, assert_never, cast
 
 from rosetta_jit.errors import EncodeError
 from rosetta_jit.model.layout import UNKNOWN
@@ -12,12 +12,9 @@ from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import raw, view_of
 from rosetta_jit.runtime.holder.dictionary import Dictionary
 from rosetta_jit.runtime.holder.message import Message, make_present, writable
-from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.record import Blob, Child, Entry, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.holder.sequence import store_row
 from rosetta_jit.runtime.limits import MAX_DEPTH
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.record import Entry
 
 
 def merge(message: Message, fields: Mapping[str, Any], depth: int = 0) -> None:

@@ -15,26 +15,24 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from rosetta_jit.errors import EncodeError, InvalidHolder
 from rosetta_jit.kernel.state import ADDRESS, VALID, lane_word
+from rosetta_jit.model.types import Schema, Struct
 from rosetta_jit.runtime.attributes.code import functions, library
-from rosetta_jit.runtime.attributes.field_table import PLACE_BYTES, FieldTable
+from rosetta_jit.runtime.attributes.field_table import PLACE_BYTES, FieldTable, KeptFields, OfSequences
 from rosetta_jit.runtime.callable import ALWAYS, NEVER, bind_state, message_base
-from rosetta_jit.runtime.holder.record import Child, Items, Pairs, Record
+from rosetta_jit.runtime.holder.record import Child, Entry, Items, Pairs, Record
+from rosetta_jit.runtime.holder.tree import Tree
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_DEPTH, MAX_ENDED, MAX_ENDED_BYTES
 from rosetta_jit.runtime.memory import ALIGNMENT
+from rosetta_jit.runtime.plan import Plan
 from rosetta_jit.runtime.specs import slot_offset
 from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from rosetta_jit.model.types import Schema, Struct
-    from rosetta_jit.runtime.attributes.field_table import KeptFields, OfSequences
     from rosetta_jit.runtime.attributes.sameness import Sameness
     from rosetta_jit.runtime.holder import arena
-    from rosetta_jit.runtime.holder.record import Entry
-    from rosetta_jit.runtime.holder.tree import Tree
-    from rosetta_jit.runtime.plan import Plan
 
     Base = object
 else:

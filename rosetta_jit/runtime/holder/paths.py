@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from collections.abc import Sequence
+from typing import assert_never
 
-from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rosetta_jit.runtime.holder.record import Entry, Node
+from rosetta_jit.runtime.holder.record import Blob, Child, Entry, Items, Node, Numbers, Pairs, Record, Scalar, Text
 
 
 def entry_of(record: Record, name: str) -> Entry:

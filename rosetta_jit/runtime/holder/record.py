@@ -13,17 +13,13 @@ Nodes are never changed, and not frozen only because every process pays for the 
 from __future__ import annotations
 
 from dataclasses import field
-from typing import TYPE_CHECKING, ClassVar, assert_never
+from typing import ClassVar, assert_never
 
 from rosetta_jit.model import layout as slots
-from rosetta_jit.model.initial_values import selected
-from rosetta_jit.model.types import Bool, Enum, Field, Float, Int, String, Type, Union
+from rosetta_jit.model.initial_values import InitialValue, selected
+from rosetta_jit.model.types import Bool, Constant, Enum, Field, Float, Int, String, Type, Union
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.initial_values import InitialValue
-    from rosetta_jit.model.types import Constant
 
 ScalarType = Bool | Int | Float | Enum
 SIZE = dict(zip(SCALARS, (1, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8), strict=True))

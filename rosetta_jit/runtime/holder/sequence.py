@@ -13,13 +13,12 @@ import numpy as np
 from rosetta_jit.runtime.attributes.sequences import bind_place, compiled, extend_texts, iterator_class, sequence_base
 from rosetta_jit.runtime.callable import sealed
 from rosetta_jit.runtime.holder.message import Message, View, element, place, writable
-from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Record, Scalar, Text
+from rosetta_jit.runtime.holder.record import Blob, Entry, Items, Node, Numbers, Record, Scalar, Text
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import access, arena, coerce, values
-    from rosetta_jit.runtime.holder.record import Entry, Node
-    from rosetta_jit.runtime.lanes import Lanes
 else:
     access, arena, coerce, values = late("rosetta_jit.runtime.holder", "access", "arena", "coerce", "values")
 

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from copy import deepcopy
 from inspect import getattr_static
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 from rosetta_jit.errors import RosettaError
 from rosetta_jit.runtime.attributes.methods import Kind, method, put
 from rosetta_jit.runtime.holder.message import View
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 
 class Programs(Protocol):

@@ -2,11 +2,29 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never, cast
+from typing import assert_never, cast
 
 from rosetta_jit.model import layout as slots
-from rosetta_jit.model.initial_values import InitialValues, selecting
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
+from rosetta_jit.model.initial_values import InitialValue, InitialValues, selecting
+from rosetta_jit.model.layout import Layout, Slot
+from rosetta_jit.model.types import (
+    Array,
+    Bool,
+    Bytes,
+    Constant,
+    Enum,
+    Field,
+    Float,
+    Int,
+    Map,
+    Optional,
+    Ref,
+    Schema,
+    String,
+    Struct,
+    Type,
+    Union,
+)
 from rosetta_jit.runtime.cells import cell_key
 from rosetta_jit.runtime.holder.record import (
     SIZE,
@@ -26,11 +44,6 @@ from rosetta_jit.runtime.holder.record import (
     Scalar,
     Text,
 )
-
-if TYPE_CHECKING:
-    from rosetta_jit.model.initial_values import InitialValue
-    from rosetta_jit.model.layout import Layout, Slot
-    from rosetta_jit.model.types import Constant, Schema
 
 
 class Tree:

@@ -5,17 +5,11 @@ Saved are the rows of a message and of those around it, and whatever lies in the
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.kernel.state import VALID, WASTED
-from rosetta_jit.runtime.holder.message import known_rows
-from rosetta_jit.runtime.holder.record import Child, Items, Pairs, Record, Scalar
+from rosetta_jit.runtime.holder.message import Message, known_rows
+from rosetta_jit.runtime.holder.record import Child, Items, Node, Pairs, Record, Scalar
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.message import Message
-    from rosetta_jit.runtime.holder.record import Node
-    from rosetta_jit.runtime.lanes import Lanes
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,19 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sized
 from enum import Enum as Enumeration
-from typing import TYPE_CHECKING, Any, assert_never, cast
+from typing import Any, assert_never, cast
 
 from rosetta_jit.errors import EncodeError, ValuesError
 from rosetta_jit.model.layout import UNKNOWN
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import arena, coerce, grid
 from rosetta_jit.runtime.holder.paths import no_such_field
-from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.record import Blob, Child, Entry, Items, Node, Numbers, Pairs, Record, Scalar, ScalarType, Text
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_DEPTH
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.record import Entry, Node, ScalarType
 
 Leaf = Scalar | Text | Blob | Numbers | Items
 """What is written at once. Of `Items`, those that have a shape."""

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import arena
 from rosetta_jit.runtime.holder.message import Message, place
-from rosetta_jit.runtime.holder.record import Scalar
+from rosetta_jit.runtime.holder.record import Entry, Scalar
 from rosetta_jit.runtime.limits import (
     MAX_TEXT_BYTES,
     MAX_TEXT_CHARACTERS,
@@ -20,11 +20,6 @@ from rosetta_jit.runtime.limits import (
     MAX_TEXT_ITEMS,
     MAX_TEXT_NUMBERS,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from rosetta_jit.runtime.holder.record import Entry
 
 
 def brief_message(message: Message, depth: int = 0) -> str:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
     import inspect
-    from collections.abc import Container
 
     from rosetta_jit.runtime.holder.message import Family
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from time import time_ns
 from typing import TYPE_CHECKING, Any
@@ -15,8 +16,6 @@ from rosetta_jit.transports.processes import per_process
 from rosetta_jit.transports.ros2_names import mangled, plain, topic_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
 

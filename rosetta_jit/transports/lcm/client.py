@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from importlib import import_module
+from threading import Event
 from time import time_ns
 from typing import TYPE_CHECKING, Any
 
@@ -12,9 +14,6 @@ from rosetta_jit.transports.base import Message, Sink, Source
 from rosetta_jit.transports.limits import MAX_CHANNEL_BYTES
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from threading import Event
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
 

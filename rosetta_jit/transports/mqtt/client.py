@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Mapping
 from time import monotonic, time_ns
 from typing import TYPE_CHECKING, Any
 
@@ -11,14 +12,12 @@ from paho.mqtt.enums import CallbackAPIVersion
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Message, Sink, Source
+from rosetta_jit.transports.end import End
 from rosetta_jit.transports.limits import MAX_TOPIC_BYTES
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
-    from rosetta_jit.transports.end import End
 
 
 class Client:

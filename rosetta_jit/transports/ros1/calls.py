@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
+from collections.abc import Mapping
 from time import monotonic, time_ns
 from typing import TYPE_CHECKING, Any
 
@@ -12,17 +13,14 @@ from rosetta_jit.transports.base import Caller, Message, Pending, Server
 from rosetta_jit.transports.conversation import connected
 from rosetta_jit.transports.feeding import Between, ProtocolError
 from rosetta_jit.transports.loop import loop
-from rosetta_jit.transports.ros1.node import graph_name, nodes, refuse
+from rosetta_jit.transports.ros1.node import Node, graph_name, nodes, refuse
 from rosetta_jit.transports.ros1.streaming import service_place
 from rosetta_jit.transports.ros1.tcpros import LENGTH, disagreement, header, messages, read_header
 from rosetta_jit.transports.stream import Stream
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.feeding import Machine
-    from rosetta_jit.transports.ros1.node import Node
 
 WORKED, FAILED = b"\1", b"\0"
 

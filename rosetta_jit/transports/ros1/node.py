@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import re
+import socket
 import threading
 from collections import deque
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from itertools import count
 from typing import TYPE_CHECKING, Any, Protocol, cast
@@ -20,9 +22,6 @@ from rosetta_jit.transports.ros1.xmlrpc import Answering, ask
 from rosetta_jit.transports.stream import Stream
 
 if TYPE_CHECKING:
-    import socket
-    from collections.abc import Callable, Mapping
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.feeding import Machine
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
@@ -12,18 +13,15 @@ from rosetta_jit.transports.conversation import connected
 from rosetta_jit.transports.feeding import Between
 from rosetta_jit.transports.limits import MAX_CONNECTIONS
 from rosetta_jit.transports.loop import loop
-from rosetta_jit.transports.ros1.node import graph_name, nodes, refuse, uris_in
+from rosetta_jit.transports.ros1.node import Node, graph_name, nodes, refuse, uris_in
 from rosetta_jit.transports.ros1.tcpros import LENGTH, disagreement, header, messages, read_header
 from rosetta_jit.transports.ros1.xmlrpc import ask
 from rosetta_jit.transports.stream import Stream, finish_all
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
     from rosetta_jit.transports.feeding import Machine
-    from rosetta_jit.transports.ros1.node import Node
 
 CONNECT_S = 3.0
 AGAIN_S = 0.5

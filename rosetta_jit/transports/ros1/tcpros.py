@@ -10,14 +10,13 @@ All little-endian.
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable, Generator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.transports.feeding import Frames, ProtocolError
 from rosetta_jit.transports.limits import MAX_HEADER_BYTES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Mapping
-
     from rosetta_jit.transports.feeding import Machine
 
 LENGTH = struct.Struct("<I")

@@ -6,7 +6,8 @@ import http.client
 import socket
 import threading
 import xmlrpc.client
-from typing import TYPE_CHECKING, Any, cast
+from collections.abc import Callable, Mapping
+from typing import Any, cast
 from urllib.parse import urlsplit
 from xml.parsers.expat import ExpatError
 
@@ -14,9 +15,6 @@ from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.conversation import conversation
 from rosetta_jit.transports.http_server import Handler, QuestionServer
 from rosetta_jit.transports.limits import MAX_REQUESTS, MAX_XML_BYTES
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
 
 TIMEOUT_S = 5.0
 """How long a request may take, from connecting to the end of the answer."""

@@ -8,8 +8,10 @@ A frame is written at once: rsb-python closes a connection where the four bytes 
 
 from __future__ import annotations
 
+import socket
 import struct
 import threading
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
@@ -23,9 +25,6 @@ from rosetta_jit.transports.rsb.scopes import above, normal
 from rosetta_jit.transports.stream import Stream, finish_all
 
 if TYPE_CHECKING:
-    import socket
-    from collections.abc import Callable, Mapping
-
     from rosetta_jit.transports.end import End
     from rosetta_jit.transports.feeding import Machine
 

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Caller, Message, Pending, Server
 from rosetta_jit.transports.rsb.bus import Participant, buses
+from rosetta_jit.transports.rsb.notification import Event, EventId
 from rosetta_jit.transports.rsb.scopes import scope_of
 from rosetta_jit.transports.rsb.streaming import Informer, message_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
-    from rosetta_jit.transports.rsb.notification import Event, EventId
 
 REQUEST, REPLY = "REQUEST", "REPLY"
 ERROR = "rsb:error?"

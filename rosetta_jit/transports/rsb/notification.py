@@ -11,13 +11,11 @@ The number of event_id is 100 + 8, the version of the format, which is that of R
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from rosetta_jit.transports.limits import MAX_ENTRIES
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
 
 ID_BYTES = 16
 _WIDTH = {1: 8, 5: 4}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping, Sequence
 from itertools import count
 from time import time_ns
 from typing import TYPE_CHECKING, Any
@@ -15,8 +16,6 @@ from rosetta_jit.transports.rsb.notification import Event, EventId
 from rosetta_jit.transports.rsb.scopes import normal, scope_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
+from collections.abc import Mapping
 from time import monotonic, time_ns
 from typing import TYPE_CHECKING, Any
 
@@ -11,13 +12,11 @@ from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Caller, Message, Pending, Server
 from rosetta_jit.transports.sockets.framing import framed, messages
 from rosetta_jit.transports.sockets.tcp import Links, waited
+from rosetta_jit.transports.stream import Stream
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.feeding import Machine
-    from rosetta_jit.transports.stream import Stream
 
 
 class TcpCaller(Caller):

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.feeding import Between, Frames, ProtocolError, Until, too_large
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rosetta_jit.transports.feeding import Machine
 
     Bytes = bytes | bytearray | memoryview

@@ -8,6 +8,7 @@ import select
 import stat
 import threading
 from collections import deque
+from collections.abc import Mapping
 from time import monotonic, sleep
 from typing import TYPE_CHECKING, Any
 
@@ -19,8 +20,6 @@ from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.sockets.framing import framed, messages
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
 

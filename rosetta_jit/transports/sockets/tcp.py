@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import socket
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
-from rosetta_jit.transports.base import Sink
+from rosetta_jit.transports.base import Sink, Source
 from rosetta_jit.transports.connecting import Dialer, Listener
+from rosetta_jit.transports.end import End
 from rosetta_jit.transports.limits import MAX_CONNECTIONS
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.sockets.endpoints import targets
@@ -14,12 +17,8 @@ from rosetta_jit.transports.sockets.framing import LENGTHS, framed, messages
 from rosetta_jit.transports.stream import Stream, finish_all
 
 if TYPE_CHECKING:
-    import socket
-    from collections.abc import Callable, Mapping
-
     from rosetta_jit.transports.address import Address
-    from rosetta_jit.transports.base import Lost, Source
-    from rosetta_jit.transports.end import End
+    from rosetta_jit.transports.base import Lost
     from rosetta_jit.transports.feeding import Machine
 
 

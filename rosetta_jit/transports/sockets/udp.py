@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+from collections.abc import Mapping
 from time import time_ns
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +15,6 @@ from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.sockets.endpoints import targets
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
 

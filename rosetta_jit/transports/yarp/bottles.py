@@ -7,13 +7,10 @@ each has its own before it. What the values mean is the business of decoders.
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING
+from typing import Any
 
 from rosetta_jit.transports.feeding import ProtocolError
 from rosetta_jit.transports.limits import MAX_BOTTLE_DEPTH
-
-if TYPE_CHECKING:
-    from typing import Any
 
 INT32, VOCAB, STRING, BLOB, INT64, LIST = 1, 9, 4, 12, 17, 256
 GROUP = 768

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import socket
 import threading
+from collections.abc import Mapping
 from time import monotonic, sleep, time_ns
 from typing import TYPE_CHECKING, Any
 
@@ -13,17 +15,13 @@ from rosetta_jit.transports.feeding import SOME, ProtocolError
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.stream import Stream
 from rosetta_jit.transports.yarp.bottles import WIDTHS, length_of
-from rosetta_jit.transports.yarp.names import name_server, port_name
+from rosetta_jit.transports.yarp.names import Contact, name_server, port_name
 from rosetta_jit.transports.yarp.port import Port, own_name
 from rosetta_jit.transports.yarp.wire import ACK, head_of, hello, int_of
 
 if TYPE_CHECKING:
-    import socket
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.feeding import Machine
-    from rosetta_jit.transports.yarp.names import Contact
 
 RETRY_S = 0.05
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable, Generator
 from contextlib import suppress
 from time import time_ns
 from typing import TYPE_CHECKING, Any, Protocol
@@ -16,8 +17,6 @@ from rosetta_jit.transports.yarp.stamps import attributes_of
 from rosetta_jit.transports.yarp.wire import ACK, FIRST_CARRIER, MCAST, TCP, UDP, WITH_ACKS, frames, hello_rest, int_of, name_in, yarp_int
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
-
     from rosetta_jit.transports.feeding import Machine
 
     Reply = Callable[[bytes | None, str | None], object]

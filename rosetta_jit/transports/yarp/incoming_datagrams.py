@@ -4,22 +4,17 @@ from __future__ import annotations
 
 import ipaddress
 import socket
+from collections.abc import Callable
 from time import monotonic
-from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.datagrams import Datagrams, bound
+from rosetta_jit.transports.end import End
 from rosetta_jit.transports.feeding import FIRST_BYTES, ProtocolError
 from rosetta_jit.transports.limits import MAX_HELD_BYTES
 from rosetta_jit.transports.loop import loop
-from rosetta_jit.transports.yarp.incoming import messages
+from rosetta_jit.transports.yarp.incoming import Owner, messages
 from rosetta_jit.transports.yarp.pieces import Pieces
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rosetta_jit.transports.end import End
-    from rosetta_jit.transports.yarp.incoming import Owner
 
 
 class DatagramInput:

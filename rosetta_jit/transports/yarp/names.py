@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,8 +15,6 @@ from rosetta_jit.transports.conversation import conversation
 from rosetta_jit.transports.limits import MAX_NAMES_BYTES
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
 
 DEFAULT = ("127.0.0.1", 10000)

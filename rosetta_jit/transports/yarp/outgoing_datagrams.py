@@ -6,6 +6,7 @@ import ipaddress
 import socket
 import threading
 from collections import deque
+from collections.abc import Callable
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
@@ -17,8 +18,6 @@ from rosetta_jit.transports.yarp.pieces import MOST, cut
 from rosetta_jit.transports.yarp.wire import hello, int_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rosetta_jit.transports.yarp.names import Contact
 
     Bytes = bytes | bytearray | memoryview

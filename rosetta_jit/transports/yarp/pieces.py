@@ -10,14 +10,13 @@ with it a port of YARP wakes its own reader.
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 from zlib import crc32
 
 from rosetta_jit.transports.feeding import Feed, ProtocolError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
     from rosetta_jit.transports.feeding import Machine
 
     Bytes = bytes | bytearray | memoryview

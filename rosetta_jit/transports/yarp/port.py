@@ -3,35 +3,33 @@
 from __future__ import annotations
 
 import os
+import socket
 import threading
 from collections import deque
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
+from rosetta_jit.transports.base import Message
 from rosetta_jit.transports.connecting import Listener, resolve
 from rosetta_jit.transports.conversation import Conversation, connected
+from rosetta_jit.transports.end import End
 from rosetta_jit.transports.feeding import ProtocolError
 from rosetta_jit.transports.limits import MAX_CONNECTING, MAX_CONNECTIONS, MAX_DATAGRAM_INPUTS, MAX_OUTPUTS
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.stream import Stream
 from rosetta_jit.transports.yarp.admin import ask_port, leave, quoted, words_of
-from rosetta_jit.transports.yarp.incoming import incoming
+from rosetta_jit.transports.yarp.incoming import Line, incoming
 from rosetta_jit.transports.yarp.incoming_datagrams import DatagramInput, receiving
-from rosetta_jit.transports.yarp.names import NAME
+from rosetta_jit.transports.yarp.names import NAME, Contact, NameServer
 from rosetta_jit.transports.yarp.outgoing import Output
 from rosetta_jit.transports.yarp.outgoing_datagrams import DatagramOutput, Group, greeted_by_mcast, greeted_by_udp
 from rosetta_jit.transports.yarp.wire import CARRIERS, CONNECTIONLESS
 
 if TYPE_CHECKING:
-    import socket
-    from collections.abc import Callable, Mapping
-
-    from rosetta_jit.transports.base import Message
-    from rosetta_jit.transports.end import End
-    from rosetta_jit.transports.yarp.incoming import Line, Reply
-    from rosetta_jit.transports.yarp.names import Contact, NameServer
+    from rosetta_jit.transports.yarp.incoming import Reply
 
 SOON_S = 0.5
 """Between two attempts to make a connection that is missing."""

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
 from rosetta_jit.transports.limits import MAX_STAMP_DIGITS
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 
 def stamp(sequence: int, time_ns: int) -> str:

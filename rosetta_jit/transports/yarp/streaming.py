@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +15,6 @@ from rosetta_jit.transports.yarp.stamps import stamp
 from rosetta_jit.transports.yarp.wire import head_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
 

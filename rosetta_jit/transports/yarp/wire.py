@@ -14,15 +14,12 @@ the end, 0 says that the text begins with the key, and an envelope follows it.
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING
+from collections.abc import Generator
+from typing import Any
 
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.transports.feeding import Between, ProtocolError
 from rosetta_jit.transports.limits import MAX_ENVELOPE_BYTES, MAX_YARP_NAME_BYTES
-
-if TYPE_CHECKING:
-    from collections.abc import Generator
-    from typing import Any
 
 FIRST_CARRIER = 7777
 UDP, MCAST, TCP = 0, 1, 3

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from time import monotonic, time_ns
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +14,6 @@ from rosetta_jit.transports.zenoh.client import message_of
 from rosetta_jit.transports.zenoh.sessions import key_of, sessions
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
 
 

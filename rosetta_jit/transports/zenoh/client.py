@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from time import time_ns
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +13,6 @@ from rosetta_jit.transports.base import Message, Sink, Source
 from rosetta_jit.transports.zenoh.sessions import key_of, sessions
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 import struct
+from collections.abc import Mapping
 from itertools import count
 from time import time_ns
 from typing import TYPE_CHECKING, Any
@@ -24,8 +25,6 @@ from rosetta_jit.transports.zenoh.client import put
 from rosetta_jit.transports.zenoh.sessions import sessions
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
 

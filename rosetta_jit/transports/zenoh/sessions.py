@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import threading
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import zenoh
@@ -12,8 +13,6 @@ from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.processes import per_process
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.transports.address import Address
 
 KEYS = ("connect", "listen", "mode", "scout", "config")

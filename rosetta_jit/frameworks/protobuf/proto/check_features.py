@@ -5,24 +5,17 @@ https://protobuf.dev/editions/features/
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf.proto.constants import spelled
-from rosetta_jit.frameworks.protobuf.proto.declarations import fields_in, file_features
-from rosetta_jit.frameworks.protobuf.proto.features import FEATURES, choices, chosen_word, own
+from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredField, fields_in, file_features
+from rosetta_jit.frameworks.protobuf.proto.features import FEATURES, Choice, choices, chosen_word, own
 from rosetta_jit.frameworks.protobuf.proto.options import options_of, type_at
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS, is_packable
-from rosetta_jit.frameworks.protobuf.proto.tree import EDITIONS, MapType
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredField
-    from rosetta_jit.frameworks.protobuf.proto.features import Choice
-    from rosetta_jit.frameworks.protobuf.proto.tree import Field, Option, Version
+from rosetta_jit.frameworks.protobuf.proto.tree import EDITIONS, Field, MapType, Option, Version
 
 
 def check_features(declared: Declarations) -> Iterator[Diagnostic]:

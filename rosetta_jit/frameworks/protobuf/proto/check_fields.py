@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.proto.check_numbers import containing, in_order
 from rosetta_jit.frameworks.protobuf.proto.constants import WrongValueError, constant, enum_number, spelled
-from rosetta_jit.frameworks.protobuf.proto.declarations import fields_in
+from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredExtension, DeclaredField, fields_in
 from rosetta_jit.frameworks.protobuf.proto.options import OPTIONS, flag
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS, is_packable
-from rosetta_jit.frameworks.protobuf.proto.tree import EDITIONS, Field, MapType, Name, Oneof
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredExtension, DeclaredField
-    from rosetta_jit.frameworks.protobuf.proto.tree import Option, Version
-
+from rosetta_jit.frameworks.protobuf.proto.tree import EDITIONS, Field, MapType, Name, Oneof, Option, Version
 
 NO_KEYS = frozenset(("double", "float", "bytes"))
 """Scalars that a map cannot have as keys."""

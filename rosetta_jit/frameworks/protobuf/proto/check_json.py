@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.json_names import camel_case
 from rosetta_jit.frameworks.protobuf.proto.options import flag
 from rosetta_jit.frameworks.protobuf.proto.symbols import fields_of
+from rosetta_jit.frameworks.protobuf.proto.tree import Field
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredMessage
-    from rosetta_jit.frameworks.protobuf.proto.tree import Field
 
 
 def check_json(declared: Declarations) -> Iterator[Diagnostic]:

@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.proto.constants import fits
 from rosetta_jit.frameworks.protobuf.proto.options import flag
 from rosetta_jit.frameworks.protobuf.proto.symbols import fields_of
-from rosetta_jit.frameworks.protobuf.proto.tree import LARGEST_FIELD_NUMBER, LARGEST_MESSAGE_SET_NUMBER, Range
+from rosetta_jit.frameworks.protobuf.proto.tree import (
+    LARGEST_FIELD_NUMBER,
+    LARGEST_MESSAGE_SET_NUMBER,
+    Enum,
+    EnumValue,
+    Field,
+    Message,
+    Name,
+    Range,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredEnum, DeclaredMessage
-    from rosetta_jit.frameworks.protobuf.proto.tree import Enum, EnumValue, Field, Message, Name
 
 
 PROTOBUF_OWN = Range(19000, 19999)

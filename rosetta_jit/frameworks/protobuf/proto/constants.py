@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 import struct
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Listing, Value, Word
-from rosetta_jit.model.types import Bool, Bytes, Float, Int, String
+from rosetta_jit.model.types import Bool, Bytes, Constant, Float, Int, String
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.frameworks.protobuf.proto.scalars import Scalar
-    from rosetta_jit.model.types import Constant
 
 NOT_FINITE = {"inf": math.inf, "-inf": -math.inf, "nan": math.nan, "-nan": math.nan}
 

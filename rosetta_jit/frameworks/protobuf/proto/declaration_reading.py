@@ -5,18 +5,14 @@ What depends on other statements is left to the checks.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from collections.abc import Iterator
+from typing import cast
 
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.proto import tree
-from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, one, tokens_of
+from rosetta_jit.frameworks.protobuf.proto.values import Node, ValueReader, all_of, one, tokens_of
 from rosetta_jit.parsing.lalr import Token, Tree
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.frameworks.protobuf.proto.values import Node
 
 
 class DeclarationReader(ValueReader):

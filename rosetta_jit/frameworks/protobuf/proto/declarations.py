@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, assert_never
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Literal, assert_never
 
 from rosetta_jit.frameworks.protobuf.proto.features import DEFAULTS, Features, choose, choose_for_field
 from rosetta_jit.frameworks.protobuf.proto.symbols import fields_of, join, package_of
-from rosetta_jit.frameworks.protobuf.proto.tree import Field, MapType, Oneof
+from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Extend, Field, File, MapType, Message, Name, Oneof, Version
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
-    from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Extend, File, Message, Name, Version
 
 Place = Literal["message", "oneof", "extension"]
 

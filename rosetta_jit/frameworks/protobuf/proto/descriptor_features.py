@@ -5,14 +5,13 @@ Older versions of protobuf's Python package know fewer of these fields; to them 
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf.proto.features import FEATURES
 from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Entry, Option, Word
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from google.protobuf.descriptor_pb2 import (
         EnumOptions,
         FieldOptions,

@@ -7,6 +7,7 @@ where its generated module was imported; elsewhere it is an unknown field, and i
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf.limits import MAX_NAME
@@ -15,8 +16,6 @@ from rosetta_jit.frameworks.protobuf.proto.tree import Option, Value, Word
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
     from google.protobuf.descriptor import FieldDescriptor
     from google.protobuf.descriptor_pb2 import (
         DescriptorProto,

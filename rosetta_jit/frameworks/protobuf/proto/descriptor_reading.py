@@ -6,8 +6,10 @@ https://github.com/protocolbuffers/protobuf/blob/main/src/google/protobuf/descri
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.json_names import camel_case
 from rosetta_jit.frameworks.protobuf.limits import MAX_NAME, MAX_SHOWN
@@ -22,8 +24,6 @@ from rosetta_jit.frameworks.protobuf.proto.literals import EscapeError, number, 
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
     from google.protobuf.descriptor_pb2 import (
         DescriptorProto,
         EnumDescriptorProto,
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
         ServiceDescriptorProto,
     )
 
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.descriptor_features import Holder
 
 TYPE_GROUP = 10

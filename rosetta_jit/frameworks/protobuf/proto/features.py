@@ -7,16 +7,12 @@ https://protobuf.dev/editions/features/
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Word
+from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Field, Option, Value, Version, Word
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.frameworks.protobuf.proto.tree import Field, Option, Value, Version
 
 
 @dataclass(frozen=True, slots=True)

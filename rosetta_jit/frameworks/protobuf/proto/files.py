@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.limits import MAX_FILES
-from rosetta_jit.frameworks.protobuf.proto.file_set import FileSet
+from rosetta_jit.frameworks.protobuf.proto.file_set import Edges, FileSet
 from rosetta_jit.frameworks.protobuf.proto.reading import read
+from rosetta_jit.frameworks.protobuf.proto.tree import File, Import, ImportKind
+from rosetta_jit.source import Source
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.protobuf.proto.file_set import Edges
-    from rosetta_jit.frameworks.protobuf.proto.tree import File, Import, ImportKind
     from rosetta_jit.parsing.idl import Load
-    from rosetta_jit.source import Source
 
 
 @dataclass(frozen=True, slots=True)

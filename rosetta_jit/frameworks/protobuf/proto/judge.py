@@ -6,23 +6,22 @@ from collections.abc import Callable, Iterator
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf.limits import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.check_features import check_features
 from rosetta_jit.frameworks.protobuf.proto.check_fields import check_extensions, check_fields
 from rosetta_jit.frameworks.protobuf.proto.check_json import check_json
 from rosetta_jit.frameworks.protobuf.proto.check_numbers import check_enums, check_numbers
-from rosetta_jit.frameworks.protobuf.proto.declarations import declarations
+from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, declarations
 from rosetta_jit.frameworks.protobuf.proto.names import absolute
 from rosetta_jit.frameworks.protobuf.proto.options import check_options
 from rosetta_jit.frameworks.protobuf.proto.schema import build
 from rosetta_jit.frameworks.protobuf.proto.symbols import declare
+from rosetta_jit.model.types import Schema
 from rosetta_jit.parsing.idl import refuse
 
 if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations
     from rosetta_jit.frameworks.protobuf.proto.file_set import FileSet
-    from rosetta_jit.model.types import Schema
 
 
 def schema_of(files: FileSet) -> Schema:

@@ -6,19 +6,17 @@ Scalar types keep their words. A name that stands for nothing becomes empty, is 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.limits import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto import tree
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
 from rosetta_jit.frameworks.protobuf.proto.symbols import ALL_KINDS, TYPES, Kind, Symbols, join, package_of
+from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.source import Span
 
 EXTENSION: frozenset[Kind] = frozenset(("extension",))
 MESSAGE: frozenset[Kind] = frozenset(("message",))

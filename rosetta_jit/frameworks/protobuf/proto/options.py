@@ -5,22 +5,20 @@ Their names and types are those of google/protobuf/descriptor.proto. Custom opti
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.proto.constants import WrongValueError, constant, enum_number, spelled
 from rosetta_jit.frameworks.protobuf.proto.features import FEATURES, FOR_PROTOC
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
 from rosetta_jit.frameworks.protobuf.proto.symbols import enums_of, extends_of, fields_of, messages_of
-from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, MapType, Oneof, Option, Word
+from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Field, File, MapType, Oneof, Option, Value, Word
+from rosetta_jit.model.types import Constant
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations
-    from rosetta_jit.frameworks.protobuf.proto.tree import Field, File, Value
-    from rosetta_jit.model.types import Constant
 
 OPTIONS: Mapping[str, Mapping[str, str]] = {
     "FileOptions": {

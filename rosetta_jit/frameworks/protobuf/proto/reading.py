@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.proto import syntax, tree
 from rosetta_jit.frameworks.protobuf.proto.declaration_reading import DeclarationReader
-from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, one, tokens_of
-
-if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.protobuf.proto.values import Node
-    from rosetta_jit.parsing.lalr import Token
-    from rosetta_jit.source import Source
+from rosetta_jit.frameworks.protobuf.proto.values import Node, ValueReader, all_of, one, tokens_of
+from rosetta_jit.parsing.lalr import Token
+from rosetta_jit.source import Source
 
 
 def read(source: Source, problems: list[Diagnostic]) -> tree.File | None:

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 from rosetta_jit.model.types import Bool, Bytes, Float, Int, String
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 Scalar = Bool | Bytes | Float | Int | String
 

@@ -7,30 +7,28 @@ named `[package.extension]`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from collections.abc import Mapping
+from typing import assert_never
 
 from rosetta_jit.frameworks.protobuf.proto.check_json import chosen_names, default_name
 from rosetta_jit.frameworks.protobuf.proto.constants import constant, enum_number
-from rosetta_jit.frameworks.protobuf.proto.declarations import cases_in, field_in
+from rosetta_jit.frameworks.protobuf.proto.declarations import (
+    Declarations,
+    DeclaredEnum,
+    DeclaredExtension,
+    DeclaredField,
+    DeclaredMessage,
+    cases_in,
+    field_in,
+)
 from rosetta_jit.frameworks.protobuf.proto.options import field_options
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS, is_packable
 from rosetta_jit.frameworks.protobuf.proto.symbols import join
 from rosetta_jit.frameworks.protobuf.proto.tree import Field, MapType, Name, Oneof
 from rosetta_jit.model import types as model
+from rosetta_jit.model.types import Constant, Schema
 from rosetta_jit.model.units import with_unit
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rosetta_jit.frameworks.protobuf.proto.declarations import (
-        Declarations,
-        DeclaredEnum,
-        DeclaredExtension,
-        DeclaredField,
-        DeclaredMessage,
-    )
-    from rosetta_jit.model.types import Constant, Schema
 
 
 def build(declared: Declarations) -> Schema:

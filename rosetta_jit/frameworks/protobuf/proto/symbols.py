@@ -6,21 +6,19 @@ https://protobuf.dev/programming-guides/proto2/#name-resolution
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Literal, assert_never, get_args
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.limits import MAX_NAME, MAX_REPORTED
-from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Field, MapType, Message, Name, Oneof
+from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Extend, Field, File, MapType, Message, Name, Oneof
 from rosetta_jit.parsing.idl import refuse
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.file_set import FileSet
-    from rosetta_jit.frameworks.protobuf.proto.tree import Extend, File
 
 Kind = Literal["package", "message", "enum", "value", "field", "oneof", "extension", "service", "method"]
 

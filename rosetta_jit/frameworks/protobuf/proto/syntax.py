@@ -6,22 +6,17 @@ wrong one were not there.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.limits import MAX_NESTING, MAX_SYNTAX_ERRORS
-from rosetta_jit.parsing.lalr import END, UnexpectedTokenError
+from rosetta_jit.parsing.lalr import END, Grammar, Parser, Token, Tree, UnexpectedTokenError
 from rosetta_jit.parsing.parsers import parser_of
 from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.parsing.lalr import Grammar, Parser, Token, Tree
 
 GRAMMAR = Path(__file__).with_name("proto.lark")
 START = "file"

@@ -5,8 +5,10 @@ Numbers and strings get their values here, so what is wrong with one of them is 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, cast
+from collections.abc import Iterator
+from typing import Literal, cast
 
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.limits import MAX_COMMENT, MAX_NAME
 from rosetta_jit.frameworks.protobuf.proto import literals, syntax
@@ -14,12 +16,6 @@ from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Entry, Listing
 from rosetta_jit.parsing.lalr import Token, Tree
 from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from rosetta_jit.diagnostics import Diagnostic
-
 
 Node = Tree
 

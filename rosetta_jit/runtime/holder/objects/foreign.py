@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.runtime.holder.record import Record
+from rosetta_jit.runtime.holder.serialising import Programs
 from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rosetta_jit.runtime.holder.objects.in_c import InC
-    from rosetta_jit.runtime.holder.record import Record
-    from rosetta_jit.runtime.holder.serialising import Programs
 
 
 @dataclass(frozen=True, slots=True)

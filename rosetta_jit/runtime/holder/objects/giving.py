@@ -9,19 +9,16 @@ from __future__ import annotations
 import array
 from collections.abc import Callable, Iterator, Mapping
 from enum import Enum as Enumeration
-from typing import TYPE_CHECKING, Any, assert_never, cast
+from typing import Any, assert_never, cast
 
 import numpy as np
 
 from rosetta_jit.errors import ValuesError
 from rosetta_jit.model.types import Enum
+from rosetta_jit.runtime.holder.classes import HolderFamily
 from rosetta_jit.runtime.holder.objects import shapes, unions
 from rosetta_jit.runtime.holder.objects.source import ByClass, Source, assignment, attribute
-from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.classes import HolderFamily
-    from rosetta_jit.runtime.holder.record import Choice, Entry, Node
+from rosetta_jit.runtime.holder.record import Blob, Child, Choice, Entry, Items, Node, Numbers, Pairs, Record, Scalar, Text
 
 INLINED = 3
 """How deep messages lie in others that one function fills."""

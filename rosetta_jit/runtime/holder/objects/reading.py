@@ -9,20 +9,17 @@ from __future__ import annotations
 import array
 from collections.abc import Iterable, Mapping
 from enum import Enum as Enumeration
-from typing import TYPE_CHECKING, Any, assert_never, cast
+from typing import Any, assert_never, cast
 
 import numpy as np
 
 from rosetta_jit.errors import ValuesError
 from rosetta_jit.model.types import Enum, Struct
 from rosetta_jit.runtime.holder.access import raw
+from rosetta_jit.runtime.holder.classes import HolderFamily
 from rosetta_jit.runtime.holder.objects import shapes, unions
-from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.record import Blob, Child, Choice, Entry, Items, Node, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.limits import MAX_DEPTH
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.classes import HolderFamily
-    from rosetta_jit.runtime.holder.record import Choice, Entry, Node
 
 _MISSING = object()
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 import re
 import sys
 import typing
+from collections.abc import Mapping
 from enum import Enum as Enumeration
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 from rosetta_jit.model.types import same_name
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 NO_MESSAGES = (str, bytes, bytearray, memoryview, int, float, complex, list, tuple, set, frozenset, type(None))
 """Values that are never messages."""

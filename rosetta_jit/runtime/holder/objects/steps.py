@@ -6,7 +6,8 @@ value that lies in the message's own row, or in a lane of its own: there is none
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from collections.abc import Callable, Mapping
+from typing import Any, cast
 
 import numpy as np
 
@@ -15,16 +16,11 @@ from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.descriptors import accessors
 from rosetta_jit.runtime.attributes.field_table import PLACE_BYTES
+from rosetta_jit.runtime.holder.classes import HolderFamily
 from rosetta_jit.runtime.holder.objects import shapes, unions
-from rosetta_jit.runtime.holder.record import Bit, Blob, Items, Numbers, Record, Scalar, Text
+from rosetta_jit.runtime.holder.record import Bit, Blob, Entry, Items, Numbers, Record, Scalar, Text
 from rosetta_jit.runtime.specs import read_word, slot_offset
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rosetta_jit.runtime.holder.classes import HolderFamily
-    from rosetta_jit.runtime.holder.record import Entry
 
 LEFT = (AttributeError, LookupError, TypeError, ValueError, OverflowError, RosettaError)
 """What makes a quick way leave an object to the slow one. Errors of another kind are those of the object's own code."""

@@ -7,23 +7,19 @@ where.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import assigner, raw
-from rosetta_jit.runtime.holder.classes import plain
+from rosetta_jit.runtime.holder.classes import HolderFamily, plain
 from rosetta_jit.runtime.holder.message import Message, make_present, writable
 from rosetta_jit.runtime.holder.objects import reading, shapes, unions
 from rosetta_jit.runtime.holder.objects.source import ByClass, Source, assignment, attribute
 from rosetta_jit.runtime.holder.objects.steps import LEFT, Steps, Ways
-from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Record, Scalar, Text
+from rosetta_jit.runtime.holder.record import Blob, Entry, Items, Numbers, Record, Scalar, Text
 from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.startup.cached import cached_property
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.classes import HolderFamily
-    from rosetta_jit.runtime.holder.record import Entry
 
 Take = Callable[[Any, Any], None]
 """Gives an empty message the values of an object."""

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rosetta_jit.errors import ValuesError
-from rosetta_jit.runtime.holder.record import Case, Scalar
-
-if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.record import Choice, Entry, Record
+from rosetta_jit.runtime.holder.record import Case, Choice, Entry, Record, Scalar
 
 ATTRIBUTES = (("discriminator", "value"), ("_d", "_v"))
 """What they are called: by Cyclone DDS, and in CORBA's mapping to Python."""
