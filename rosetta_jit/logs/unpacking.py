@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.compression import Scratch
+    from rosetta_jit.logs.walking import Rows, Stop
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,10 +31,14 @@ class Packed:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Content:
-    """The records of a chunk, as far as they are whole and as they were written, and what is wrong with the chunk."""
+    """The records of a chunk, as far as they are whole and as they were written, and what is wrong with the chunk.
+
+    ``walked`` are the first messages, where the thread that unpacked the chunk has looked for them: it has the records in its cache.
+    """
 
     data: NDArray[np.uint8]
     problem: Diagnostic | None = None
+    walked: tuple[Rows, Stop] | None = None
 
 
 def nothing(problem: Diagnostic | None = None) -> Content:
