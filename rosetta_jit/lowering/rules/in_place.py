@@ -166,9 +166,8 @@ def _of_setting(place: typed.Place, value: typed.Expr, bound: BoundFields) -> It
 
 def _of_leaving(place: typed.Place, bound: BoundFields, schema: Schema) -> Iterator[Obstacle]:
     """All numbers of an element that is left alone have a place: each byte is written; arrays of one size are staged anyway."""
-    key, indices = wire_key(place)
     match schema.resolve(place.type):
-        case _ if not indices:
+        case _ if not wire_key(place)[1]:
             pass  # the walk writes it
         case Struct(fields=fields):
             for field in fields:
