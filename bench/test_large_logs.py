@@ -22,7 +22,7 @@ from bench.processes import run
 from bench.subjects import IMAGE_2, POINT_CLOUD_2
 from bench.test_logs import mcap_file, run_pybag
 from rosetta_jit.logs.mcap.grammar import CHANNEL, CHUNK_INDEX, DATA_END, FOOTER, HEADER, MAGIC, PREFIX, SCHEMA, STATISTICS
-from rosetta_jit.logs.storage import Storage
+from rosetta_jit.logs.reading.storage import Storage
 from rosetta_jit.runtime.arrow.files import write_tables
 
 if TYPE_CHECKING:

@@ -26,7 +26,7 @@ from bench.peers.lcm_gen import peers as lcm_peers
 from bench.peers.mcap import definition
 from bench.peers.rosbags import store, type_name
 from bench.subjects import IMU, IMU_2, LCM_DOUBLES
-from rosetta_jit.logs.segments import Chunk
+from rosetta_jit.logs.reading.segments import Chunk
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -26,12 +26,16 @@ LOWERS = REPORTS | LANGUAGE | {"model", "wire", "kernel", "lowering"}
 LOWERING = {"lowering", "lowering.codec", "lowering.texts", "lowering.rules", "lowering.staging", "lowering.lower"}
 BACKENDS = {"backends", "backends.llvm", "backends.numba", "backends.python", "backends.entry"}
 RUNTIME = {"runtime", "runtime.limits", "runtime.code", "runtime.cache", "runtime.functions"}
-RUNTIME |= {"runtime.attributes", "runtime.holder", "runtime.looks", "runtime.arrow"}
+RUNTIME |= {"runtime.attributes", "runtime.holder", "runtime.holder.objects", "runtime.looks", "runtime.arrow"}
 HOLDERS = REPORTS | {"model.types", "model.words", "model.limits", "model.layout", "model.initial_values", "model.serial", "kernel.state"}
-COMPILER = REPORTS | LANGUAGE | KERNEL | LOWERING | BACKENDS | RUNTIME | {"model", "parsing", "wire", "frameworks"}
+COMPILER = REPORTS | LANGUAGE | KERNEL | LOWERING | BACKENDS | RUNTIME | {"model", "parsing", "wire", "frameworks", "frameworks.installed"}
 API = {"api", "api.options", "api.cacheable"}
 FUNCTIONS = REPORTS | {"model", "kernel", "language", "language.functions"}
 FUNCTIONS |= {"lowering", "lowering.codec", "lowering.texts", "lowering.colours"}
+FRAMEWORK = REPORTS | {"model", "parsing", "wire", "frameworks"}
+HOLDS = FRAMEWORK | {"runtime.holder", "runtime.holder.objects"}
+LOG_READER = REPORTS | {"logs.base", "logs.limits", "logs.reading", "logs.reading.storage", "logs.reading.walking"}
+TRANSPORT = REPORTS | {"transports"}
 PRINTS = REPORTS | {"model", "kernel", "kernel.passes", "backends", "generate"}
 ANYTHING = (
     COMPILER
@@ -39,7 +43,6 @@ ANYTHING = (
     | {
         "in_numba",
         "stubs",
-        "logs",
         "generate",
         "generate.build",
         "pipeline",
@@ -49,10 +52,9 @@ ANYTHING = (
         "explain",
         "draft",
         "demo",
-        "transports",
-        "bridge",
         "",
     }
+    | {"logs", "logs.base", "logs.converting", "logs.reading.storage", "frameworks.features", "transports", "transports.opening", "bridge"}
 )
 
 MAY_IMPORT = {
@@ -95,11 +97,27 @@ MAY_IMPORT = {
     "backends.numba": {"backends.llvm", "kernel"},
     "backends.python": {"backends", "kernel"},
     "backends.entry": {"backends.llvm", "backends.numba", "kernel", "runtime.code", "runtime.cache"},
-    "frameworks": REPORTS | {"model", "parsing", "wire", "runtime.holder", "runtime.looks"},
+    "frameworks": REPORTS | {"model", "parsing", "wire", "runtime.holder"},
+    "frameworks.features": REPORTS | {"model", "frameworks"},
+    "frameworks.installed": REPORTS | {"model", "parsing", "frameworks"},
+    "frameworks.ros": HOLDS | {"runtime.looks"},
+    "frameworks.ros1": HOLDS | {"frameworks.ros"},
+    "frameworks.ros2": HOLDS | {"frameworks.ros", "frameworks.omg"},
+    "frameworks.omg": FRAMEWORK,
+    "frameworks.corba": HOLDS | {"frameworks.omg"},
+    "frameworks.lcm": HOLDS,
+    "frameworks.orocos": FRAMEWORK,
+    "frameworks.protobuf": HOLDS | {"runtime.looks", "frameworks.protobuf.proto"},
+    "frameworks.protobuf.proto": REPORTS
+    | {"model", "parsing"}
+    | {f"frameworks.protobuf.{module}" for module in ("diagnostics", "edition_diagnostics", "file_diagnostics", "json_names", "limits")},
+    "frameworks.yarp": HOLDS | {"runtime.looks"},
     "runtime": HOLDERS | RUNTIME - {"runtime.functions"},
     "runtime.holder": HOLDERS
-    | {"runtime.attributes", "runtime.looks", "runtime.limits"}
+    | {"runtime.holder.objects", "runtime.attributes", "runtime.looks", "runtime.limits"}
     | {f"runtime.{module}" for module in ("callable", "cells", "columns", "contents", "lanes", "locks", "memory", "plan", "room", "specs")},
+    "runtime.holder.objects": REPORTS
+    | {"model.types", "runtime.attributes", "runtime.limits", "runtime.callable", "runtime.specs", "runtime.holder"},
     "runtime.attributes": REPORTS
     | {"model.types", "model.layout", "kernel.state", "runtime.limits", "runtime.code", "runtime.cache"}
     | {"runtime.callable", "runtime.cells", "runtime.plan", "runtime.specs", "runtime.holder.record", "runtime.holder.objects.in_c"},
@@ -113,24 +131,28 @@ MAY_IMPORT = {
     "stubs": REPORTS | {"model", "frameworks", "runtime", "runtime.holder"},
     "pipeline.request": {"runtime.functions"},
     "pipeline": COMPILER | {"pipeline.request"},
-    "api.options": REPORTS | {"model", "frameworks", "runtime.functions", "pipeline.request"},
+    "api.options": REPORTS
+    | {"model", "frameworks", "frameworks.installed", "frameworks.protobuf", "runtime.functions", "pipeline.request"},
     "api.cacheable": REPORTS | {"runtime.functions", "runtime.cache", "pipeline.request"},
     "api": COMPILER | API | {"in_numba", "stubs", "pipeline", "pipeline.request"},
-    "logs": REPORTS
-    | {
-        "api",
-        "api.options",
-        "file_errors",
-        "recording",
-        "language.imports",
-        "frameworks",
-        "model.units",
-        "runtime",
-        "runtime.arrow",
-        "runtime.holder",
-        "runtime.cache",
-        "runtime.code",
-    },
+    "logs": LOG_READER
+    | {"api", "api.options", "file_errors", "recording", "language.imports", "model.units", "frameworks.installed", "frameworks.lcm"}
+    | {"frameworks.ros2", "logs.folder_names", "runtime", "runtime.arrow", "runtime.holder"},
+    "logs.base": REPORTS | {"logs.reading.storage", "logs.reading.walking"},
+    "logs.limits": set(),
+    "logs.folder_names": set(),
+    "logs.reading": LOG_READER | {"runtime.code"},
+    "logs.reading.storage": REPORTS,
+    "logs.reading.walking": {"runtime.code", "runtime.cache"},
+    "logs.bag": LOG_READER,
+    "logs.delimited": LOG_READER,
+    "logs.lcm": LOG_READER,
+    "logs.mcap": LOG_READER,
+    "logs.recordings": LOG_READER | {"recording"},
+    "logs.rosbag2": LOG_READER | {"logs.mcap"},
+    "logs.tide": LOG_READER,
+    "logs.yarp": LOG_READER | {"logs.folder_names", "frameworks.yarp"},
+    "logs.converting": LOG_READER | {"logs", "logs.folder_names", "file_errors", "runtime.arrow"},
     "ray": REPORTS | {"logs"},
     "dask": REPORTS | {"logs"},
     "generate": REPORTS | {"model", "kernel", "language"},
@@ -139,11 +161,22 @@ MAY_IMPORT = {
     "generate.python": PRINTS | {"generate.c.lanes", "generate.c.unit_lanes"},
     "generate.lisp": PRINTS | {"generate.c.lanes", "generate.c.rows", "generate.c.unit_lanes"},
     "generate.build": PRINTS | {"generate.c", "lowering.rules", "pipeline", "pipeline.request"},
-    "transports": REPORTS,
-    "bridge": REPORTS | {"api", "api.options", "transports"},
-    "draft": REPORTS | LANGUAGE | {"model", "parsing", "frameworks", "pipeline"},
+    "transports": TRANSPORT,
+    "transports.installed": TRANSPORT,
+    "transports.opening": TRANSPORT | {"transports.installed"},
+    "transports.cyclone": TRANSPORT,
+    "transports.iceoryx": TRANSPORT,
+    "transports.lcm": TRANSPORT,
+    "transports.mqtt": TRANSPORT,
+    "transports.ros1": TRANSPORT,
+    "transports.rsb": TRANSPORT,
+    "transports.sockets": TRANSPORT,
+    "transports.yarp": TRANSPORT,
+    "transports.zenoh": TRANSPORT,
+    "bridge": REPORTS | {"api", "api.options", "transports", "transports.installed", "transports.opening"},
+    "draft": REPORTS | LANGUAGE | {"model", "parsing", "frameworks", "frameworks.installed", "pipeline"},
     "explain": COMPILER - LOWERING - BACKENDS - RUNTIME | {"pipeline", "pipeline.request"},
-    "demo": ANYTHING,
+    "demo": ANYTHING | {"frameworks.yarp"},
     "cli": ANYTHING,
     "__main__": {"cli"},
     "": ANYTHING - {"demo"},
@@ -203,8 +236,10 @@ def room(module):
     return max((each for each in MAY_IMPORT if within(module, {each})), key=len, default="")
 
 
-def test_every_module_has_a_layer():
-    assert {module.split(".")[0] for module in modules()} <= set(MAY_IMPORT)
+def test_every_folder_has_a_line():
+    """A folder without one would be as free as the folder around it."""
+    packages = {module for module, path in modules().items() if path.name == "__init__.py"}
+    assert packages | {module.split(".")[0] for module in modules()} <= set(MAY_IMPORT)
 
 
 @pytest.mark.parametrize("layer", MAY_IMPORT)

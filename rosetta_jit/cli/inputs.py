@@ -80,7 +80,7 @@ def _opened(file: str) -> Log | Message | None:
     from rosetta_jit.cli.logs import show
     from rosetta_jit.errors import LogError
     from rosetta_jit.logs.log import Log, format_of
-    from rosetta_jit.logs.storage import open_storage
+    from rosetta_jit.logs.reading.storage import open_storage
 
     try:
         storage = open_storage(file)

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.storage import Storage
-    from rosetta_jit.logs.walking import Rows
+    from rosetta_jit.logs.reading.storage import Storage
+    from rosetta_jit.logs.reading.walking import Rows
 
 
 @dataclass(frozen=True, slots=True)

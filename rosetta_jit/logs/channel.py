@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.file import LogFile
     from rosetta_jit.logs.moments import Moment
     from rosetta_jit.logs.parts import OnError, Part
-    from rosetta_jit.logs.walking import Rows
+    from rosetta_jit.logs.reading.walking import Rows
     from rosetta_jit.runtime.batch import Batch
 
     Program = TypeVar("Program", bound=Decoder | Encoder)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rosetta_jit.api.options import Options
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.base import Block, Connection, Format, Piece, Reader
-    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.reading.storage import Storage
 
 
 class LogFile:

@@ -14,7 +14,7 @@ from rosetta_jit.logs.base import Wanted
 from rosetta_jit.logs.channel import Channel
 from rosetta_jit.logs.file import LogFile
 from rosetta_jit.logs.moments import Moment, nanoseconds, shown
-from rosetta_jit.logs.storage import open_storage
+from rosetta_jit.logs.reading.storage import open_storage
 from rosetta_jit.logs.table import formats
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.base import Block, Connection, Format
     from rosetta_jit.logs.joining import Joined
     from rosetta_jit.logs.parts import OnError
-    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.reading.storage import Storage
 
 MAGIC_BYTES = 64
 

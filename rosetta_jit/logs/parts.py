@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.api.programs import Decoder
     from rosetta_jit.logs.base import Block
-    from rosetta_jit.logs.walking import Rows
+    from rosetta_jit.logs.reading.walking import Rows
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.filling import Filling
 

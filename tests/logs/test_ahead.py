@@ -7,7 +7,7 @@ import time
 import numpy as np
 
 from rosetta_jit.logs.ahead import ahead
-from rosetta_jit.logs.compression import Scratch
+from rosetta_jit.logs.reading.compression import Scratch
 
 
 def test_memory_that_is_shown_is_not_used_again():

@@ -7,7 +7,7 @@ import zlib
 import numpy as np
 import pytest
 
-from rosetta_jit.logs import checksum
+from rosetta_jit.logs.reading import checksum
 from rosetta_jit.runtime.code import processor
 
 

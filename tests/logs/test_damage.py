@@ -13,8 +13,8 @@ import zstandard
 
 import rosetta_jit as rj
 from rosetta_jit.errors import LogError
-from rosetta_jit.logs.compression import Scratch, decompressed
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
+from rosetta_jit.logs.reading.compression import Scratch, decompressed
 
 from .made import write_bag, write_lcm, write_mcap, write_old_bag
 

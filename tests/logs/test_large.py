@@ -8,7 +8,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.logs.bag.writer import u32
-from rosetta_jit.logs.storage import Storage
+from rosetta_jit.logs.reading.storage import Storage
 
 from .made import expected, values, write_bag, write_mcap
 

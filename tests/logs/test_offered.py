@@ -11,7 +11,7 @@ from .made import write_mcap
 TOY = """
 import numpy as np
 from rosetta_jit.logs.base import Connection, Extent, Format, Piece
-from rosetta_jit.logs.blocks import blocks_of
+from rosetta_jit.logs.reading.blocks import blocks_of
 
 FORMAT = Format("toy", (".toy",), "toy_logs:ToyReader", b"TOY ")
 

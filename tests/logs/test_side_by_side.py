@@ -10,9 +10,9 @@ import pytest
 from mcap.writer import CompressionType, Writer
 
 import rosetta_jit as rj
-from rosetta_jit.logs import side_by_side as module
-from rosetta_jit.logs.segments import Chunk
-from rosetta_jit.logs.side_by_side import BYTES, side_by_side
+from rosetta_jit.logs.reading import side_by_side as module
+from rosetta_jit.logs.reading.segments import Chunk
+from rosetta_jit.logs.reading.side_by_side import BYTES, side_by_side
 
 
 @pytest.fixture(autouse=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rosetta_jit.logs.walking import FEW, Rows
+from rosetta_jit.logs.reading.walking import FEW, Rows
 
 
 @pytest.mark.parametrize("count", [0, 1, FEW, FEW + 1, 9])

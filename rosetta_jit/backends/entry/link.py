@@ -287,12 +287,13 @@ def _typed(kernel: Kernel) -> tuple[str, str]:
 
 def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel]) -> str:
     """A module of an entry's functions. `#0` to `#2` are the attributes of the calls of kernels that are to be quick."""
-    host = "told.ll" if asks_host(kernels) else "untold.ll"
+    stamps = "time_and_number.ll" if asks_host(kernels) else "no_time_or_number.ll"
     hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
     count = max(kernel.registers for kernel in kernels)
     kept = _template("registers.ll").replace("COUNT", str(count)) if count else _template("no_registers.ll")
     joined = "joined.ll" if any(kernel.kept for kernel in kernels) else "alone.ll"
-    texts = (*map(_template, ("objects.ll", host, hosted, joined, _thread_template(), _large_template())), kept, *map(_template, templates))
+    shared = ("shared.ll", stamps, hosted, joined, _thread_template(), "thread_check.ll", _large_template())
+    texts = (*map(_template, shared), kept, *map(_template, templates))
     inline = ("alwaysinline" if is_short_and_straight(kernel) else "" for kernel in kernels)
     attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline))
     return "\n".join((*texts, *attributes))

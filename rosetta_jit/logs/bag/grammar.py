@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.logs.base import Connection
-from rosetta_jit.logs.fields import Fields
-from rosetta_jit.logs.records import Head
-from rosetta_jit.logs.unpacking import Packed
+from rosetta_jit.logs.reading.chunked_records import Head
+from rosetta_jit.logs.reading.chunks import Packed
+from rosetta_jit.logs.reading.fields import Fields
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.records import Kind
+    from rosetta_jit.logs.reading.chunked_records import Kind
 
 MESSAGE, BAG_HEADER, INDEX, CHUNK, CHUNK_INFO, CONNECTION = range(2, 8)
 

@@ -19,16 +19,16 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.logs.bag.grammar import EMPTY_MD5, header_of, number
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted, widened
-from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.limits import MAX_HEADER_BYTES
-from rosetta_jit.logs.records import PEEK
+from rosetta_jit.logs.reading.blocks import blocks_of
+from rosetta_jit.logs.reading.chunked_records import PEEK
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.reading.storage import Storage
 
 MAGIC = b"#ROSBAG V1.2\n"
 DEFINITION, MESSAGE, INDEX = 1, 2, 4

@@ -13,8 +13,8 @@ from rosetta_jit.logs.bag.old import MAGIC as OLD_MAGIC
 from rosetta_jit.logs.bag.old import OldBagReader
 from rosetta_jit.logs.base import Extent, widened
 from rosetta_jit.logs.limits import MAX_INDEX_BYTES
-from rosetta_jit.logs.records import PEEK, Records, Scanned
-from rosetta_jit.logs.segments import Chunk, Region, pieces_of, segments_of
+from rosetta_jit.logs.reading.chunked_records import PEEK, Records, Scanned
+from rosetta_jit.logs.reading.segments import Chunk, Region, pieces_of, segments_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.base import Block, Connection, Piece, Reader, Wanted
-    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.reading.storage import Storage
 
 MAGIC = b"#ROSBAG V2.0\n"
 

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.logs.base import Block, Connection, Piece, Wanted
-from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES, MAX_VARINT_BYTES
-from rosetta_jit.logs.varints import varint
+from rosetta_jit.logs.reading.blocks import blocks_of
+from rosetta_jit.logs.reading.varints import varint
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.reading.storage import Storage
 
 WINDOW = 1 << 20
 

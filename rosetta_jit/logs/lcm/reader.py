@@ -13,8 +13,8 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted, widened
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
-from rosetta_jit.logs.records import WINDOW, add_counts
-from rosetta_jit.logs.walking import Rows, Why, walk
+from rosetta_jit.logs.reading.chunked_records import WINDOW, add_counts
+from rosetta_jit.logs.reading.walking import Rows, Why, walk
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.reading.storage import Storage
 
 SYNC = bytes.fromhex("eda1da01")
 PIECE = 64 << 20

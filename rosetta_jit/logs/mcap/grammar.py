@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.logs.base import Connection
-from rosetta_jit.logs.fields import Fields
-from rosetta_jit.logs.records import Head
-from rosetta_jit.logs.unpacking import Packed
+from rosetta_jit.logs.reading.chunked_records import Head
+from rosetta_jit.logs.reading.chunks import Packed
+from rosetta_jit.logs.reading.fields import Fields
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.records import Kind
+    from rosetta_jit.logs.reading.chunked_records import Kind
 
 MAGIC = b"\x89MCAP0\r\n"
 HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, CHUNK_INDEX = range(1, 9)

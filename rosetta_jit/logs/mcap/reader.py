@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Extent
-from rosetta_jit.logs.fields import Fields
 from rosetta_jit.logs.limits import MAX_SUMMARY_BYTES
 from rosetta_jit.logs.mcap.grammar import CHANNEL, CHUNK_INDEX, FOOTER, HEADER, MAGIC, PREFIX, SCHEMA, STATISTICS, McapGrammar
-from rosetta_jit.logs.records import Records, Scanned
-from rosetta_jit.logs.segments import Chunk, Region, pieces_of, segments_of
+from rosetta_jit.logs.reading.chunked_records import Records, Scanned
+from rosetta_jit.logs.reading.fields import Fields
+from rosetta_jit.logs.reading.segments import Chunk, Region, pieces_of, segments_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.base import Block, Connection, Piece, Wanted
-    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.reading.storage import Storage
 
 FOOTER_SIZE = PREFIX.size + 20
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
-from rosetta_jit.logs.blocks import blocks_of
+from rosetta_jit.logs.reading.blocks import blocks_of
 from rosetta_jit.recording import RecordingError, read_messages
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.reading.storage import Storage
 
 
 XZ = b"\xfd7zXZ\0"

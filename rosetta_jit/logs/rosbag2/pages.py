@@ -14,7 +14,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.reading.storage import Storage
 
 LEAF, INTERIOR = 13, 5
 HEADER_BYTES = 100

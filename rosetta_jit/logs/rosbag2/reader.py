@@ -14,18 +14,18 @@ from weakref import finalize
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Reader, Wanted
-from rosetta_jit.logs.blocks import blocks_of
-from rosetta_jit.logs.compression import Scratch, decompressed, zstd_size
 from rosetta_jit.logs.limits import MAX_METADATA_BYTES, MAX_RECORD_BYTES
 from rosetta_jit.logs.mcap.reader import McapReader
+from rosetta_jit.logs.reading.blocks import blocks_of
+from rosetta_jit.logs.reading.compression import Scratch, decompressed, zstd_size
+from rosetta_jit.logs.reading.storage import open_storage
 from rosetta_jit.logs.rosbag2.sqlite import SqliteReader
-from rosetta_jit.logs.storage import open_storage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.reading.storage import Storage
 
 PART = 1 << 32
 """Connections of file n are numbered from n times this on."""

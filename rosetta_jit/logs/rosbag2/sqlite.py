@@ -13,15 +13,15 @@ from weakref import finalize
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
-from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
+from rosetta_jit.logs.reading.blocks import blocks_of
 from rosetta_jit.logs.rosbag2.pages import Pages
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.reading.storage import Storage
 
 HEADER_BYTES, MOST_OF_PAGE = 100, 1 << 16
 """Of the file's header, and the size of a page that it writes as 1: https://www.sqlite.org/fileformat.html, section 1.3."""

@@ -18,16 +18,16 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted, widened
-from rosetta_jit.logs.blocks import blocks_of
-from rosetta_jit.logs.fields import Fields
 from rosetta_jit.logs.limits import MAX_DEFINITION_BYTES, MAX_RECORD_BYTES
-from rosetta_jit.logs.varints import fields
+from rosetta_jit.logs.reading.blocks import blocks_of
+from rosetta_jit.logs.reading.fields import Fields
+from rosetta_jit.logs.reading.varints import fields
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.reading.storage import Storage
 
 HEAD = 12
 TIDE_SIZE = 10

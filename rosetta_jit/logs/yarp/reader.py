@@ -20,8 +20,8 @@ from rosetta_jit.frameworks.yarp import bottle
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.frameworks.yarp.text import parse_text
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted, widened
-from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.limits import MAX_INFO_BYTES, MAX_LINE_BYTES
+from rosetta_jit.logs.reading.blocks import blocks_of
 from rosetta_jit.logs.yarp.images import image_message, type_of_images
 from rosetta_jit.logs.yarp.videos import Frames, VideoError
 from rosetta_jit.startup.dataclass import dataclass
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.reading.storage import Storage
 
 DIALECT = DIALECTS["yarp3"]
 TIME = re.compile(rb"-?\d{1,10}(\.\d{0,9})?")

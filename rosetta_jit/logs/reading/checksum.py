@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosetta_jit.logs.walking import library_of
+from rosetta_jit.logs.reading.walking import library_of
 from rosetta_jit.runtime.code.processor import carryless_bits
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rosetta_jit.catalogue import logs as words
-from rosetta_jit.logs.checksum import crc32
-from rosetta_jit.logs.compression import UNCOMPRESSED, decompressed
+from rosetta_jit.logs.reading.checksum import crc32
+from rosetta_jit.logs.reading.compression import UNCOMPRESSED, decompressed
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.compression import Scratch
-    from rosetta_jit.logs.walking import Rows, Stop
+    from rosetta_jit.logs.reading.compression import Scratch
+    from rosetta_jit.logs.reading.walking import Rows, Stop
 
 
 @dataclass(frozen=True, slots=True)

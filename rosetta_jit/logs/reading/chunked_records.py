@@ -17,12 +17,12 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.logs.base import Block
-from rosetta_jit.logs.compression import Scratch
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
-from rosetta_jit.logs.segments import Chunk, Region
-from rosetta_jit.logs.side_by_side import side_by_side
-from rosetta_jit.logs.unpacking import bytes_of_work, nothing, unpacked
-from rosetta_jit.logs.walking import Why, walk
+from rosetta_jit.logs.reading.chunks import bytes_of_work, nothing, unpacked
+from rosetta_jit.logs.reading.compression import Scratch
+from rosetta_jit.logs.reading.segments import Chunk, Region
+from rosetta_jit.logs.reading.side_by_side import side_by_side
+from rosetta_jit.logs.reading.walking import Why, walk
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.base import Wanted
-    from rosetta_jit.logs.storage import Storage
-    from rosetta_jit.logs.unpacking import Content, Packed
-    from rosetta_jit.logs.walking import Rows, Stop
+    from rosetta_jit.logs.reading.chunks import Content, Packed
+    from rosetta_jit.logs.reading.storage import Storage
+    from rosetta_jit.logs.reading.walking import Rows, Stop
 
 WINDOW = 4 << 20
 """Bytes that are read at once where records are not in chunks."""

@@ -2,8 +2,9 @@
 ;
 ; The context is an array of pointers: 0 state, 1 holder, 2 slow path, 3 source cell, 4 the holder's type (`runtime.callable.Context`),
 ; 5 the number of messages made, 6 the thread of the program's own holder, 7 the registers, 8 whether a kernel for one of several wires has failed,
-; 9 of an encoder, objects of which other class go where (`any_encode.ll`). What the host tells of a message is in `told.ll`, or
-; `untold.ll` where no kernel asks; what kernels keep for the next message in `registers.ll`, or `no_registers.ll`.
+; 9 of an encoder, objects of which other class go where (`any_encode.ll`). A message gets its time and its number in `time_and_number.ll`, or
+; `no_time_or_number.ll` where no kernel asks; what kernels keep for the next message is in `registers.ll`, or `no_registers.ll`. Who may use the
+; program's own holder is asked in `thread_check.ll`.
 ; Who changes lanes in a way that another thread can interrupt makes word 1 of their state negative (`kernel.state.EPOCH`): then entries leave
 ; them to the slow path, which refuses. An entry itself has the interpreter lock; where its kernel may let it go is said in `hosted.ll`.
 ; The slow path is a Python callable for whatever is not the common case. It gets the same arguments, finds the kernel's result in word 9 of
@@ -32,15 +33,6 @@ define internal ptr @context(ptr %self) alwaysinline {
   %at = getelementptr i8, ptr %self, i64 72
   %context = load ptr, ptr %at
   ret ptr %context
-}
-
-; Whether the program's own holder belongs to the calling thread.
-define internal i1 @is_mine(ptr %context) alwaysinline {
-  %owner.at = getelementptr i64, ptr %context, i64 6
-  %owner = load i64, ptr %owner.at
-  %caller = call i64 @thread()
-  %mine = icmp eq i64 %owner, %caller
-  ret i1 %mine
 }
 
 ; How often the lanes of a state have changed, negative if they are in use.

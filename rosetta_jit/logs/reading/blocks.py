@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rosetta_jit.logs.base import Block
-from rosetta_jit.logs.walking import Rows
+from rosetta_jit.logs.reading.walking import Rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
