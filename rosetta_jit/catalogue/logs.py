@@ -160,12 +160,11 @@ def wire_without_topic(name: str, wire: str) -> Diagnostic:
     return error("log-wire", f"{name}: it is not said which topic has the messages of wire `{wire}`", help_=f'add `{{"{wire}": "/topic"}}`')
 
 
-def no_type(name: str, topic: str, details: str) -> Diagnostic:
-    return error(
-        "log-no-type",
-        f"{name} does not say of which type the messages of `{topic}` are{details}",
-        help_=f'name it: log["{topic}", "package.type"], or --type; its definition is looked for on the search path',
-    )
+def no_type(name: str, topic: str, details: str, *, can_be_drafted: bool) -> Diagnostic:
+    help_ = f'name it: log["{topic}", "package.type"], or --type; its definition is looked for on the search path'
+    if can_be_drafted:
+        help_ += f"; `rosetta-jit infer {name} --topic {topic}` drafts one from the messages"
+    return error("log-no-type", f"{name} does not say of which type the messages of `{topic}` are{details}", help_=help_)
 
 
 def no_definition(name: str, topic: str, type_: str) -> Diagnostic:

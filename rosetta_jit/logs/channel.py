@@ -286,19 +286,20 @@ def _type_and_options(log: LogFile, connection: Connection, target: str | None, 
     """The mapping or type of a decoder, and the options that it is made with."""
     from rosetta_jit.frameworks.installed import installed
 
-    encodings = {name for framework in installed().values() for name in framework.encodings}
+    frameworks = {name: framework for framework in installed().values() for name in framework.encodings}
     chosen = dict[str, Any](options)
-    if connection.encoding not in encodings and "encoding" not in chosen:
+    if connection.encoding not in frameworks and "encoding" not in chosen:
         raise LogError((words.unknown_encoding(log.name, connection.topic, connection.encoding),))
     chosen.setdefault("encoding", connection.encoding)
     if target is not None and target.endswith(".mapping"):
         return target, chosen
     type_ = target or connection.type
-    if not type_ and "fingerprint" in connection.details and "imports" not in chosen:
+    if not type_ and "fingerprint" in connection.details:
         type_, chosen["imports"] = _of_fingerprint(connection, chosen)
     if not type_:
         details = "".join(f" ({name} {text})" for name, text in connection.details.items())
-        raise LogError((words.no_type(log.name, connection.topic, details),))
+        can_be_drafted = connection.encoding in frameworks and bool(frameworks[connection.encoding].infer)
+        raise LogError((words.no_type(log.name, connection.topic, details, can_be_drafted=can_be_drafted),))
     if connection.schema_encoding and type_ == connection.type and "schema" not in chosen:
         chosen.pop("imports", None)  # they are for types that the log does not define
         chosen["schema"] = connection.schema if connection.schema_encoding == "protobuf" else connection.schema.decode("utf-8", "replace")
@@ -306,10 +307,17 @@ def _type_and_options(log: LogFile, connection: Connection, target: str | None, 
 
 
 def _of_fingerprint(connection: Connection, options: dict[str, Any]) -> tuple[str, tuple[str, ...]]:
-    """The type of LCM's messages, and the file on the search path that declares it; empty if none has their fingerprint."""
-    from rosetta_jit.frameworks.lcm.idl import type_of
+    """The type of LCM's messages, and the files that declare it: those that are named, or one on the search path; empty if none does."""
+    from rosetta_jit.catalogue.pipeline import no_such_file
+    from rosetta_jit.frameworks.lcm.idl import files_in, type_of
     from rosetta_jit.language.imports.search import Reading, SearchPath
 
-    search = SearchPath.of(options.get("search_path", ()))
-    found = type_of(int(connection.details["fingerprint"], 16), search.folders, search.loader(Reading()))
-    return ("", ()) if found is None else (found[0], (found[1],))
+    search, imports = SearchPath.of(options.get("search_path", ())), tuple(map(str, options.get("imports", ())))
+    for name in imports or files_in(search.folders):
+        source = search.named(name) if imports else search.find(name)
+        if source is None and imports:
+            raise SchemaError((no_such_file(name, tuple(map(str, search.folders))),))
+        found = source and type_of(int(connection.details["fingerprint"], 16), source, search.loader(Reading(), source))
+        if found:
+            return found, imports or (name,)
+    return "", imports

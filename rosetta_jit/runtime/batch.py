@@ -9,7 +9,7 @@ import numpy as np
 
 from rosetta_jit.errors import DecodeError, InUse
 from rosetta_jit.kernel.state import EPOCH, VALID
-from rosetta_jit.runtime.columns import column, presence_mask
+from rosetta_jit.runtime.columns import Origin, column, of_batch, presence_mask
 from rosetta_jit.runtime.handed import Handed
 from rosetta_jit.runtime.holder import Holder, Manners
 from rosetta_jit.runtime.holder.classes import HolderFamily
@@ -227,7 +227,12 @@ class Batch:
     def _column(self, name: str) -> Any:
         self._check()
         entries_to(self._family.tree.root, name)
-        return column(self._family.tree.root, self.lanes, len(self), name.split("."))
+        return of_batch(column(self._family.tree.root, self.lanes, len(self), name.split(".")), Origin(self._column_to_arrow, name))
+
+    def _column_to_arrow(self, name: str) -> pa.Array:
+        from rosetta_jit.runtime.arrow.column import column_array
+
+        return self.lanes.consistent(lambda path: column_array(self._family.tree.root, self.lanes, len(self), path), name)
 
     def mask(self, name: str | None = None) -> NDArray[np.bool_]:
         """Which messages have a field, shape (n,): all, where it cannot be absent. A nested field needs those around it.

@@ -5,7 +5,8 @@ A number is a strided array. An array of anything is `Ragged`: the column of its
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
 import numpy as np
@@ -30,13 +31,38 @@ if TYPE_CHECKING:
 _OCTETS, _CODE_UNITS = String("octets"), String("utf-16")
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Origin:
+    """Where a column is from: what makes an array of Arrow's of a batch's column, and the column's path there."""
+
+    array: Callable[[str], Any]
+    path: str
+
+
 class Columns(dict[str, Any]):
     """The columns of a message, by the names of its fields: ``batch.header.stamp.secs``, or ``batch.header["stamp"]["secs"]``.
 
-    A field that is named as something that dictionaries have, ``values``, is there by its name in brackets alone.
+    A field that is named as something that dictionaries have, ``values``, is there by its name in brackets alone. All of them together
+    are an array of structs for those that take Arrow's: ``pl.Series(batch.header)``, ``pa.table(batch.header)``.
     """
 
-    __slots__ = ()
+    __slots__ = ("__origin",)  # two underscores: no field of a message is called so
+
+    def come_from(self, origin: Origin) -> None:
+        """Say where these columns are from, and those in them."""
+        self.__origin = origin
+        for name, each in self.items():
+            if isinstance(each, Columns):
+                each.come_from(Origin(origin.array, f"{origin.path}.{name}"))
+            elif isinstance(each, Ragged):
+                self[name] = replace(each, origin=Origin(origin.array, f"{origin.path}.{name}"))
+
+    def __arrow_c_array__(self, requested_schema: object = None) -> tuple[object, object]:
+        """An array of structs, of the types of `Batch.to_arrow`."""
+        return _arrow(getattr(self, "_Columns__origin", None), requested_schema)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Columns, (dict(self),)
 
     def __getattr__(self, name: str) -> Any:
         try:
@@ -62,6 +88,8 @@ class Ragged:
         ``"array"``, ``"text"`` (values are UTF-8 bytes, or UTF-16 code units) or ``"bytes"``.
     source : memoryview or None
         What borrowed rows, whose counts are negative (``~count``), refer to.
+    origin : Origin or None
+        Where a column of a whole batch is from: those that take Arrow's arrays get one.
     """
 
     values: Any
@@ -69,6 +97,7 @@ class Ragged:
     counts: NDArray[np.int64]
     kind: str = "array"
     source: memoryview | None = None
+    origin: Origin | None = None
 
     def __len__(self) -> int:
         return len(self.starts)
@@ -156,6 +185,17 @@ class Ragged:
         at = elements(self.starts, self.counts, len(values)).at
         return Ragged(values.values, values.starts[at], values.counts[at], values.kind, values.source)
 
+    def __arrow_c_array__(self, requested_schema: object = None) -> tuple[object, object]:
+        """An array of texts, bytes or lists: of a column of a whole batch of the types of `Batch.to_arrow`."""
+        if self.origin is not None:
+            return _arrow(self.origin, requested_schema)
+        from rosetta_jit.runtime.arrow.column import values_array
+
+        return values_array(self.to_list()).__arrow_c_array__(requested_schema)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Ragged, (self.values, self.starts, self.counts, self.kind, self.source)
+
     def __dlpack__(self, **options: Any) -> Any:
         """`to_numpy` for whoever reads DLPack: ``torch.from_dlpack(batch.angles)``. Columns of numbers are numpy's, and have this."""
         return self.to_numpy().__dlpack__(**options)
@@ -166,6 +206,20 @@ class Ragged:
     def to_list(self) -> list[Any]:
         """Python's own values, row by row."""
         return [listed(self[index]) for index in range(len(self))]
+
+
+def _arrow(origin: Origin | None, requested_schema: object) -> tuple[object, object]:
+    """Arrow's array of a column of a whole batch; TypeError for others."""
+    if origin is None:
+        raise TypeError("Arrow takes columns of a whole batch, and these are of elements, or of one message: use `to_arrow` of the batch")
+    return origin.array(origin.path).__arrow_c_array__(requested_schema)
+
+
+def of_batch(found: Any, origin: Origin) -> Any:
+    """A column of a whole batch, which knows where it is from."""
+    if isinstance(found, Columns):
+        found.come_from(origin)
+    return replace(found, origin=origin) if isinstance(found, Ragged) else found
 
 
 def _part(values: Any, start: int, count: int) -> Any:

@@ -129,3 +129,29 @@ def test_every_byte_of_a_message_is_written(encoding: str, order: Any, backend: 
     nothing = {"a": 0, "b": 0.0, "c": {"e": 0, "f": 0}}
     parts = [{**nothing, "d": number} for number in (1, -2, 3)]
     assert read(message).to_dict() == {"parts": parts, "x": 0.5}
+
+
+LEFT_ALONE = {
+    "lab/msg/Inner.msg": "int16 e\nint64 f\n",
+    "lab/msg/Deep.msg": "Inner g\nbool h\n",
+    "lab/msg/Parts.msg": "Part[] parts\n",
+    "h.proto": 'syntax = "proto3"; message H { repeated int32 d = 1; }',
+    "m.mapping": """import "lab/msg/Parts.msg"
+import "h.proto"
+data-holder: H
+wire-schema: lab/msg/Parts
+rules:
+  .d[] <-> .parts[].d
+  ignore rest
+""",
+}
+
+
+@pytest.mark.parametrize("encoding", ["ros1", "cdr", "cdr2"])
+@pytest.mark.parametrize("type_", ["bool", "float32", "Inner", "Deep", "bool[3]", "Deep[2]", "Deep[]", "string", "string[2]"])
+def test_whatever_an_element_is_left_with_is_written(type_: str, encoding: str) -> None:
+    files = {**LEFT_ALONE, "lab/msg/Part.msg": f"{type_} left\nint16 d\n"}
+    encode = rj.Encoder("m.mapping", schema=files, encoding=encoding, backend="interpreter")
+    message = written(encode, {"d": [1, -2, 3]})
+    write = rj.Encoder.of("lab/msg/Parts", schema=files, imports=["lab/msg/Parts.msg"], encoding=encoding, backend="interpreter")
+    assert message == bytes(write(write.holder_type.from_dict({"parts": [{"d": number} for number in (1, -2, 3)]})))

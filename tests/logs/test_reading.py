@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.errors import DecodeError, LogError
+from rosetta_jit.errors import DecodeError, LogError, SchemaError
 
 from .made import BAGS, COMPRESSIONS, LCM_TYPES, POINT, START, STEP, expected, time_of, values, write_bag, write_lcm, write_mcap
 
@@ -61,8 +61,13 @@ def test_lcm(folder):
     (folder / "definitions").mkdir()
     (folder / "definitions" / "others.lcm").write_text("package t;\nstruct other_t { double x; }\n")
     (folder / "definitions" / "types.lcm").write_text(LCM_TYPES)
-    found = rj.open(folder / "a.log", search_path=[folder / "definitions"])
-    assert found["/b"].to_arrow()["data"][1].as_py() == "text 5"  # whose fingerprint is found there
+    for where in ({"search_path": [folder / "definitions"]}, {"imports": [folder / "definitions" / "types.lcm"]}):
+        found = rj.open(folder / "a.log", **where)
+        assert found["/b"].to_arrow()["data"][1].as_py() == "text 5"  # whose fingerprint is found there
+    with pytest.raises(LogError, match="does not say of which type"):
+        rj.open(folder / "a.log", imports=[folder / "definitions" / "others.lcm"])["/b"].to_arrow()
+    with pytest.raises(SchemaError, match=r"`absent.lcm` is not on the search path"):
+        rj.open(folder / "a.log", imports=["absent.lcm"])["/b"].to_arrow()
     assert [(each.time, each.topic) for each in log.messages(raw=True)] == [
         (time // 1000 * 1000, topic) for time, topic, _ in expected(COUNT)
     ]

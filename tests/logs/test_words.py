@@ -41,10 +41,11 @@ EXAMPLES = {
     "found": 18,
     "time_ns": -1,
     "wire": "pose",
+    "can_be_drafted": True,
 }
 
 
 def test_all_words():
     functions = [each for _, each in inspect.getmembers(words, inspect.isfunction) if each.__module__ == words.__name__]
-    texts = [render(each(*(EXAMPLES[name] for name in inspect.signature(each).parameters))) for each in functions]
+    texts = [render(each(**{name: EXAMPLES[name] for name in inspect.signature(each).parameters})) for each in functions]
     check_golden(GOLDEN / "logs.err", "\n\n".join(texts) + "\n")

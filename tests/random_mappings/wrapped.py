@@ -52,6 +52,13 @@ def parameters(parts: list[Part]) -> dict[str, Any]:
     return {"parameters": below_all(part.parameters for part in parts), "is_sure": any(part.is_sure for part in parts)}
 
 
+def defaults_apart(rules: str, one: str, each: str) -> tuple[str, str]:
+    """The rules of one element, and beside them its defaults of elements, of each: these stand in no block."""
+    lines = rules.splitlines(keepends=True)
+    apart = [line for line in lines if line.startswith("default ") and "[]" in line]
+    return "".join(line for line in lines if line not in apart), "".join(apart).replace(one, each)
+
+
 def held(relations: Relations, name: str) -> Part:
     """The fields of a message."""
     parts = inner(relations)
@@ -75,7 +82,7 @@ def repeated(relations: Relations, name: str) -> Part:
     parts = inner(relations)
     src, dst = messages(parts, name)
     wires, holders = values_of(parts, "wire"), values_of(parts, "holder")
-    body = within(parts, f".{name}[k_{name}]")
+    body, beside = defaults_apart(within(parts, f".{name}[k_{name}]"), f".{name}[k_{name}]", f".{name}[]")
 
     def unpack(values: Values) -> Values:
         found, kinds = [], []
@@ -91,7 +98,7 @@ def repeated(relations: Relations, name: str) -> Part:
     return Part(
         {name: Array(src)},
         {name: Array(dst)},
-        f"len(.{name}) <-> len(.{name})\nfor k_{name} from 0 to len(.{name})\n{body}end\n",
+        f"len(.{name}) <-> len(.{name})\nfor k_{name} from 0 to len(.{name})\n{body}end\n{beside}",
         unpack,
         lambda rng: {name: [wires(rng) for _ in range(rng.choice([0, 1, 2, 3]))]},
         lambda rng: {name: [holders(rng) for _ in range(rng.choice([0, 1, 2, 3]))]},

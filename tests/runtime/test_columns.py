@@ -14,10 +14,11 @@ import pytest
 
 from rosetta_jit.kernel.state import VALID
 from rosetta_jit.runtime.batch import Batch
+from rosetta_jit.runtime.columns import Columns, Ragged
 
 sys.path.insert(0, str(Path(__file__).parent))
 from schemas import flat, whole
-from test_arrow import all_kinds
+from test_arrow import all_kinds, filled
 
 
 def test_arrays_of_structs_of_one_message():
@@ -166,3 +167,59 @@ def test_rows_of_ragged_columns():
     assert names[2:][0].to_list() == ["b", "b"]
     with pytest.raises(IndexError):
         _ = texts[[6]]
+
+
+def columns_within(found, path):
+    yield path, found
+    if isinstance(found, Columns):
+        for name, each in found.items():
+            yield from columns_within(each, f"{path}.{name}")
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_columns_are_arrays_of_arrow(seed):
+    """Of texts, arrays and messages, as the table has them: null where a message lacks them, which the columns themselves do not show."""
+    batch = filled(20, seed)
+    every = [each for name in batch._family.tree.root.entries for each in columns_within(batch.column(name), name)]
+    assert {"part", "part.at", "part.at.label", "rows"} <= {path for path, _ in every}
+    for path, found in every:
+        if isinstance(found, Ragged | Columns):
+            array = pa.array(found)
+            array.validate(full=True)
+            wanted = batch.to_arrow([path]).column(0).combine_chunks()
+            assert array.type == wanted.type
+            assert array.to_pylist() == wanted.to_pylist(), path
+
+
+def test_fields_of_elements_are_arrays_of_arrow():
+    batch = filled(20, 4)
+    parts, pairs = batch.to_arrow()["parts"].to_pylist(), batch.to_arrow()["pair"].to_pylist()
+    for path, wanted in [
+        ("parts.at.x", [[each["at"]["x"] for each in row] for row in parts]),
+        ("parts.x", [[each["x"] for each in row] for row in parts]),
+        ("pair.at", [[each["at"] for each in row] for row in pairs]),
+    ]:
+        array = pa.array(batch.column(path))
+        array.validate(full=True)
+        assert array.to_pylist() == wanted, path
+    assert not pa.array(batch.column("parts.at.x")).type.value_field.nullable
+    assert pa.array(batch.column("parts.x")).type.value_field.nullable
+
+
+def test_tables_and_frames_of_nested_columns():
+    batch = Batch.new(flat(), 3)
+    batch[1].part = {"x": 3, "name": "n"}
+    assert pa.table({"part": batch.part}).to_pylist() == [{"part": each} for each in batch.to_arrow()["part"].to_pylist()]
+    assert pa.table(batch.part).column("name").to_pylist() == ["", "n", ""]
+    polars = pytest.importorskip("polars")
+    assert polars.Series("part", batch.part).struct.field("x").to_list() == [None, 3, None]
+    assert polars.DataFrame(batch.part)["name"].to_list() == ["", "n", ""]
+
+
+def test_parts_of_columns_are_arrays_of_their_values():
+    batch = Batch.new(flat(), 3)
+    batch[2].part, batch[1].parts = {"name": "n"}, [{"x": 5}]
+    assert pa.array(batch.part.name[1:]).to_pylist() == ["", "n"]
+    assert pa.array(copy.copy(batch.part.name)).to_pylist() == ["", "", "n"]
+    with pytest.raises(TypeError, match="columns of a whole batch"):
+        pa.array(batch.parts.values)

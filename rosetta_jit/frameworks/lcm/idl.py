@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from itertools import islice
 from pathlib import Path
 
 from rosetta_jit.diagnostics import Diagnostic
@@ -82,25 +83,19 @@ def _inside(type_: Type) -> str | None:
     return type_.name if isinstance(type_, Ref) else None
 
 
-def type_of(wanted: int, folders: Iterable[Path], load: Load) -> tuple[str, str] | None:
-    """The type with a fingerprint, and the file that declares it, of all `.lcm` files in some folders; None if there is none.
+def type_of(wanted: int, source: Source, load: Load) -> str | None:
+    """The type with a fingerprint that a file declares, or one that it leads to; None if there is none.
 
     LCM's logs tell no types, but each message begins with the fingerprint of its own.
     """
-    seen = 0
-    for folder in folders:
-        for path in sorted(folder.rglob("*.lcm")):
-            seen += 1
-            if seen > MAX_FILES:
-                return None
-            name = path.relative_to(folder).as_posix()
-            source = load(name)
-            if source is None:
-                continue
-            with suppress(SchemaError):  # what is wrong with a file is said when somebody wants it
-                schema = parse(source, load)
-                structs = [each for each in schema.types.values() if isinstance(each, Struct)]
-                found = next((each.name for each in structs if fingerprint(each, schema) == wanted), None)
-                if found is not None:
-                    return found, name
+    with suppress(SchemaError):  # what is wrong with a file is said when somebody wants it
+        schema = parse(source, load)
+        structs = (each for each in schema.types.values() if isinstance(each, Struct))
+        return next((each.name for each in structs if fingerprint(each, schema) == wanted), None)
     return None
+
+
+def files_in(folders: Iterable[Path]) -> Iterator[str]:
+    """The `.lcm` files in some folders, `MAX_FILES` of them at most, by their names there."""
+    every = (path.relative_to(folder).as_posix() for folder in folders for path in sorted(folder.rglob("*.lcm")))
+    return islice(every, MAX_FILES)

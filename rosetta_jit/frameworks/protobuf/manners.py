@@ -17,7 +17,7 @@ from rosetta_jit.frameworks.protobuf.objects import OBJECTS
 from rosetta_jit.frameworks.protobuf.presence import missing, requires, set_entries
 from rosetta_jit.frameworks.protobuf.repeated import MapField, NumberArray, repeated
 from rosetta_jit.model.types import Enum
-from rosetta_jit.runtime.holder import Holder, Manners
+from rosetta_jit.runtime.holder import Family, Holder, Manners
 from rosetta_jit.runtime.holder.classes import clear
 from rosetta_jit.runtime.holder.message import Message, View, make_present, place
 from rosetta_jit.runtime.holder.record import Entry, Record
@@ -25,7 +25,7 @@ from rosetta_jit.runtime.holder.serialising import Kind, Programs, encoded, prog
 from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder import Family, access, arena, merge
+    from rosetta_jit.runtime.holder import access, arena, merge
 else:
     access, arena, merge = late("rosetta_jit.runtime.holder", "access", "arena", "merge")
 

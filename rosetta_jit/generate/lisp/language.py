@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from string import Template
 
@@ -61,15 +62,16 @@ class _Source:
         self.verbs = {role: f"decode-{self.wires[wire_of(role)]}" if wire_of(role) else NAMES[role] for role in unit.kernels}
         self.shares: dict[Role, str] = {}
         self.functions = function_symbols(self.classes, [each.name for each in unit.functions])
-        longest = max(unit.kernels.values(), key=lambda each: len(each.strides))
-        c = named_lanes(unit, frozenset())(longest.strides)
-        self.lanes = lanes_of(c.all, c.own)
+        self.lanes_in_c = named_lanes(unit, frozenset())
+        longest = self.lanes_in_c(max((each.strides for each in unit.kernels.values()), key=len))
+        self.lanes = lanes_of(longest.all, longest.own)
         self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.printed: dict[Role, Printed] = {role: self._kernel(role, kernel) for role, kernel in unit.kernels.items()}
 
     def _kernel(self, role: Role, kernel: Kernel) -> Printed:
         about = About(self.unit.origins.get(role, ()), self.paths, self.functions)
-        return print_kernel(kernel, self.lanes, self.verbs[role], about)
+        lanes = replace(self.lanes, all=self.lanes_in_c(kernel.strides).all)  # each kernel has hidden lanes of its own
+        return print_kernel(kernel, lanes, self.verbs[role], about)
 
     def head(self) -> str:
         """What the file was made from."""

@@ -79,8 +79,9 @@ def print_kernel(
     paths: tuple[str, ...],
     *,
     flat: bool,
+    measured: range = range(0),
 ) -> tuple[str, tuple[Attempt, ...]]:
-    """The functions of a kernel as text, and how they are called."""
+    """The functions of a kernel as text, and how they are called; an encoder gets the hidden lanes that were ``measured``."""
     writer, routines = Writer(), dict[str, Attempt]()
     words = words_of(lanes) | objects.classes
 
@@ -91,7 +92,7 @@ def print_kernel(
         function = Function(scope(), kernel, routine.sites, routines, (), objects, is_routine=True)
         routines[routine.name] = _routine(writer, role, routine, function)
     attempts = [
-        _attempt(writer, role, number, Function(scope(), kernel, kernel.sites, routines, origins, objects))
+        _attempt(writer, role, number, Function(scope(), kernel, kernel.sites, routines, origins, objects, measured=measured))
         for number in range(len(kernel.bodies))
     ]
     return writer.text(), tuple(attempts)
@@ -114,7 +115,7 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Att
     print_block(function, body)
     made = objects.inner(scope)
     name = f"_{role}_{number + 1}"
-    parameters = _parameters(function, own_only=kernel.direction != "decode", hidden=role == "encode")
+    parameters = _parameters(function, own_only=kernel.direction != "decode")
     _blank(writer)
     writer.line(f"def {name}({', '.join(['data', 'end', 'most', *parameters])}):")
     for line in (*_begin(function, role), *made):
@@ -139,7 +140,7 @@ def _completed(line: str, function: Function) -> list[str]:
     return [line]
 
 
-def _parameters(function: Function, *, own_only: bool, hidden: bool) -> list[str]:
+def _parameters(function: Function, *, own_only: bool) -> list[str]:
     """What a function gets: for encoders what the object became, for routines all that their caller has."""
     scope, own = function.scope, function.scope.lanes.own
     if not own_only and not function.is_routine:
@@ -154,8 +155,7 @@ def _parameters(function: Function, *, own_only: bool, hidden: bool) -> list[str
     }
     if function.is_routine:
         names |= {f"{scope.lanes.rows(lane)}_room" for lane in scope.rooms if lane >= own}
-    if hidden:
-        names |= {f"{scope.lanes.rows(lane)}{end}" for lane in _lanes(function) if lane >= own for end in ("", "_room")}
+    names |= {scope.lanes.rows(lane) for lane in _lanes(function) if lane in function.measured}
     return sorted(names)
 
 
@@ -180,13 +180,14 @@ def _begin(function: Function, role: Role) -> list[str]:
             lines += [f'{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
             lines += [f"{name}_used = len({name}) // {scope.lanes.stride(lane)}"] if lane in scope.counted else []
             continue
-        if kind != "encode":
+        if lane in function.measured:
+            lines += [f"{name}_room = len({name}) // {scope.lanes.stride(lane)}"] if lane in scope.rooms else []
+            lines += [f'{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
+        else:
             lines.append(f"{name} = bytearray()")
             lines += [f"{name}_room = 0"] if lane in scope.rooms else []
             lines += [f"{name}_{code} = _EMPTY_{code}" for code in codes]
             scope.loads.update(f"_EMPTY_{code}" for code in codes)
-        else:
-            lines += [f'{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
         lines += [f"{name}_used = 0"] if lane in scope.counted else []
     if not scope.flat and kind in ("decode", "borrow"):
         lines.append('message = bytearray(_rows["message"])' if kept else f"message = bytearray({scope.lanes.stride(0)})")
@@ -205,7 +206,7 @@ def _routine(writer: Writer, role: Role, routine: ir.Routine, function: Function
     print_block(function, routine.body)
     results = [bare(expression(scope, each)) for each in routine.results]
     function.line(f"return {', '.join(results)}{',' if len(results) == 1 else ''}" if results else "return ()")
-    parameters, name = _parameters(function, own_only=True, hidden=False), f"_{role}_{routine.name}"
+    parameters, name = _parameters(function, own_only=True), f"_{role}_{routine.name}"
     _blank(writer)
     writer.line(f"def {name}({', '.join(['data', 'end', 'sites', 'indices', *parameters, *own])}):")
     writer.lines += function.writer.lines

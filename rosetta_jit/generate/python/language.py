@@ -235,33 +235,32 @@ class _Module:
         kernels: dict[Role, Kernel] = {role: self.unit.kernels[role] for role in roles}
         flat = all(is_flat(kernel, self._lanes(kernel)) for kernel in kernels.values())
         texts, attempts = list[str](), dict["Role", "Attempt"]()
-        hidden = max(len(kernel.strides) for kernel in kernels.values()) - len(self.unit.layout.lanes)
+        measured = range(len(self.unit.layout.lanes), min(len(kernel.strides) for kernel in kernels.values()))
         for role, kernel in kernels.items():
             lanes = self._lanes(kernel)
 
-            def result(scope: Scope, position: str, role: str = role, lanes: Lanes = lanes) -> str:
+            def result(scope: Scope, position: str, role: str = role) -> str:
                 if role == "encode":
                     return position
-                rooms = [f"{scope.view(lane, '')}, {scope.room(lane)}" for lane in range(lanes.own, len(lanes.all))]
-                return ", ".join([position, *rooms]) + ("," if not rooms else "")
+                return ", ".join([position, *(scope.view(lane, "") for lane in measured)]) + ("" if measured else ",")
 
+            origins, shared = self.unit.origins.get(role, ()), measured if role == "encode" else range(0)
             text, (attempts[role], *_) = print_kernel(
-                kernel, lanes, role, self.loads, self.unit.origins.get(role, ()), Objects(result), self.paths, flat=flat
+                kernel, lanes, role, self.loads, origins, Objects(result), self.paths, flat=flat, measured=shared
             )
             texts += [self._sites(role), f"\n{text.rstrip()}"]
-        longest = max(kernels.values(), key=lambda each: len(each.strides))
-        texts.append(f"\n{self._encode(self._lanes(longest), attempts, flat, hidden)}")
+        texts.append(f"\n{self._encode(self._lanes(kernels['encode']), attempts, flat, measured)}")
         return "\n\n".join(texts)
 
-    def _measured(self, size: Attempt, hidden: int) -> str:
+    def _measured(self, size: Attempt, measured: range) -> str:
         """The call that measures a message, or the size that all have."""
         match self.unit.kernels["size"].bodies[0]:
             case (Return(Const(_, value)),):
-                return f"{int(value)}," + " bytearray(), 0," * hidden
+                return f"{int(value)}," + " bytearray()," * len(measured)
             case _:
                 return f"{size.name}({', '.join(['None', 'math.inf', '1 << 60', *size.needs])})"
 
-    def _encode(self, lanes: Lanes, attempts: dict[Role, Attempt], flat: bool, hidden: int) -> str:
+    def _encode(self, lanes: Lanes, attempts: dict[Role, Attempt], flat: bool, measured: range) -> str:
         needs = {each for attempt in attempts.values() for each in attempt.needs}
         collect = Collect(self.unit, lanes, self.structs, Writer(depth=2))
         writer = collect.writer
@@ -283,8 +282,7 @@ class _Module:
         self._from_call(writer, needs, "encode")
         writer.lines = [line for line in writer.lines if line not in collect.replaced]
         self.loads |= collect.wholes
-        measured = [f"{lanes.rows(lanes.own + number)}{end}" for number in range(hidden) for end in ("", "_room")]
-        bound = ", ".join(["needed", *measured]) + ("" if measured else ",")
+        bound = ", ".join(["needed", *map(lanes.rows, measured)]) + ("" if measured else ",")
         return "\n".join(
             [
                 f"def encode(target: {self.root}) -> bytes:",
@@ -292,7 +290,7 @@ class _Module:
                 "    sites = _SIZE_SITES",
                 "    try:",
                 *writer.lines,
-                *self._written(f"{bound} = {self._measured(attempts['size'], hidden)}", attempts["encode"], lanes),
+                *self._written(f"{bound} = {self._measured(attempts['size'], measured)}", attempts["encode"], lanes),
                 "    except _Failed as failed:",
                 "        raise _error(sites, failed, None) from None",
                 "    except (AttributeError, TypeError, ValueError, OverflowError, _StructError) as error:",

@@ -52,7 +52,8 @@ class Function:
 
     ``settled`` are the fields of the message's row, by offset and type, that are set whatever the message is before any is read.
     ``positive`` are the locals that are not negative; ``reserved`` says how often rows of a lane are reserved, ``outside`` of which lanes
-    that is not within a loop or a case, and nothing asks for their room.
+    that is not within a loop or a case, and nothing asks for their room. ``measured`` are the hidden lanes that an encoder gets as
+    measuring has left them.
     """
 
     scope: Scope
@@ -64,6 +65,7 @@ class Function:
     settled: frozenset[tuple[int, str]] = frozenset()
     read: frozenset[str] = frozenset()
     is_routine: bool = False
+    measured: range = range(0)
     moved: set[int] = field(default_factory=set[int])
     positive: frozenset[str] = frozenset()
     reserved: Counter[int] = field(default_factory=Counter[int])

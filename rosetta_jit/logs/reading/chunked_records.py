@@ -120,7 +120,7 @@ class Records:
         found = (self._found(number, segments[number], scratch) for number in numbers)
 
         def content_of(each: Found) -> Content:
-            return unpacked(each.sealed, self._storage.name, segments[each.number].at, scratch, check=self._check)
+            return self._unpacked(each.sealed, segments[each.number].at, scratch)
 
         for each, content in side_by_side(found, content_of, lambda each: bytes_of_work(each.sealed)):
             segment = segments[each.number]
@@ -248,7 +248,12 @@ class Records:
 
     def _content(self, record: memoryview, at: int, scratch: Scratch) -> Iterator[Block]:
         """The messages of a chunk."""
-        yield from self._walked(unpacked(self._sealed(record, at), self._storage.name, at, scratch, check=self._check), at)
+        yield from self._walked(self._unpacked(self._sealed(record, at), at, scratch), at)
+
+    def _unpacked(self, sealed: Packed | Content, at: int, scratch: Scratch) -> Content:
+        """The content of a chunk, with its first messages."""
+        content = unpacked(sealed, self._storage.name, at, scratch, check=self._check)
+        return replace(content, walked=walk(self._grammar.walk, content.data, 0)) if content.data.size else content
 
     def _sealed(self, record: memoryview, at: int) -> Packed | Content:
         """What a chunk says of its content."""
@@ -262,9 +267,9 @@ class Records:
         data, is_reported = content.data, content.problem is not None
         if content.problem is not None:
             self._tell(content.problem)
-        place = 0
+        place, walked = 0, content.walked
         while place < data.size:
-            rows, stop = walk(self._grammar.walk, data, place)
+            (rows, stop), walked = walked or walk(self._grammar.walk, data, place), None
             if len(rows):
                 yield Block(data, rows)
             place = self._inside(data, stop, at, is_reported=is_reported)

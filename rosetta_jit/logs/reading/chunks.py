@@ -10,6 +10,7 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.logs.reading.checksum import crc32
 from rosetta_jit.logs.reading.compression import UNCOMPRESSED, Scratch, decompressed
+from rosetta_jit.logs.reading.walking import Rows, Stop
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -28,10 +29,14 @@ class Packed:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Content:
-    """The records of a chunk, as far as they are whole and as they were written, and what is wrong with the chunk."""
+    """The records of a chunk, as far as they are whole and as they were written, and what is wrong with the chunk.
+
+    ``walked`` are the first messages, where the thread that unpacked the chunk has looked for them: it has the records in its cache.
+    """
 
     data: NDArray[np.uint8]
     problem: Diagnostic | None = None
+    walked: tuple[Rows, Stop] | None = None
 
 
 def nothing(problem: Diagnostic | None = None) -> Content:

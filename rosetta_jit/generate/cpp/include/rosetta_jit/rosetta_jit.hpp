@@ -577,13 +577,14 @@ template <class Span, class Container> void point_span(Span &span, const Contain
 template <class Row> struct shown {
     Row *rows = nullptr;
     std::int64_t used = INT64_MAX;
+    std::int64_t capacity = INT64_MAX;
 
     template <class Container> void read(const Container &from)
     {
         static_assert(same_numbers<std::remove_cv_t<std::remove_reference_t<decltype(*std::data(from))>>, Row>,
                       "the class has elements of another type than the schema");
         rows = const_cast<Row *>(reinterpret_cast<const Row *>(std::data(from))); /* the functions that write messages change no row */
-        used = count_of(from);
+        capacity = used = count_of(from);
     }
 };
 
@@ -603,11 +604,12 @@ template <class Row, class Container, class Rows> struct view {
     static constexpr bool LIES = has_data<const Container>::value && Rows::template lies<element_type<Container>>();
     decltype(std::begin(std::declval<const Container &>())) elements = {};
     std::int64_t used = 0;
+    std::int64_t capacity = 0;
 
     void read(const Container &from)
     {
         elements = std::begin(from);
-        used = count_of(from);
+        capacity = used = count_of(from);
     }
 
     ROSETTA_JIT_INLINE Row operator[](std::int64_t index) const { return Rows::of(elements[static_cast<std::ptrdiff_t>(index)]); }
