@@ -81,13 +81,13 @@ def request_of(direction: Direction, options: Options, *, mapping: str | None = 
         byte_order=options.get("byte_order"),
         lenient=tuple(sorted(options.get("lenient", ()))),
         parameters=plain_parameters(options.get("parameters", {})),
-        functions=_given(options.get("functions", {})),
+        functions=_identified(options.get("functions", {})),
         backend=options.get("backend"),
         wire=options.get("wire"),
     )
 
 
-def _given(functions: Mapping[str, Callable[..., Any]]) -> tuple[GivenFunction, ...]:
+def _identified(functions: Mapping[str, Callable[..., Any]]) -> tuple[GivenFunction, ...]:
     if not functions:
         return ()
     from rosetta_jit.runtime.functions.identity import identify

@@ -73,8 +73,8 @@ def _declared(span: Span | None) -> tuple[str, ...]:
 
 
 def not_of_each(span: Span | None, function: str) -> Diagnostic:
-    given = re.fullmatch(rf"{function}\((\.[\w.]*\w)([^][\n]*)\)", written_at(span))
-    array, rest = (given[1], given[2]) if given else (".a", " > 3" if function in ("any", "all", "count") else "")
+    call = re.fullmatch(rf"{function}\((\.[\w.]*\w)([^][\n]*)\)", written_at(span))
+    array, rest = (call[1], call[2]) if call else (".a", " > 3" if function in ("any", "all", "count") else "")
     rest = re.sub(rf"{re.escape(array)}(?![\w.\[])", f"{array}[]", rest)
     help_ = f"write `[]` behind the array: `{function}({array}[]{rest})`"
     return error("reduction", f"`{function}` takes one value of each element", span, help_=help_)

@@ -312,8 +312,8 @@ def condition_needed(span: Span | None, found: str) -> Diagnostic:
 def not_comparable(span: Span | None, operator: str, left: str, right: str, constant: str = "") -> Diagnostic:
     """Two values that no comparison relates; ``constant`` is one whose name is the text."""
     hint = "texts are compared with a text in quotes, by `==` or `!=`" if "text" in {left, right} else "convert one of them first"
-    others = {left, right} - {"text"}
-    if len(others) == 1 and others.pop().startswith(("int", "uint", "float")):
+    operands = {left, right} - {"text"}
+    if len(operands) == 1 and operands.pop().startswith(("int", "uint", "float")):
         hint = "make both of them texts, `text(x)`, or both numbers, `number(x)`"
     if constant:
         hint = f"`{constant}` is the constant of this name"

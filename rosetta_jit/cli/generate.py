@@ -88,8 +88,8 @@ def _check(arguments: argparse.Namespace) -> None:
     from rosetta_jit.errors import SchemaError
 
     of_source = {"--holder": arguments.holder, "--include": arguments.include, "--arrays": arguments.arrays == "numpy"}
-    given = of_source if arguments.emit == "object" else {"--target": arguments.target, "--cpu": arguments.cpu}
-    if wrong := tuple(needless(option, arguments.emit) for option, value in given.items() if value):
+    meaningless = of_source if arguments.emit == "object" else {"--target": arguments.target, "--cpu": arguments.cpu}
+    if wrong := tuple(needless(option, arguments.emit) for option, value in meaningless.items() if value):
         raise SchemaError(wrong)
 
 

@@ -139,14 +139,14 @@ def channels_of(log: Log, arguments: Namespace) -> list[Channel]:
 
     named: dict[str, str] = {}
     usual: str | None = None
-    for given in cast("list[str]", [*arguments.type, *arguments.mapping]):
-        topic, equals, target = given.partition("=")
+    for argument in cast("list[str]", [*arguments.type, *arguments.mapping]):
+        topic, equals, target = argument.partition("=")
         if equals and topic in log:
             named[topic] = target
-        elif equals and not Path(given).is_file():
+        elif equals and not Path(argument).is_file():
             raise LogError((words.unknown_topic(log.name, topic, log.topics),))
         else:
-            usual = given
+            usual = argument
     topics = topics_of(arguments)
     chosen = list(dict.fromkeys([*(topics or log.topics), *named]))
     found: list[Channel] = []

@@ -30,8 +30,8 @@ def run(arguments: argparse.Namespace) -> int:
     from rosetta_jit.explain.operations import operations
 
     found: dict[str, Uses] = {}
-    given = cast("list[str]", arguments.mappings)
-    for mapping in given:
+    mappings = cast("list[str]", arguments.mappings)
+    for mapping in mappings:
         try:
             found[mapping] = operations(mapping)
         except ReportError as error:
@@ -40,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps({"mappings": found, "counts": _counts(found)}, indent=2))
     elif found:
         print(_table(found))
-    return int(len(found) < len(set(given)))
+    return int(len(found) < len(set(mappings)))
 
 
 def _counts(found: Mapping[str, Uses]) -> dict[Operation, int]:

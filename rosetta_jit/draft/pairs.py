@@ -45,10 +45,10 @@ class Pair:
 
 def pairs(holder: list[Leaf], wire: list[Leaf]) -> list[Pair]:
     """The likeliest pairs, each leaf in at most one, the likeliest first."""
-    groups, others = _grouped(holder), _grouped(wire)
+    holder_groups, wire_groups = _grouped(holder), _grouped(wire)
     candidates: list[Pair] = []
-    for mine in groups.values():
-        for theirs in others.values():
+    for mine in holder_groups.values():
+        for theirs in wire_groups.values():
             candidates += _between(mine, theirs)
     candidates.sort(key=lambda each: (-each.score, each.holder.names, len(each.wire.names), each.wire.names))
     found: list[Pair] = []

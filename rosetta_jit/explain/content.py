@@ -162,9 +162,9 @@ def _cost(name: str, request: Request, names: dict[str, str]) -> KernelCost | st
     """The cost of the kernel; where it must be said which dialect is written, of the first that can be."""
     request = replace(request, direction="decode" if name == "unpack" else "encode", backend="python")
     framework = Build(request).wire_framework
-    others = tuple(framework.encodings)[1:] if request.encoding is None else ()
+    alternatives = tuple(framework.encodings)[1:] if request.encoding is None else ()
     reason = ""
-    for encoding in (request.encoding, *others):
+    for encoding in (request.encoding, *alternatives):
         build = Build(replace(request, encoding=encoding))
         try:
             kernel = build.kernels[0]

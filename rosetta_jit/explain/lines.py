@@ -128,8 +128,8 @@ class Lines:
             case SameNames():
                 used = self.used(rule)
                 found = [each for each in self.typed.get(span_of(rule.span), ()) if not isinstance(each, typed.SetLength)]
-                others = [each for each in found if not any(_sets(each, use) for use in used)]
-                yield from (self.line(rule, _same_name(each), depth, _leaves(each)) for each in others)
+                unused = [each for each in found if not any(_sets(each, use) for use in used)]
+                yield from (self.line(rule, _same_name(each), depth, _leaves(each)) for each in unused)
                 for use in used:
                     yield self.line(rule, _by_type(use), depth, [], use)
                     yield from self.opened(use, depth)

@@ -102,12 +102,12 @@ def proof(
     MappingError
         The mapping is wrong; all that is wrong with it.
     """
-    given = plain_parameters(parameters or {})
+    plain = plain_parameters(parameters or {})
     kernels: list[KernelProof] = []
     absent: dict[str, None] = {}
     known: dict[Kernel, tuple[tuple[Owed, ...], str]] = {}
     for direction in DIRECTIONS:
-        request = Request(direction, mapping, encoding=encoding, parameters=given, backend="python")
+        request = Request(direction, mapping, encoding=encoding, parameters=plain, backend="python")
         try:
             for each in _of_wires(request):
                 encodings = (encoding,) if encoding is not None else tuple(Build(each).wire_framework.encodings)

@@ -40,8 +40,8 @@ def shipped() -> tuple[Framework, ...]:
 def installed() -> Mapping[str, Framework]:
     """Every framework by name: ours, and those of installed packages, which cannot take the place of ours."""
     ours = {framework.name: framework for framework in shipped()}
-    others = [cast("Framework", each.load()) for each in offered(GROUP)]
-    return ours | {framework.name: framework for framework in others if framework.name not in ours}
+    offers = [cast("Framework", each.load()) for each in offered(GROUP)]
+    return ours | {framework.name: framework for framework in offers if framework.name not in ours}
 
 
 @dataclass(frozen=True, slots=True)

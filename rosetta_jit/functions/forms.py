@@ -44,9 +44,9 @@ def row(forms: str, gives: str, kind: str = "") -> tuple[Row]:
 # --- laws ----------------------------------------------------------------------------------------------------------------
 
 
-def undone_by(**others: Back) -> Undone:
+def undone_by(**inverses: Back) -> Undone:
     """A step that these functions undo, each as far as it says; without any, one that nothing undoes."""
-    return Undone(MappingProxyType(others))
+    return Undone(MappingProxyType(inverses))
 
 
 def loses(why: str) -> Back:

@@ -153,8 +153,8 @@ def _each_run(array: ArrayArgument, values: Evaluation) -> Generator[tuple[Local
     with array.each() as number:
         value = writer.let("value", array.at(number))
         word = FLOATS.get(type_of(value))
-        others = Compare("ne", value, last) if word is None else Compare("ne", Bits(word, value), Bits(word, last))
-        yield number, value, writer.let("begins", Binary("or", Compare("eq", number, index(0)), others))
+        differs = Compare("ne", value, last) if word is None else Compare("ne", Bits(word, value), Bits(word, last))
+        yield number, value, writer.let("begins", Binary("or", Compare("eq", number, index(0)), differs))
         writer.assign(last, value)
 
 

@@ -17,6 +17,6 @@ def call_c(context: BaseContext, builder: ir.IRBuilder, function: Any, result: i
     """Call a C function, which must live as long as the process."""
     address = cast("int", ctypes.cast(function, ctypes.c_void_p).value)
     pointer = context.add_dynamic_addr(builder, address, info="a kernel's")
-    given = [builder.bitcast(each, POINTER) if isinstance(each.type, ir.PointerType) else each for each in arguments]
-    function_type = ir.FunctionType(result, [each.type for each in given])
-    return builder.call(builder.bitcast(pointer, function_type.as_pointer()), given)
+    values = [builder.bitcast(each, POINTER) if isinstance(each.type, ir.PointerType) else each for each in arguments]
+    function_type = ir.FunctionType(result, [each.type for each in values])
+    return builder.call(builder.bitcast(pointer, function_type.as_pointer()), values)

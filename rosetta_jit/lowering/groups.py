@@ -21,11 +21,11 @@ def lower_component(call: Call, values: Evaluation) -> Expr:
 def _computed(name: str, call: Call, values: Evaluation) -> dict[str, Expr]:
     """Each component of a call by its name."""
     function = group_functions()[name]
-    given = [
+    arguments = [
         values.writer.let(each.rpartition(".")[2], values.of(argument))
         for each, argument in zip(arguments_in(function), call.arguments, strict=True)
     ]
-    inner = values.with_locals(dict(zip(arguments_in(function), given, strict=True)))
+    inner = values.with_locals(dict(zip(arguments_in(function), arguments, strict=True)))
     found: dict[str, Expr] = {}
     for defined, expression in definitions_of(name):
         found[defined] = values.writer.let(defined.rpartition(".")[2], inner.of(expression))

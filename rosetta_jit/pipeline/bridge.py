@@ -107,13 +107,13 @@ class BridgeBuild:
     @cached_property
     def called(self) -> tuple[GivenFunction, ...]:
         """The same as they were given."""
-        return tuple(dict.fromkeys(given for half in self.halves for given in half.called))
+        return tuple(dict.fromkeys(function for half in self.halves for function in half.called))
 
     @cached_property
     def text(self) -> str:
         """All that the code and its `header` depend on besides this process, if all functions are identified that it calls."""
         kernels = [to_text(kernel) for kernel in self.kernels]
-        digests = [f"{given.name} {given.identity.digest}" for given in self.called]
+        digests = [f"{function.name} {function.identity.digest}" for function in self.called]
         type_, state = json.dumps(self.header["type"], sort_keys=True), json.dumps(self.header["state"])
         return "\n".join([self.backend.name, "bridge", str(self.references), str(self.halves[0].limit), state, type_, *kernels, *digests])
 

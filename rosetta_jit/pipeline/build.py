@@ -222,13 +222,13 @@ class Build:
     def called(self) -> tuple[GivenFunction, ...]:
         """The same as they were given."""
         names = {function.name for function in self.functions}
-        return tuple(given for given in self.request.functions if given.name in names)
+        return tuple(function for function in self.request.functions if function.name in names)
 
     @cached_property
     def text(self) -> str:
         """All that the code and its `header` depend on besides this process, if all functions are identified that it calls."""
         kernels = [to_text(kernel) for kernel in self.kernels]
-        digests = [f"{given.name} {given.identity.digest}" for given in self.called]
+        digests = [f"{function.name} {function.identity.digest}" for function in self.called]
         holder = json.dumps(self.header["type"], sort_keys=True)
         state = json.dumps([self.header["state"], self.wires, self.header["wire"], self.header["rare"]])
         return "\n".join([self.backend.name, self.entry, self.manners, str(self.limit), state, holder, *kernels, *digests])

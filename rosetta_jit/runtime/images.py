@@ -90,7 +90,7 @@ class Images:
 
     def decompress(self, image: memoryview, pixels: memoryview) -> int:
         """Fill in the pixels; their bytes are as many as was measured."""
-        return _given(self._answer("decompressed", _decompressed, (bytes(image),)), pixels)
+        return _written(self._answer("decompressed", _decompressed, (bytes(image),)), pixels)
 
     def compressed(self, format_: int, width: int, height: int, channels: int, quality: int, pixels: memoryview) -> int:
         """The size of the pixels as an image."""
@@ -99,7 +99,7 @@ class Images:
 
     def compress(self, format_: int, width: int, height: int, channels: int, quality: int, pixels: memoryview, image: memoryview) -> int:
         """Fill in the image."""
-        return _given(self._answer("compressed", _compressed, (format_, width, height, channels, quality, bytes(pixels))), image)
+        return _written(self._answer("compressed", _compressed, (format_, width, height, channels, quality, bytes(pixels))), image)
 
     def _answer(self, name: str, answer: Callable[..., bytes | int], question: tuple[object, ...]) -> Answer:
         kept = cast("Answer | None", getattr(self._kept, name, None))
@@ -111,7 +111,7 @@ class Images:
         return new
 
 
-def _given(answer: Answer, target: memoryview) -> int:
+def _written(answer: Answer, target: memoryview) -> int:
     if answer.problem or len(answer.data) != len(target):
         return answer.problem or BROKEN
     target[:] = answer.data

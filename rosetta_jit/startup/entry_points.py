@@ -46,8 +46,8 @@ def _files_of(package: str) -> Iterator[str]:
 
 def may_be_offered(group: str) -> bool:
     """Whether `importlib.metadata` might find entry points of the group; where this cannot be seen in folders, it might."""
-    others = any(hasattr(each, "find_distributions") for each in sys.meta_path if each is not PathFinder)
-    return others or any(_is_named_in(folder or ".", group.encode()) for folder in sys.path)
+    other_finders = any(hasattr(each, "find_distributions") for each in sys.meta_path if each is not PathFinder)
+    return other_finders or any(_is_named_in(folder or ".", group.encode()) for folder in sys.path)
 
 
 def _is_named_in(folder: str, group: bytes) -> bool:

@@ -101,10 +101,10 @@ def _constructor(family: HolderFamily, fields: dict[str, list[str]]) -> Iterator
     if inspect.Parameter.VAR_KEYWORD not in kinds or "__init__" in family.manners.members(family):
         return
     names = [name for name in fields if is_attribute(name) and name != "self"]
-    others = next(other for other in accumulate(repeat("_"), initial="values") if other not in names)
-    star = f"*{others}: typing.Any" if inspect.Parameter.VAR_POSITIONAL in kinds else "*"
-    given = "".join(f", {name}: typing.Any = ..." for name in names)
-    yield f"def __init__(self, {star}{given}) -> None: ..." if names or star != "*" else "def __init__(self) -> None: ..."
+    positional = next(other for other in accumulate(repeat("_"), initial="values") if other not in names)
+    star = f"*{positional}: typing.Any" if inspect.Parameter.VAR_POSITIONAL in kinds else "*"
+    keywords = "".join(f", {name}: typing.Any = ..." for name in names)
+    yield f"def __init__(self, {star}{keywords}) -> None: ..." if names or star != "*" else "def __init__(self) -> None: ..."
 
 
 MODULES = ("builtins", "collections", "numpy", "rosetta_jit", "typing", "typing_extensions")

@@ -123,8 +123,8 @@ def _of_wires(name: str, wires: Sequence[str]) -> str:
 
 def _head(what: str, options: Mapping[str, object], made: tuple[str, str], *, is_mapping: bool) -> str:
     make = "rosetta_jit.{0}({1})" if is_mapping else "rosetta_jit.{0}.of({1})"
-    given = escaped(", ".join((repr(what), *(f"{name}={value!r}" for name, value in options.items() if value))))
-    names, programs = ", ".join(map(str.lower, made)), ", ".join(make.format(program, given) for program in made)
+    options_text = escaped(", ".join((repr(what), *(f"{name}={value!r}" for name, value in options.items() if value))))
+    names, programs = ", ".join(map(str.lower, made)), ", ".join(make.format(program, options_text) for program in made)
     return HEAD.format(what=escaped(what), names=names, made=programs)
 
 

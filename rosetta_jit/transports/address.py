@@ -166,7 +166,7 @@ def parse(text: str, known: Iterable[str]) -> Address:
     return Address(text, scheme.lower(), unquote(rest), options)
 
 
-def settle(address: Address, known: Mapping[str, Option], given: Mapping[str, object]) -> dict[str, Any]:
+def settle(address: Address, known: Mapping[str, Option], called_with: Mapping[str, object]) -> dict[str, Any]:
     """The value of every option: as given in the call, else in the address, else its default.
 
     Raises
@@ -176,7 +176,7 @@ def settle(address: Address, known: Mapping[str, Option], given: Mapping[str, ob
     """
     wrong: list[Diagnostic] = []
     values: dict[str, Any] = {name: option.default for name, option in known.items()}
-    said: dict[str, tuple[object, Span | None]] = {**address.options, **{name: (value, None) for name, value in given.items()}}
+    said: dict[str, tuple[object, Span | None]] = {**address.options, **{name: (value, None) for name, value in called_with.items()}}
     for name, (value, span) in said.items():
         option = known.get(name)
         if option is None:

@@ -25,5 +25,5 @@ def installed() -> Mapping[str, Transport]:
     ours = [
         each for name in OURS for each in cast("tuple[Transport, ...]", imported(f"rosetta_jit.transports.{name}.transport").TRANSPORTS)
     ]
-    others = (cast("Transport", each.load()) for each in offered(GROUP))
-    return {scheme: transport for transport in (*ours, *others) for scheme in transport.schemes}
+    offers = (cast("Transport", each.load()) for each in offered(GROUP))
+    return {scheme: transport for transport in (*ours, *offers) for scheme in transport.schemes}

@@ -90,13 +90,13 @@ def names(address: str, **options: object) -> list[tuple[str, str | None]]:
     return found
 
 
-def _settled(direction: str, text: str, given: Mapping[str, object]) -> tuple[Address, Transport, dict[str, Any]]:
+def _settled(direction: str, text: str, options: Mapping[str, object]) -> tuple[Address, Transport, dict[str, Any]]:
     known = installed()
     address = parse(text, known)
     transport = known[address.scheme]
     if not getattr(transport, direction):
         raise AddressError((words.cannot(address.place, transport.name, direction),))
-    settled = settle(address, {**COMMON, **transport.options}, given)
+    settled = settle(address, {**COMMON, **transport.options}, options)
     extra, module = transport.extra
     if module and find_spec(module) is None:
         raise MissingPackage(f"{transport.name} takes a package: pip install 'rosetta-jit[{extra}]'")

@@ -224,7 +224,7 @@ def _series(last: Block, rows: Sequence[Sequence[Slot]], uses: Counter[str] | No
         if key is None:
             continue
         number = columns.number([each.number for each in stacked])
-        for further in slot.others:
+        for further in slot.distances:
             same = None if number is None else Number(number.column, number.further + further)
             if found.setdefault((*key, slot.number + further), same) != same:
                 return None  # one number of the last stretch stands for two

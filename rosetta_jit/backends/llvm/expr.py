@@ -138,7 +138,7 @@ def place_pointer(frame: Frame, place: kernel.Place) -> ir.Value:
         return builder.gep(frame.address(place.lane), [distance], source_etype=I8)
 
     address = frame.based((place.lane, row), start)
-    offset = None if frame.given is None else frame.given.offsets.get((place.lane, place.offset))
+    offset = None if frame.stretch is None else frame.stretch.offsets.get((place.lane, place.offset))
     if offset is None:
         return _moved(frame, address, rows * stride + place.offset)
     return builder.gep(_moved(frame, address, rows * stride), [offset], source_etype=I8)

@@ -131,7 +131,7 @@ class StoredExit:
 
 
 @dataclass(frozen=True, slots=True)
-class Given:
+class Stretch:
     """The numbers of one stretch of a series, by those of the last one. A site is looked up where something has failed."""
 
     lanes: Mapping[int, ir.Value]
@@ -145,7 +145,7 @@ class Frame:
 
     A routine that is printed where it is called has a frame with locals of its own, which knows its ``caller``.
     ``indices`` are the locals that grow with the rounds of a loop. Of a body with series (`alike`),
-    ``rows`` is an array of the used lengths of the holder's lanes, and ``given`` has the numbers of the stretch that is being printed.
+    ``rows`` is an array of the used lengths of the holder's lanes, and ``stretch`` has the numbers of the stretch that is being printed.
     ``bases`` are addresses of rows and places in the message, by the block that has computed them.
     """
 
@@ -162,7 +162,7 @@ class Frame:
     routines: Mapping[str, ir.Function | Routine]
     caller: tuple[Frame, Call] | None = None
     alike: Found = NOTHING
-    given: Given | None = None
+    stretch: Stretch | None = None
     rows: ir.Value | None = None
     locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
     used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
@@ -177,7 +177,7 @@ class Frame:
 
     def based(self, what: tuple[object, ir.Value], made: Callable[[], ir.Value]) -> ir.Value:
         """An address that depends on a value: made once in a block for a value of which there is but one."""
-        key = (self.builder.block, self.given is None, *what)
+        key = (self.builder.block, self.stretch is None, *what)
         if key not in self.bases:
             self.bases[key] = made()
         return self.bases[key]
@@ -211,7 +211,7 @@ class Frame:
 
     def lane_number(self, lane: int) -> ir.Value:
         """The lane's number while the kernel runs: in a series it is another one for each stretch."""
-        return constant(lane) if self.given is None else self.given.lanes.get(lane, constant(lane))
+        return constant(lane) if self.stretch is None else self.stretch.lanes.get(lane, constant(lane))
 
     def used_slot(self, lane: int) -> ir.Value:
         """The stack slot of the lane's used length."""
@@ -256,8 +256,8 @@ class Frame:
         return self.builder.append_basic_block(name)
 
     def _word(self, lane: int, word: int, type_: ir.Type, name: str) -> ir.Value:
-        if self.given is not None and lane in self.given.lanes:
-            first = self.builder.mul(self.given.lanes[lane], constant(LANE_WORDS))
+        if self.stretch is not None and lane in self.stretch.lanes:
+            first = self.builder.mul(self.stretch.lanes[lane], constant(LANE_WORDS))
             word_of_lane = self.builder.add(first, constant(lane_word(0, word)))
             return self.builder.load(state_word(self.builder, self.parameters.state, word_of_lane), typ=type_, align=8, name="word")
         if self.is_crowded:

@@ -30,7 +30,7 @@ class Slot(NamedTuple):
     name: str = ""
     number: int = 0
     lane: int = 0
-    others: tuple[int, ...] = (0,)
+    distances: tuple[int, ...] = (0,)
     type: kernel.Scalar = "i64"
 
     @property
@@ -102,7 +102,7 @@ class Outline:
         distances = tuple([each - sites[0] for each in sites])
         self._shape.append(distances)
         if sites:
-            self.slots.append(Slot("site", number=sites[0], others=distances))
+            self.slots.append(Slot("site", number=sites[0], distances=distances))
 
     # --- places ----------------------------------------------------------------------------------------------------------
 

@@ -10,7 +10,7 @@ from llvmlite import ir
 
 from rosetta_jit.backends.llvm.alike import NOTHING, Number, Series
 from rosetta_jit.backends.llvm.expr import expression
-from rosetta_jit.backends.llvm.frame import I64, LLVM_TYPES, Frame, Given, constant, forgotten, state_word
+from rosetta_jit.backends.llvm.frame import I64, LLVM_TYPES, Frame, Stretch, constant, forgotten, state_word
 from rosetta_jit.kernel.ir import Block, Direction, Local, Switch
 from rosetta_jit.kernel.state import LANE_WORDS, USED, lane_word
 from rosetta_jit.kernel.terms import type_of
@@ -104,9 +104,9 @@ def _stretch(frame: Frame, series: Series, index: ir.Value, block: Printer) -> N
         found = series.sites.get(number)
         return constant(number) if found is None else row.number(where, found)
 
-    around, frame.alike, frame.given = frame.alike, NOTHING, Given(lanes, offsets, site)
+    around, frame.alike, frame.stretch = frame.alike, NOTHING, Stretch(lanes, offsets, site)
     block(frame, series.body)
-    frame.alike, frame.given = around, None
+    frame.alike, frame.stretch = around, None
 
 
 def _table(module: ir.Module, series: Series) -> ir.Value:

@@ -195,8 +195,8 @@ def _call(frame: Frame, call: kernel.Call) -> None:
         _inline(frame, call, routine)
         return
     builder, parameters = frame.builder, frame.parameters
-    given = [expression(frame, each) for each in call.arguments]
-    outcome = builder.call(routine, [parameters.buffer, parameters.begin, parameters.end, parameters.state, *given])
+    arguments = [expression(frame, each) for each in call.arguments]
+    outcome = builder.call(routine, [parameters.buffer, parameters.begin, parameters.end, parameters.state, *arguments])
     number, first = builder.extract_value(outcome, 0), builder.extract_value(outcome, 1)
     good = _cold(frame, builder.icmp_signed("==", number, constant(0)))
     _fail(frame, call.sites, number, first, call.indices)
@@ -208,8 +208,8 @@ def _call(frame: Frame, call: kernel.Call) -> None:
 def _inline(frame: Frame, call: kernel.Call, routine: kernel.Routine) -> None:
     """The routine's statements instead of a call."""
     names = {name: frame.locals[name] for name in (BEGIN.name, END.name)}
-    given = {each.name: expression(frame, value) for each, value in zip(routine.parameters, call.arguments, strict=True)}
-    inside = replace(frame, locals=names | given, caller=(frame, call), given=None, alike=NOTHING)
+    arguments = {each.name: expression(frame, value) for each, value in zip(routine.parameters, call.arguments, strict=True)}
+    inside = replace(frame, locals=names | arguments, caller=(frame, call), stretch=None, alike=NOTHING)
     block(inside, routine.body)
     for here, there in zip(call.results, routine.results, strict=True):
         frame.locals[here.name] = expression(inside, there)
@@ -226,7 +226,7 @@ def _host_call(frame: Frame, call: kernel.HostCall) -> None:
 def _site(frame: Frame, number: ir.Value, sites: tuple[int, ...]) -> ir.Value:
     """The caller's site for a routine's failure: mostly they follow one another as the routine's own do."""
     builder = frame.builder
-    first = constant(0) if not sites else constant(sites[0]) if frame.given is None else frame.given.site(builder, sites[0])
+    first = constant(0) if not sites else constant(sites[0]) if frame.stretch is None else frame.stretch.site(builder, sites[0])
     if len(sites) < 2:
         return first
     runs = [(own, site - own - sites[0]) for own, site in enumerate(sites, 1)]

@@ -269,8 +269,8 @@ class _Rules:
     def enumerator(self, enum: Enum, path: wire.Path, field: Field) -> wire.Codec:
         scalar, size = f"i{enum.bits}", enum.bits // 8
         numbers = dict(enum.values)
-        given = numbers.get(field.default) if isinstance(field.default, str) else field.default
-        absent = given if isinstance(given, int) else next(iter(numbers.values()), 0)
+        default = numbers.get(field.default) if isinstance(field.default, str) else field.default
+        absent = default if isinstance(default, int) else next(iter(numbers.values()), 0)
         if "enum" in self.lenient:
             return self.aligned(wire.Number(path, scalar, self.order, absent), size)
         pairs = tuple((number, number) for number in sorted(set(numbers.values())))

@@ -200,14 +200,14 @@ class _Declarer:
         for enumerator in definition.enumerators:
             own = Annotations(enumerator.annotations, lookup_in(scope, free=name.free))
             number = own.value("value")
-            given = following if number is None else int(fit(number, Int(32, spelling="long"), enumerator.name.span))
-            following = given + 1
-            value = Value("enumerator", given, full)
+            ordinal = following if number is None else int(fit(number, Int(32, spelling="long"), enumerator.name.span))
+            following = ordinal + 1
+            value = Value("enumerator", ordinal, full)
             inner = Entry("enumerator", enumerator.name.text, scope.join(enumerator.name), enumerator.name.span, value=value)
             scope.declare(enumerator.name, inner)
-            if given in values:
-                raise LookupProblem(say.repeated_ordinal(enumerator.name.span, given, values[given]))
-            values[given] = enumerator.name.text
+            if ordinal in values:
+                raise LookupProblem(say.repeated_ordinal(enumerator.name.span, ordinal, values[ordinal]))
+            values[ordinal] = enumerator.name.text
             if own.flag("default_literal"):
                 entry.value = value
         pairs = tuple((word, number) for number, word in values.items())

@@ -39,8 +39,8 @@ def rihs01(struct: Struct, schema: Schema) -> str:
         It has fields of types that ROS 2 cannot describe.
     """
     needed = {_name(each): each for each in _needed(struct, schema)}
-    others = [_described(needed[name], schema) for name in sorted(needed) if name != _name(struct)]
-    description = {"type_description": _described(struct, schema), "referenced_type_descriptions": others}
+    referenced = [_described(needed[name], schema) for name in sorted(needed) if name != _name(struct)]
+    description = {"type_description": _described(struct, schema), "referenced_type_descriptions": referenced}
     return f"RIHS01_{sha256(json.dumps(description).encode()).hexdigest()}"
 
 

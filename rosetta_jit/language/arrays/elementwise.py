@@ -151,10 +151,10 @@ class _Expansion:
             if isinstance(self.type_of(array), String) and (array != target.array or has_each(rule.place)):
                 raise LayoutError(fields.not_indexable(array.span, "text", show_expr(array)))
         width = ONE if packed is None else packed.size
-        given = [times(padding[0], padding[2])] if padding else [times(view.total, width) for view in views.values()]
+        counts = [times(padding[0], padding[2])] if padding else [times(view.total, width) for view in views.values()]
         refused = [each for view in views.values() for each in view.refused]
         before: list[Rule] = [When(condition, (Reject(reason, rule.span),), (), rule.span) for condition, reason in refused]
-        number, counted = self.counted(rule, target, given, lengths)
+        number, counted = self.counted(rule, target, counts, lengths)
         before += counted
         if padding:
             before += _unless_equal(times(next(iter(views.values())).total, width), times(padding[0], padding[1]), rule.span)
@@ -188,22 +188,22 @@ class _Expansion:
         before += [check for view in found.views for check in _unless_equal(view.total, found.loop.stop, rule.span)]
         return (*before, replace(found.loop, body=self.block((found.element,), lengths, level + 1)))
 
-    def counted(self, rule: Assignment, target: View, given: list[Expr], lengths: Lengths) -> tuple[Expr, list[Rule]]:
+    def counted(self, rule: Assignment, target: View, counts: list[Expr], lengths: Lengths) -> tuple[Expr, list[Rule]]:
         """How many elements a rule sets, and what checks or sets that."""
         known = self.known_count(target, lengths)
         if is_filtered(known):
             raise LayoutError(words.other_filter(rule.place.span))
         is_open = _is_open(target)
         if known is not None:
-            return known, [check for total in given for check in _unless_equal(total, known, rule.span)]
-        if not given:
+            return known, [check for total in counts for check in _unless_equal(total, known, rule.span)]
+        if not counts:
             no_count = words.no_count(rule.place.span, show_expr(target.array), self.whole_array(rule), rule.span)
             raise LayoutError(words.open_end(rule.place.span) if is_open else no_count)
-        checks = [check for total in given[1:] for check in _unless_equal(total, given[0], rule.span)]
+        checks = [check for total in counts[1:] for check in _unless_equal(total, counts[0], rule.span)]
         if is_open:
-            return given[0], checks
-        lengths[target.array] = given[0]
-        return given[0], [SetLength(target.array, given[0], rule.span), *checks]
+            return counts[0], checks
+        lengths[target.array] = counts[0]
+        return counts[0], [SetLength(target.array, counts[0], rule.span), *checks]
 
     def whole_array(self, rule: Assignment) -> str:
         """An array that a rule for each element reads as a whole; empty where it reads none."""

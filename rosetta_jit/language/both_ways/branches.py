@@ -83,13 +83,13 @@ def test_between(then: tuple[Rule, ...], otherwise: tuple[Rule, ...], type_of: T
 
 def _by_constants(then: tuple[Rule, ...], otherwise: tuple[Rule, ...]) -> Expr | None:
     for place in _places(then):
-        mine, others = _constants(then, place), _constants(otherwise, place)
-        if mine is None or others is None or not _differ(mine, others):
+        of_then, of_otherwise = _constants(then, place), _constants(otherwise, place)
+        if of_then is None or of_otherwise is None or not _differ(of_then, of_otherwise):
             continue
-        fewer, is_mine = (mine, True) if len(mine) <= len(others) else (others, False)
+        fewer, is_of_then = (of_then, True) if len(of_then) <= len(of_otherwise) else (of_otherwise, False)
         if 0 < len(fewer) <= MAX_TESTED:
             test = _one_of(place, sorted(fewer, key=repr))
-            return test if is_mine else Unary("not", test, test.span)
+            return test if is_of_then else Unary("not", test, test.span)
     return None
 
 

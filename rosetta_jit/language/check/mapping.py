@@ -27,7 +27,7 @@ from rosetta_jit.language.check.unreachable import unreachable
 from rosetta_jit.language.check.wire_shares import wrong_wires
 from rosetta_jit.language.check.wires import message_of_wires
 from rosetta_jit.language.imports.declarations import Imported, Imports, merge, reached, read_imports
-from rosetta_jit.language.imports.mappings import read_others
+from rosetta_jit.language.imports.mappings import read_usable
 from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parameters.bind import bind, handed_on
 from rosetta_jit.language.parameters.state import NO_STATE, Declared, declared
@@ -93,7 +93,7 @@ def check(
     """
     texts = _read(mapping, Imports(mapping.source, front_ends, search, reading or Reading()), parameters)
     state: Dictionary[Side, Dictionary[str, StateVariable]] = {side: texts.state.variables(side) for side in SIDES}
-    resolved = resolve(texts.mapping, texts.schema, texts.schema, texts.others, state) if texts.complete else ()
+    resolved = resolve(texts.mapping, texts.schema, texts.schema, texts.usable, state) if texts.complete else ()
     if not isinstance(resolved, Resolved):
         raise _error([*texts.problems, *(_with_import(each, mapping, texts.imports) for each in resolved)])
     problems = _wrong(texts, resolved)
@@ -101,7 +101,7 @@ def check(
         raise _error(problems)
     problems += [*_silent_losses(texts.mapping, resolved, _blocks(texts.written)), *idle(texts.mapping), *unreachable(texts.written)]
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
-    functions, uses = dict(resolved.functions), tuple(texts.others.uses)
+    functions, uses = dict(resolved.functions), tuple(texts.usable.uses)
     notes, warnings = ([each for each in problems if (each.severity == "note") == is_note] for is_note in (True, False))
     both = resolved.holder, resolved.wire
     return Checked(texts.mapping, *both, unpack, pack, functions, _sorted(warnings), uses, _sorted(notes), texts.state)
@@ -116,7 +116,7 @@ class _Texts:
 
     written: Mapping
     mapping: Mapping
-    others: UsableMappings
+    usable: UsableMappings
     imports: Imports
     imported: list[Imported]
     schema: Schema
@@ -132,17 +132,17 @@ def _read(mapping: Mapping, imports: Imports, parameters: Dictionary[str, object
     bound: list[Diagnostic] = []
     underived: list[Diagnostic] = []
     written = bind(mapping, parameters, bound)
-    read = read_others(written, imports.search, imports.reading, problems, handed_on(written, parameters))
+    read = read_usable(written, imports.search, imports.reading, problems, handed_on(written, parameters))
     imported = read_imports(written, imports, problems)
     theirs = [each for other in read.mappings() for each in read_imports(other, replace(imports, importer=other.source), problems)]
     merged = message_of_wires(mapping, merge([*imported, *theirs], problems))
     derived_mapping = derived(written, merged, read, underived)
-    others = read.changed(lambda other: derived(other, merged, read, problems))
+    usable = read.changed(lambda other: derived(other, merged, read, problems))
     complete = not _errors(problems)
-    problems += [*_without_handed_on(bound, mapping, others), *(underived if complete else ())]  # it follows from what is wrong there
+    problems += [*_without_handed_on(bound, mapping, usable), *(underived if complete else ())]  # it follows from what is wrong there
     schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
     state = declared(derived_mapping, problems)
-    return _Texts(written, derived_mapping, others, imports, imported, schema, state, complete, underived, problems)
+    return _Texts(written, derived_mapping, usable, imports, imported, schema, state, complete, underived, problems)
 
 
 def _wrong(texts: _Texts, resolved: Resolved) -> list[Diagnostic]:
@@ -156,7 +156,7 @@ def _wrong(texts: _Texts, resolved: Resolved) -> list[Diagnostic]:
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in set_again(block.rules)]
     again = {each.span for each in problems if each.code == "set-twice"}
     problems += [each for each in (_of_wires(resolved) if mapping.wires else ()) if each.span not in again]
-    problems += [in_used(other.state[0].span, other.source.name) for other in texts.others.mappings() if other.state]
+    problems += [in_used(other.state[0].span, other.source.name) for other in texts.usable.mappings() if other.state]
     return rules_first(problems, relations)
 
 
@@ -184,9 +184,9 @@ def _errors(problems: list[Diagnostic]) -> list[Diagnostic]:
     return [problem for problem in problems if problem.severity == "error"]
 
 
-def _without_handed_on(problems: list[Diagnostic], mapping: Mapping, others: UsableMappings) -> list[Diagnostic]:
+def _without_handed_on(problems: list[Diagnostic], mapping: Mapping, usable: UsableMappings) -> list[Diagnostic]:
     """Without the warnings about parameters that no rule uses, but a mapping that is used."""
-    declared = {each.name for other in others.mappings() for each in other.parameters}
+    declared = {each.name for other in usable.mappings() for each in other.parameters}
     spans = [each.span for each in mapping.parameters if each.name in declared]
     return [each for each in problems if each.code != "parameter-unused" or each.span not in spans]
 

@@ -21,7 +21,7 @@ MAPPING_SUFFIX = ".mapping"
 """Of an import that is a mapping."""
 
 
-def read_others(
+def read_usable(
     mapping: model.Mapping, search: SearchPath, reading: Reading, problems: list[Diagnostic], parameters: Mapping[str, object] | None
 ) -> UsableMappings:
     """Read all mappings that a mapping uses, directly or through others. Of its ``parameters`` they have those that they declare."""

@@ -104,7 +104,7 @@ class SearchPath:
         if why:
             raise SchemaError((words.import_name(None, name, why),))
         if name in texts:
-            return _given(name, texts[name])
+            return _from_memory(name, texts[name])
         return next((_read(path) for path in (folder / name for folder in folders) if _is_file(path)), None)
 
     def alike(self, name: str) -> list[str]:
@@ -139,7 +139,7 @@ class SearchPath:
         """
         texts = dict(self.files)
         if name in texts:
-            return _given(name, texts[name])
+            return _from_memory(name, texts[name])
         if _is_file(Path(name)):
             return _read(Path(name))
         return None if refusal(name) or _is_absolute(name) else self.find(name)
@@ -217,7 +217,7 @@ def _read(path: Path) -> Source:
     return _text(name, data)
 
 
-def _given(name: str, text: str) -> Source:
+def _from_memory(name: str, text: str) -> Source:
     """A text that the caller gave, which Python may have let him make of halves of characters."""
     try:
         data = text[: MAX_FILE_BYTES + 1].encode()

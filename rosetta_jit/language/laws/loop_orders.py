@@ -83,13 +83,13 @@ def _alike(
 ) -> Iterator[tuple[int, Expr]]:
     """The loops that count as one does, up or down, and its number in terms of theirs."""
     for number_, (start, stop) in enumerate(around):
-        others = _strides(reads, f"${number_}")
-        if others is None or not (_same(range_[0], start, facts) and _same(range_[1], stop, facts)):
+        theirs = _strides(reads, f"${number_}")
+        if theirs is None or not (_same(range_[0], start, facts) and _same(range_[1], stop, facts)):
             continue
-        if all(are_same(one, other, facts) for one, other in zip(strides, others, strict=True)):
+        if all(are_same(one, other, facts) for one, other in zip(strides, theirs, strict=True)):
             yield number_, Local(f"${number_}")
         elif start == Const(0, INT64) and all(
-            are_same(one, subtract(number(0), other), facts) for one, other in zip(strides, others, strict=True)
+            are_same(one, subtract(number(0), other), facts) for one, other in zip(strides, theirs, strict=True)
         ):
             last = Binary("-", stop, Const(1, INT64), INT64)
             yield number_, Binary("-", last, Local(f"${number_}"), INT64)

@@ -146,8 +146,8 @@ def _via(trees: list[Tree], context: Context) -> Via | None:
 
 def _when(condition: expr.Expr, body: list[Tree], context: Context, span: Span) -> Rule:
     then = tuple(read_rule(rule, context) for rule in body if rule.data not in OTHERWISE)
-    others = (rule for block in body if block.data in OTHERWISE for rule in _trees(block))
-    return When(condition, then, tuple(read_rule(rule, context) for rule in others), span)
+    otherwise = (rule for block in body if block.data in OTHERWISE for rule in _trees(block))
+    return When(condition, then, tuple(read_rule(rule, context) for rule in otherwise), span)
 
 
 def _reject(tree: Tree, context: Context, span: Span) -> Rule:

@@ -30,7 +30,7 @@ def type_listed(expr: model.List | model.Item | model.Given, scope: Scope, type_
         case model.Item():
             return _item(expr, scope, type_expr)
         case model.Given():
-            return _given(expr, scope, type_expr)
+            return _parameter(expr, scope, type_expr)
 
 
 def _item(expr: model.Item, scope: Scope, type_expr: TypeExpr) -> Expr | None:
@@ -58,7 +58,7 @@ def _item(expr: model.Item, scope: Scope, type_expr: TypeExpr) -> Expr | None:
     return Listed(tuple(fitting), index, fitting[0].type, expr.span)
 
 
-def _given(expr: model.Given, scope: Scope, type_expr: TypeExpr) -> Expr | None:
+def _parameter(expr: model.Given, scope: Scope, type_expr: TypeExpr) -> Expr | None:
     """What stands for a parameter."""
     arguments = [type_expr(argument, scope) for argument in expr.arguments]
     indices = [index for argument in arguments if argument is not None and (index := as_int64(argument)) is not None]

@@ -235,11 +235,11 @@ def switch_cases(writer: Writer, fields: Fields, cases: wire.Cases, body: Callab
 def _first_label(writer: Writer, cases: wire.Cases, value: Expr) -> Expr:
     """The first label of the case that a value names, so that each case is written once."""
     value = writer.let("label", value)
-    others = [(other, labels[0]) for number, (labels, _) in enumerate(cases.cases) for other in labels[1:] if number != cases.default]
-    if not others:
+    further = [(other, labels[0]) for number, (labels, _) in enumerate(cases.cases) for other in labels[1:] if number != cases.default]
+    if not further:
         return value
     first = writer.var("case", value)
-    writer.emit(Switch(value, tuple((other, (Assign(first.name, index(label)),)) for other, label in others), ()))
+    writer.emit(Switch(value, tuple((other, (Assign(first.name, index(label)),)) for other, label in further), ()))
     return first
 
 

@@ -30,7 +30,7 @@ class AssignedByRules:
     values: Values
 
     def number(self, path: Path) -> Expr:
-        return self.decided(path, _zero(path, self.rules), _given)
+        return self.decided(path, _zero(path, self.rules), _number_of)
 
     def size(self, path: Path) -> Expr:
         return self.decided(path, index(0), self.sized)
@@ -142,7 +142,7 @@ def _zero(path: Path, rules: tuple[typed.Rule, ...]) -> Const:
             return index(0)
 
 
-def _given(rule: typed.Rule, here: Values) -> Expr:
+def _number_of(rule: typed.Rule, here: Values) -> Expr:
     """The number that a rule gives a field."""
     match rule:
         case typed.Assign(_, value):

@@ -51,7 +51,7 @@ class Values:
         """The kernel expression of a number. Choices and searches are made once where they are known: nothing that rules read changes."""
         if isinstance(value, typed.Reduce) and value in self.awaited and self.writer.is_around(self.awaited[value].block):
             return self.first_time(value, self.awaited[value])
-        is_kept = isinstance(value, typed.Search) or (isinstance(value, KEPT) and not asks_others(value))
+        is_kept = isinstance(value, typed.Search) or (isinstance(value, KEPT) and not calls_out(value))
         if not is_kept:
             return self.computed(value)
         block, found = self.decided.get(value, (None, None))
@@ -62,7 +62,7 @@ class Values:
 
     def together(self, value: typed.Expr, compute: Callable[[], Mapping[str, ir.Expr]]) -> Mapping[str, ir.Expr]:
         """Numbers that are computed together, by name; what was computed for an equal value is found again where it is known."""
-        if asks_others(value):
+        if calls_out(value):
             return compute()
         block, found = self.groups.get(value, (None, None))
         if block is None or found is None or not self.writer.is_around(block):
@@ -365,7 +365,7 @@ def _folded(value: ir.Const, target: ir.Scalar) -> ir.Const | None:
     return None
 
 
-def asks_others(value: typed.Expr) -> bool:
+def calls_out(value: typed.Expr) -> bool:
     """Whether a value takes a call out of the kernel, or a text that is made: such are computed where they stand."""
     return any(
         isinstance(part, typed.HostCall | typed.Given) or (isinstance(part, typed.Call) and not functions()[part.function].kept)

@@ -60,8 +60,8 @@ def write_archive(tables: Iterable[pa.Table], path: Path) -> None:
     """An array a column, as `rosetta-jit decode --npz` writes them: the elements of lists end to end, beside ``NAME.offsets``."""
     columns: dict[str, _Column] = {}
     try:
-        for given in tables:
-            table: Any = flat(given)
+        for nested in tables:
+            table: Any = flat(nested)
             for name in table.schema.names:
                 for key, array in _arrays(name, table.column(name).combine_chunks()).items():
                     if key not in columns:

@@ -137,9 +137,9 @@ def _maker(suffix: str) -> Any:
             raise ValueError(f"tables are written as .parquet, .arrow, .csv and .npz, not as {suffix}")
 
 
-def _for_text(given: pa.Table) -> pa.Table:
+def _for_text(nested: pa.Table) -> pa.Table:
     """A table whose columns CSV has: structs flat, lists, maps and bytes as JSON."""
-    types, table = import_module("pyarrow.types"), cast("Any", flat(given))
+    types, table = import_module("pyarrow.types"), cast("Any", flat(nested))
     for place, column in enumerate(table.schema):
         if types.is_nested(column.type) or types.is_large_binary(column.type) or types.is_fixed_size_binary(column.type):
             texts = [None if each is None else json.dumps(each, default=plain) for each in table.column(column.name).to_pylist()]

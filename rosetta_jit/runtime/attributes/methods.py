@@ -92,8 +92,8 @@ def method(kind: Kind, function: Any, bind: Callable[[Any], None]) -> Any:
     put(made, function=function)
 
     def slow(*arguments: Any, **named: Any) -> Any:
-        given = (made.holder_type, *arguments) if kind in OF_CLASSES else arguments
-        answer = function(*given, **named)
+        positional = (made.holder_type, *arguments) if kind in OF_CLASSES else arguments
+        answer = function(*positional, **named)
         bind(made)
         return answer
 

@@ -53,9 +53,9 @@ class Stubs:
         self._code = native.load(image, (*finders, *TABLES))
         self._numbers = {name: number for number, name in enumerate(finders)}
         self._finders = tuple(finders.values())  # the table has no references of its own
-        self._slots, called, given = (self._table(name) for name in TABLES)
+        self._slots, called, when_failed = (self._table(name) for name in TABLES)
         for number, (name, finder) in enumerate(finders.items()):
-            self._slots[number], called[number], given[number] = self[name] + JUMP_BYTES, id(finder), failures.get(name, 0)
+            self._slots[number], called[number], when_failed[number] = self[name] + JUMP_BYTES, id(finder), failures.get(name, 0)
 
     def _table(self, name: str) -> ctypes.Array[ctypes.c_int64]:
         return (ctypes.c_int64 * len(self._numbers)).from_address(self._code[name])

@@ -66,7 +66,7 @@ class Family:
         self.assigns_whole = manners.assigns_whole
         self._accesses: dict[int, Access] = {}
         self._views: dict[str, type[View]] = {}
-        self._others: dict[str, type[Holder]] = {}
+        self._of_structs: dict[str, type[Holder]] = {}
         self._shown_of: dict[int, frozenset[str]] = {}
         self._recipes: dict[int, tuple[Any, ...]] = {}
         self.latest: tuple[Any, Any, Any] = None, None, None
@@ -131,10 +131,10 @@ class Family:
         """The holder class of another struct of the schema, with the same manners."""
         if struct == self.struct.name:
             return self.holder
-        other = self._others.get(struct)
+        other = self._of_structs.get(struct)
         if other is None:
             type_ = Ref(struct) if struct in self.schema.types else written_within(self.struct, self.schema, struct)
-            other = self._others[struct] = holder_class(type_, self.schema, self.manners)
+            other = self._of_structs[struct] = holder_class(type_, self.schema, self.manners)
         return other
 
     def view_class(self, struct: str) -> type[View]:

@@ -135,8 +135,8 @@ def _array(array: NDArray[Any]) -> str:
     finite = numbers[np.isfinite(numbers)]
     if not finite.size:
         return f"{text}<br>no finite number"
-    others = "" if finite.size == numbers.size else f", {numbers.size - finite.size} not finite"
-    summary = f"{finite.min():.6g} … {finite.max():.6g}, mean {finite.mean():.6g}{others}"
+    not_finite = "" if finite.size == numbers.size else f", {numbers.size - finite.size} not finite"
+    summary = f"{finite.min():.6g} … {finite.max():.6g}, mean {finite.mean():.6g}{not_finite}"
     return f"{text}<br>{summary} {_curve(numbers)}"
 
 

@@ -243,8 +243,8 @@ nodes = per_process(Nodes)
 
 def uris_in(value: object) -> list[str]:
     """The URIs of a topic's publishers, as the master names them."""
-    given = cast("list[object]", value) if isinstance(value, list) else []
-    return [each for each in given[:MAX_CONNECTIONS] if isinstance(each, str)]
+    uris = cast("list[object]", value) if isinstance(value, list) else []
+    return [each for each in uris[:MAX_CONNECTIONS] if isinstance(each, str)]
 
 
 def graph_name(address: Address) -> str:

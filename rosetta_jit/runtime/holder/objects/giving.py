@@ -83,20 +83,20 @@ class Givers:
             if entry.presence is None and isinstance(entry.node, Scalar | Text) and not isinstance(entry.node.type, Enum):
                 source.add(assignment(target, name, read))
                 continue
-            given = source.name_of(self._given(entry, object_type, name, path))
+            convert = source.name_of(self._conversion(entry, object_type, name, path))
             source.add(f"old = getattr({target}, {name!r}, None)")
             if entry.presence is None and isinstance(entry.node, Record) and unions.discriminator_of(entry.node) is None:
                 self._add_message(source, entry.node, f"{path}.{entry.name}", read, getattr(like, name, None), depth)
-                source.add(f"else: {assignment(target, name, f'{given}({read}, None)')}")
+                source.add(f"else: {assignment(target, name, f'{convert}({read}, None)')}")
             elif (
                 entry.presence is None
                 and isinstance(entry.node, Numbers)
                 and shapes.kind_in(shapes.annotation(object_type, name)) != "ndarray"
             ):
                 kind, exact = source.name_of(type), source.name_of(list)
-                source.add(assignment(target, name, f"{read}.tolist() if {kind}(old) is {exact} else {given}({read}, old)"))
+                source.add(assignment(target, name, f"{read}.tolist() if {kind}(old) is {exact} else {convert}({read}, old)"))
             else:
-                source.add(assignment(target, name, self._if_there(source, entry, f"{given}({read}, old)", f"source{depth}")))
+                source.add(assignment(target, name, self._if_there(source, entry, f"{convert}({read}, old)", f"source{depth}")))
 
     def _add_message(self, source: Source, record: Record, path: str, read: str, like: object, depth: str) -> None:
         """Lines that fill the message that was there, ``old``, if there was one."""
@@ -133,7 +133,7 @@ class Givers:
             if isinstance(entry.node, Record):
                 value = f"{source.name_of(self._maker_of(entry.node, object_type, name, f'{path}.{entry.name}'))}({{read}})"
             elif not isinstance(entry.node, Scalar | Text) or isinstance(entry.node.type, Enum):
-                value = f"{source.name_of(self._given(entry, object_type, name, path))}({{read}}, None)"
+                value = f"{source.name_of(self._conversion(entry, object_type, name, path))}({{read}}, None)"
             arguments.append(f"{name!r}: {self._if_there(source, entry, value.format(read=read))}")
         source.add(f"return {source.name_of(object_type)}(**{{{', '.join(arguments)}}})")
         return source.made("source")
@@ -151,7 +151,7 @@ class Givers:
     def _reads(self, record: Record, name: str, of: str = "source") -> str:
         return attribute(of, name) if name in self._family.shown(record) else f"{of}.access_.getters[{name!r}]({of})"
 
-    def _given(self, entry: Entry, owner: type, name: str, path: str) -> Callable[[Any, Any], Any]:
+    def _conversion(self, entry: Entry, owner: type, name: str, path: str) -> Callable[[Any, Any], Any]:
         """What makes a value for an attribute, given the holder's and the one that is there."""
         return self._value(entry.node, owner, shapes.annotation(owner, name), f"{path}.{entry.name}")
 
@@ -184,12 +184,12 @@ class Givers:
         if isinstance(element, Text):
             return lambda shown, old: tuple(shown) if isinstance(old, tuple) else list(shown)
 
-        def given(shown: Any, old: Any) -> Any:
+        def convert(shown: Any, old: Any) -> Any:
             others: list[Any] = cast("list[Any]", old) if isinstance(old, list) else []
             made = [each(one, others[index] if index < len(others) else None) for index, one in enumerate(shown)]
             return tuple(made) if isinstance(old, tuple) else made
 
-        return given
+        return convert
 
     def _message(self, record: Record, owner: type, said: Any, path: str) -> Callable[[Any, Any], Any]:
         union = unions.discriminator_of(record)
@@ -197,7 +197,7 @@ class Givers:
             return self._union(record, *union, owner, said, path)
         fillers, makers, found = self._filler(record, path), self._maker(record, path), self._class_of(record, owner, said)
 
-        def given(shown: Any, old: Any) -> Any:
+        def convert(shown: Any, old: Any) -> Any:
             if old is not None:
                 fillers[type(old)](old, shown)
                 return old
@@ -205,13 +205,13 @@ class Givers:
                 raise ValuesError(path, f"no class is known for {record.struct}: name it in `types`")
             return makers[found](shown)
 
-        return given
+        return convert
 
     def _union(self, record: Record, entry: Entry, choice: Choice, owner: type, said: Any, path: str) -> Callable[[Any, Any], Any]:
         """What makes a union. Objects of it are made anew: not all can be given another case."""
         known = self._class_of(record, owner, said)
 
-        def given(shown: Any, old: Any) -> Any:
+        def convert(shown: Any, old: Any) -> Any:
             found = cast("Any", type(old) if old is not None else known)
             if found is None:
                 raise ValuesError(path, f"no class is known for {record.struct}: name it in `types`")
@@ -224,14 +224,14 @@ class Givers:
                 )
             return unions.made(found, selector, value)
 
-        return given
+        return convert
 
     def _maker_of(self, record: Record, owner: type, name: str, path: str) -> Callable[[Any], Any]:
         """What makes the message in an attribute; it cannot contain messages of the class that it is in."""
         union = unions.discriminator_of(record)
         if union is not None:
-            given = self._union(record, *union, owner, shapes.annotation(owner, name), path)
-            return lambda shown: given(shown, None)
+            convert = self._union(record, *union, owner, shapes.annotation(owner, name), path)
+            return lambda shown: convert(shown, None)
         found = self._class_of(record, owner, shapes.annotation(owner, name), name)
         if found is None:
             raise ValuesError(path, f"no class is known for {record.struct}: name it in `types`")
@@ -264,11 +264,11 @@ def _same(value: Any, _: Any) -> Any:
 def _enumerator(found: type | None) -> Callable[[Any, Any], Any]:
     """The member of an enum, where one is there or its class is known; else the number."""
 
-    def given(value: Any, old: Any) -> Any:
+    def convert(value: Any, old: Any) -> Any:
         kind = type(old) if isinstance(old, Enumeration) else found
         return value if kind is None or not issubclass(kind, Enumeration) else kind(value)
 
-    return given
+    return convert
 
 
 def _like_numbers(value: Any, old: Any) -> Any:
