@@ -120,7 +120,7 @@ class Exit:
 
 @dataclass(slots=True)
 class StoredExit:
-    """A block that very many edges lead to: each stores its values in words of the state.
+    """A block that very many edges lead to: each stores its values in words of the state, whose addresses are computed once.
 
     LLVM looks through all edges of a phi for each edge that it moves, which takes quadratic time. So it does with blocks whose last
     instructions are the same; theirs stores the site, in which they differ. ``shared`` are blocks on the way that store the same indices
@@ -128,8 +128,7 @@ class StoredExit:
     """
 
     block: ir.Block
-    state: ir.Value
-    words: tuple[int, ...]
+    words: tuple[ir.Value, ...]
     is_reached: bool = False
     shared: dict[tuple[object, ...], ir.Block] = field(default_factory=dict[tuple[object, ...], "ir.Block"])
 
@@ -144,9 +143,9 @@ class StoredExit:
         self._store(builder, self.words[INDICES:], indices)
         builder.branch(self.block)
 
-    def _store(self, builder: ir.IRBuilder, words: Sequence[int], values: Sequence[ir.Value]) -> None:
+    def _store(self, builder: ir.IRBuilder, words: Sequence[ir.Value], values: Sequence[ir.Value]) -> None:
         for word, value in reversed(tuple(zip(words, values, strict=False))):
-            builder.store(value, state_word(builder, self.state, word), align=8)
+            builder.store(value, word, align=8)
 
 
 @dataclass(frozen=True, slots=True)
