@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
@@ -76,7 +77,9 @@ class _Source:
 
     def _kernel(self, role: Role, kernel: Kernel) -> Printed:
         about = About(self.unit.origins.get(role, ()), self.paths, self.functions)
-        return print_kernel(kernel, self.lanes, self.verbs[role], about)
+        rows = zip(self.lanes.all, kernel.strides, strict=False)
+        lanes = replace(self.lanes, all=tuple(replace(lane, stride=stride) for lane, stride in rows))  # hidden ones have rows of their own
+        return print_kernel(kernel, lanes, self.verbs[role], about)
 
     def head(self) -> str:
         """What the file was made from."""

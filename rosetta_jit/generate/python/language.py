@@ -249,6 +249,7 @@ class _Module:
                 if role == "encode":
                     return position
                 rooms = [f"{scope.view(lane, '')}, {scope.room(lane)}" for lane in range(lanes.own, len(lanes.all))]
+                rooms += ["bytearray(), 0"] * (hidden - len(rooms))  # of lanes that the encoder has besides
                 return ", ".join([position, *rooms]) + ("," if not rooms else "")
 
             text, (attempts[role], *_) = print_kernel(

@@ -136,8 +136,17 @@ def _of_writing(rules: tuple[typed.Rule, ...], bound: BoundFields) -> Iterator[O
                 yield from _of_writing(body, bound)
             case typed.When(_, then, otherwise):
                 yield from _of_writing((*then, *otherwise), bound)
+            case typed.Default(place):
+                yield from _of_leaving(place, bound)
             case _:
                 pass
+
+
+def _of_leaving(place: typed.Place, bound: BoundFields) -> Iterator[Obstacle]:
+    """The walk leaves room for an element's numbers, and writes nothing there."""
+    key, indices = wire_key(place)
+    if indices:
+        yield from (Obstacle(each, UNKNOWN) for each in sorted(bound.translated) if each[: len(key)] == key)
 
 
 def _of_setting(place: typed.Place, value: typed.Expr, bound: BoundFields) -> Iterator[Obstacle]:
