@@ -98,17 +98,26 @@ def _integers(type_: str, values: list[int]) -> Subject:
     return Subject(type_, "protobuf", message, _ANGLES)
 
 
-INTEGERS = 10_000
+INTEGERS, MIXED = 10_000, 20
 _ONE_BYTE, _TWO_BYTES = (NUMBERS_OF_BYTES.integers(*bounds, INTEGERS).tolist() for bounds in ((0, 1 << 7), (1 << 7, 1 << 14)))
-_EITHER = [
-    min(pair) if first else max(pair)
-    for pair, first in zip(zip(_ONE_BYTE, _TWO_BYTES, strict=True), NUMBERS_OF_BYTES.random(INTEGERS) < 0.5, strict=True)
-]
+_ARRAYS = (("behind tags", "rj.Integers"), ("packed", "rj.PackedIntegers"))
 VARINTS = {
     f"{INTEGERS:,} integers of {size}, {way}": _integers(type_, values)
-    for way, type_ in (("behind tags", "rj.Integers"), ("packed", "rj.PackedIntegers"))
-    for size, values in (("one byte", _ONE_BYTE), ("two bytes", _TWO_BYTES), ("one byte or two", _EITHER))
+    for way, type_ in _ARRAYS
+    for size, values in (("one byte", _ONE_BYTE), ("two bytes", _TWO_BYTES))
 }
+"""Each number takes as many bytes as any other: there is nothing to guess, so that one message may be repeated."""
+
+
+def _mixed() -> list[int]:
+    """As many numbers of one byte as of two, in any order: messages of one size, in which a processor guesses anew."""
+    return NUMBERS_OF_BYTES.permutation([*_ONE_BYTE[: INTEGERS // 2], *_TWO_BYTES[: INTEGERS // 2]]).tolist()
+
+
+MIXED_VARINTS = {
+    f"{INTEGERS:,} integers of one byte or two, {way}": tuple(_integers(type_, _mixed()) for _ in range(MIXED)) for way, type_ in _ARRAYS
+}
+"""Messages that come in turn."""
 
 
 def _thing(number: int) -> bytes:

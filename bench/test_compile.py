@@ -87,6 +87,19 @@ def lists(depth):
     return f"bench.Level{depth - 1}", protobuf(text)
 
 
+def padded_images(count):
+    """A mapping of so many images of three channels, whose rows are padded on the wire and whose channels change sides."""
+    fields = "\n".join(f"uint32 width{each}\nuint32 height{each}\nuint8[] data{each}" for each in range(count))
+    rules = "\n".join(
+        f"  .width{each} <-> .width{each}\n  .height{each} <-> .height{each}\n"
+        f"  .data{each} <-> planar(rows(.data{each}, .height{each}, .width{each} * 3, align(.width{each} * 3, 8)), 3)"
+        for each in range(count)
+    )
+    head = 'import "bench/msg/Wire.msg"\nimport "bench/msg/Held.msg"\ndata-holder: bench/Held\nwire-schema: bench/Wire\nrules:'
+    files = {"bench/msg/Wire.msg": fields, "bench/msg/Held.msg": fields, "m.mapping": f"{head}\n{rules}\n"}
+    return "m.mapping", {"encoding": "ros1", "schema": files}
+
+
 MADE = {
     "ROS 1, 70 arrays": (*ros1(70, "float64[]"), 0.2),
     "ROS 1, 200 arrays": (*ros1(200, "float64[]"), 0.6),
@@ -94,7 +107,8 @@ MADE = {
     "ROS 1, 1,000 strings": (*ros1(1000, "string"), 2),
     "protobuf, 1,000 integers": (*proto(1000, "int64"), 2),
     "protobuf, 1,000 strings": (*proto(1000, "string"), 2),
-    "protobuf, 30 lists in one another": (*lists(30), 1),
+    "protobuf, 30 lists in one another": (*lists(30), 0.5),
+    "a mapping of eight padded images": (*padded_images(8), 1),
 }
 
 

@@ -114,6 +114,7 @@ def __dir__() -> list[str]:
 def check(
     mapping: str,
     *,
+    schema: Mapping[str, str] | None = None,
     search_path: Iterable[str] = (),
     parameters: Mapping[str, object] | None = None,
     encoding: str | None = None,
@@ -121,8 +122,17 @@ def check(
 ) -> CheckedMapping:
     """Check a mapping in both directions without compiling it; returns its ``warnings`` and ``laws``.
 
-    Without ``parameters``, it is checked for all values that its parameters may get. ``encoding`` or ``framework`` says whose an imported
-    file is that several frameworks can read: a `.msg` file beside the mapping is one of ROS 2, if nothing says otherwise.
+    Parameters
+    ----------
+    schema
+        File names and texts, as if they lay on the search path: the mapping's own, and what it imports.
+    search_path
+        Folders to search before all others.
+    parameters
+        What the mapping's parameters are; without them it is checked for all values that they may get.
+    encoding, framework
+        Whose an imported file is that several frameworks can read: a `.msg` file beside the mapping is one of ROS 2, if nothing says
+        otherwise.
 
     Raises
     ------
@@ -131,7 +141,7 @@ def check(
     """
     from rosetta_jit.pipeline.build import check_mapping
 
-    return check_mapping(mapping, search_path, parameters, encoding=encoding, framework=framework)
+    return check_mapping(mapping, search_path, parameters, schema=schema, encoding=encoding, framework=framework)
 
 
 def infer(messages: Iterable[bytes], *, name: str, encoding: str = "yarp") -> str:

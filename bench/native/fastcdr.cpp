@@ -113,40 +113,45 @@ struct PointCloud2 : Message<PointCloud2> {
     auto members() { return std::tie(header, height, width, fields, is_bigendian, point_step, row_step, data, is_dense); }
 };
 
-using Job = double (*)(char*, std::size_t, std::int64_t);
+using Job = double (*)(const Messages&, std::int64_t);
 
 template <typename Value>
-void read(char* data, std::size_t size, Value& value) {
-    FastBuffer buffer(data, size);
+void read(const Messages& messages, std::int64_t number, Value& value) {
+    FastBuffer buffer(reinterpret_cast<char*>(messages.at(number)), messages.size(number));
     Cdr cdr(buffer, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR);
     cdr.read_encapsulation();
     cdr >> value;
 }
 
 template <typename Value>
-double decode(char* data, std::size_t size, std::int64_t iterations) {
+double decode(const Messages& messages, std::int64_t iterations) {
     Value value;
     publish(value);
-    return nanoseconds(iterations, [&] {
-        read(data, size, value);
+    return nanoseconds_in_turn(messages.count, iterations, [&](std::int64_t number) {
+        read(messages, number, value);
         return true;
     });
 }
 
 template <typename Value>
-double encode(char* data, std::size_t size, std::int64_t iterations) {
-    Value value;
-    read(data, size, value);
-    std::vector<char> target(size);
+double encode(const Messages& messages, std::int64_t iterations) {
+    std::vector<Value> values(static_cast<std::size_t>(messages.count));
+    std::vector<char> target(messages.longest());
     publish(target);
-    const double took = nanoseconds(iterations, [&] {
-        FastBuffer buffer(target.data(), size);
+    const auto write = [&](std::int64_t number) {
+        FastBuffer buffer(target.data(), messages.size(number));
         Cdr cdr(buffer, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR);
         cdr.serialize_encapsulation();
-        cdr << value;
-        return cdr.getSerializedDataLength() == size;
-    });
-    return std::memcmp(target.data(), data, size) == 0 ? took : -1;
+        cdr << values[static_cast<std::size_t>(number)];
+        return cdr.getSerializedDataLength() == messages.size(number);
+    };
+    for (std::int64_t number = 0; number < messages.count; ++number) {
+        read(messages, number, values[static_cast<std::size_t>(number)]);
+        if (!write(number) || std::memcmp(target.data(), messages.at(number), messages.size(number)) != 0) {
+            return -1;
+        }
+    }
+    return nanoseconds_in_turn(messages.count, iterations, write);
 }
 
 const std::map<std::string, std::pair<Job, Job>> JOBS = {
@@ -162,14 +167,14 @@ const std::map<std::string, std::pair<Job, Job>> JOBS = {
 
 extern "C" {
 
-double decode_ns(const char* type, char* message, std::int64_t size, std::int64_t iterations) {
+double decode_ns(const char* type, unsigned char* data, const std::int64_t* ends, std::int64_t count, std::int64_t iterations) {
     const auto found = JOBS.find(type);
-    return found == JOBS.end() ? -1 : found->second.first(message, static_cast<std::size_t>(size), iterations);
+    return found == JOBS.end() ? -1 : found->second.first({data, ends, count}, iterations);
 }
 
-double encode_ns(const char* type, char* message, std::int64_t size, std::int64_t iterations) {
+double encode_ns(const char* type, unsigned char* data, const std::int64_t* ends, std::int64_t count, std::int64_t iterations) {
     const auto found = JOBS.find(type);
-    return found == JOBS.end() ? -1 : found->second.second(message, static_cast<std::size_t>(size), iterations);
+    return found == JOBS.end() ? -1 : found->second.second({data, ends, count}, iterations);
 }
 
 }  // extern "C"

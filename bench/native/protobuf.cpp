@@ -10,25 +10,35 @@
 
 namespace {
 
-using Job = double (*)(const unsigned char*, int, std::int64_t);
+using Job = double (*)(const Messages&, std::int64_t);
 
 template <typename Message>
-double decode(const unsigned char* data, int size, std::int64_t iterations) {
-    Message message;
-    publish(message);
-    return nanoseconds(iterations, [&] { return message.ParseFromArray(data, size); });
+bool read(const Messages& messages, std::int64_t number, Message& message) {
+    return message.ParseFromArray(messages.at(number), static_cast<int>(messages.size(number)));
 }
 
 template <typename Message>
-double encode(const unsigned char* data, int size, std::int64_t iterations) {
+double decode(const Messages& messages, std::int64_t iterations) {
     Message message;
-    if (!message.ParseFromArray(data, size)) {
-        return -1;
-    }
-    std::vector<unsigned char> buffer(static_cast<std::size_t>(size));
+    publish(message);
+    return nanoseconds_in_turn(messages.count, iterations, [&](std::int64_t number) { return read(messages, number, message); });
+}
+
+template <typename Message>
+double encode(const Messages& messages, std::int64_t iterations) {
+    std::vector<Message> read_ones(static_cast<std::size_t>(messages.count));
+    std::vector<unsigned char> buffer(messages.longest());
     publish(buffer);
-    const double took = nanoseconds(iterations, [&] { return message.SerializeToArray(buffer.data(), size); });
-    return std::memcmp(buffer.data(), data, buffer.size()) == 0 ? took : -1;
+    const auto write = [&](std::int64_t number) {
+        return read_ones[static_cast<std::size_t>(number)].SerializeToArray(buffer.data(), static_cast<int>(messages.size(number)));
+    };
+    for (std::int64_t number = 0; number < messages.count; ++number) {
+        const bool done = read(messages, number, read_ones[static_cast<std::size_t>(number)]) && write(number);
+        if (!done || std::memcmp(buffer.data(), messages.at(number), messages.size(number)) != 0) {
+            return -1;
+        }
+    }
+    return nanoseconds_in_turn(messages.count, iterations, write);
 }
 
 const std::map<std::string, std::pair<Job, Job>> JOBS = {
@@ -43,14 +53,14 @@ const std::map<std::string, std::pair<Job, Job>> JOBS = {
 
 extern "C" {
 
-double decode_ns(const char* type, const unsigned char* message, std::int64_t size, std::int64_t iterations) {
+double decode_ns(const char* type, unsigned char* data, const std::int64_t* ends, std::int64_t count, std::int64_t iterations) {
     const auto found = JOBS.find(type);
-    return found == JOBS.end() ? -1 : found->second.first(message, static_cast<int>(size), iterations);
+    return found == JOBS.end() ? -1 : found->second.first({data, ends, count}, iterations);
 }
 
-double encode_ns(const char* type, const unsigned char* message, std::int64_t size, std::int64_t iterations) {
+double encode_ns(const char* type, unsigned char* data, const std::int64_t* ends, std::int64_t count, std::int64_t iterations) {
     const auto found = JOBS.find(type);
-    return found == JOBS.end() ? -1 : found->second.second(message, static_cast<int>(size), iterations);
+    return found == JOBS.end() ? -1 : found->second.second({data, ends, count}, iterations);
 }
 
 }  // extern "C"

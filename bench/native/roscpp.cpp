@@ -19,36 +19,42 @@
 
 namespace {
 
-using Job = double (*)(unsigned char*, std::uint32_t, std::int64_t);
+using Job = double (*)(const Messages&, std::int64_t);
 
 template <typename Message>
-void read(unsigned char* data, std::uint32_t size, Message& message) {
-    ros::serialization::IStream stream(data, size);
+void read(const Messages& messages, std::int64_t number, Message& message) {
+    ros::serialization::IStream stream(messages.at(number), static_cast<std::uint32_t>(messages.size(number)));
     ros::serialization::deserialize(stream, message);
 }
 
 template <typename Message>
-double decode(unsigned char* data, std::uint32_t size, std::int64_t iterations) {
+double decode(const Messages& messages, std::int64_t iterations) {
     Message message;
     publish(message);
-    return nanoseconds(iterations, [&] {
-        read(data, size, message);
+    return nanoseconds_in_turn(messages.count, iterations, [&](std::int64_t number) {
+        read(messages, number, message);
         return true;
     });
 }
 
 template <typename Message>
-double encode(unsigned char* data, std::uint32_t size, std::int64_t iterations) {
-    Message message;
-    read(data, size, message);
-    std::vector<unsigned char> buffer(size);
+double encode(const Messages& messages, std::int64_t iterations) {
+    std::vector<Message> read_ones(static_cast<std::size_t>(messages.count));
+    std::vector<unsigned char> buffer(messages.longest());
     publish(buffer);
-    const double took = nanoseconds(iterations, [&] {
-        ros::serialization::OStream stream(buffer.data(), size);
-        ros::serialization::serialize(stream, message);
+    const auto write = [&](std::int64_t number) {
+        ros::serialization::OStream stream(buffer.data(), static_cast<std::uint32_t>(messages.size(number)));
+        ros::serialization::serialize(stream, read_ones[static_cast<std::size_t>(number)]);
         return true;
-    });
-    return std::memcmp(buffer.data(), data, size) == 0 ? took : -1;
+    };
+    for (std::int64_t number = 0; number < messages.count; ++number) {
+        read(messages, number, read_ones[static_cast<std::size_t>(number)]);
+        write(number);
+        if (std::memcmp(buffer.data(), messages.at(number), messages.size(number)) != 0) {
+            return -1;
+        }
+    }
+    return nanoseconds_in_turn(messages.count, iterations, write);
 }
 
 using Transforms = std::vector<geometry_msgs::TransformStamped>;  // all that tf2_msgs::TFMessage has
@@ -70,14 +76,14 @@ const std::map<std::string, std::pair<Job, Job>> JOBS = {
 
 extern "C" {
 
-double decode_ns(const char* type, unsigned char* message, std::int64_t size, std::int64_t iterations) {
+double decode_ns(const char* type, unsigned char* data, const std::int64_t* ends, std::int64_t count, std::int64_t iterations) {
     const auto found = JOBS.find(type);
-    return found == JOBS.end() ? -1 : found->second.first(message, static_cast<std::uint32_t>(size), iterations);
+    return found == JOBS.end() ? -1 : found->second.first({data, ends, count}, iterations);
 }
 
-double encode_ns(const char* type, unsigned char* message, std::int64_t size, std::int64_t iterations) {
+double encode_ns(const char* type, unsigned char* data, const std::int64_t* ends, std::int64_t count, std::int64_t iterations) {
     const auto found = JOBS.find(type);
-    return found == JOBS.end() ? -1 : found->second.second(message, static_cast<std::uint32_t>(size), iterations);
+    return found == JOBS.end() ? -1 : found->second.second({data, ends, count}, iterations);
 }
 
 }  // extern "C"

@@ -8,8 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from bench.subjects import Subject
 
@@ -38,15 +40,15 @@ class NativePeer:
     encode: Callable[[int], float]
 
 
-def native_peers(subject: Subject) -> tuple[NativePeer, ...]:
-    """The libraries that were built and know the subject's type."""
+def native_peers(subject: Subject, messages: Sequence[bytes] = ()) -> tuple[NativePeer, ...]:
+    """The libraries that were built and know the subject's type, for messages that come in turn: by default for the subject's own."""
     if subject.encoding not in _LIBRARIES:
         return ()
     name, who, makes = _LIBRARIES[subject.encoding]
     if not _path(name).exists():
         return ()
     library = ctypes.CDLL(str(_path(name)))
-    jobs = tuple(partial(_nanoseconds, library[f"{job}_ns"], subject) for job in ("decode", "encode"))
+    jobs = tuple(partial(_nanoseconds, library[f"{job}_ns"], subject.type, messages or (subject.message,)) for job in ("decode", "encode"))
     return (NativePeer(who, makes, *jobs),)
 
 
@@ -70,9 +72,10 @@ def rounds_of(job: Callable[[int], float], round_s: float) -> Callable[[], float
     return partial(job, count)
 
 
-def _nanoseconds(function: Any, subject: Subject, iterations: int) -> float:
+def _nanoseconds(function: Any, type_: str, messages: Sequence[bytes], iterations: int) -> float:
     function.restype = ctypes.c_double
-    took = function(subject.type.encode(), subject.message, ctypes.c_int64(len(subject.message)), ctypes.c_int64(iterations))
+    ends = np.cumsum(list(map(len, messages)), dtype=np.int64)
+    took = function(type_.encode(), b"".join(messages), ends.ctypes, ctypes.c_int64(len(messages)), ctypes.c_int64(iterations))
     if took < 0:
-        raise ValueError(f"{function.__name__} refuses {subject.type}")
+        raise ValueError(f"{function.__name__} refuses {type_}")
     return took

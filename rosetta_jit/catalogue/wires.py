@@ -45,7 +45,7 @@ def set_by_several(span: Span | None, path: str, names: Sequence[str], first: Sp
     notes = (f"`{names[0]}` sets it at {where}",) if where else ()
     help_ = f"let one wire set it, or one rule that reads all of them: `{path} = a if condition else b`"
     arrays = (
-        "let one wire set it. Only an array of numbers can have elements of several wires: one of fixed length, "
+        "let one wire set it. Only an array of numbers or of texts can have elements of several wires: one of fixed length, "
         f"or with a length that no wire tells, as `len({path}) = 14`"
     )
     message = f"`{path}` is set by messages of {_listed(names)}"

@@ -21,9 +21,17 @@ def within(ways: Ways, field: str) -> Ways:
 
 
 def changed_lanes(kernel: Kernel) -> tuple[int, ...]:
-    """The lanes whose rows stay from one message to the next, and of which a kernel changes some: of arrays that several wires fill."""
+    """The lanes of arrays that several wires fill: those whose rows stay, and of which a kernel changes some, and those that it moves."""
     changed = {lane for body in kernel.bodies for stmt, _ in statements(body) for lane in _changed(stmt)}
-    return tuple(sorted(changed & set(kernel.kept) - {0}))
+    return tuple(sorted((changed & set(kernel.kept) | moved_lanes(kernel)) - {0}))
+
+
+def moved_lanes(kernel: Kernel) -> frozenset[int]:
+    """The lanes of the holder that a kernel starts with empty, but takes something from that the message before has left there."""
+    if not kernel.kept:
+        return frozenset()
+    copied = (stmt.source for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, Copy))
+    return frozenset(each.lane for each in copied if isinstance(each, Place) and each.lane < kernel.lanes) - {*kernel.kept}
 
 
 def _changed(stmt: Stmt) -> Iterator[int]:

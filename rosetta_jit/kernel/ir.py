@@ -70,9 +70,10 @@ HostCall ends the body: the next body starts afresh, with used lengths as they w
 indices in the holder's state. A failing Reserve returns -1 at once, having left lane and missing rows there: the runtime grows the lane
 and calls again. Return ends the kernel with a position >= 0; only then do used lengths count.
 
-**Used lengths** at the start are those of the holder's state, but a decode into row 0 starts with every used length 0: the message
-replaces what the holder held. Later rows of a batch are added to the rows before. A kernel for one of several wires fills a part of
-what the holder holds: the lanes that it **keeps**, lane 0 first of all, have the used lengths of the state then, too.
+**Used lengths** at the start are those of the holder's state, but a decode into row 0 starts with every used length 0: the
+message replaces what the holder held. The rows themselves are as they were, and all of them are when a lane has grown. Later rows
+of a batch are added to the rows before. A kernel for one of several wires fills a part of what the holder holds: the lanes that
+it **keeps**, lane 0 first of all, have the used lengths of the state then, too.
 """
 
 from __future__ import annotations

@@ -53,9 +53,17 @@ def shown_names(names: Sequence[str], message: Message) -> str:
     for name in names:
         fields = type_.fields if isinstance(type_, Struct) else type_.cases if isinstance(type_, Union) else ()
         found = next((field for field in fields if field.name == name), None)
-        parts.append(f".{name}" if found is None else found)
+        parts += [*_brackets(message, parts), f".{name}" if found is None else found]
         type_ = type_ if found is None else value_inside(message, found.type)
     return _joined(parts)
+
+
+def _brackets(message: Message, parts: list[Field | str]) -> list[str]:
+    """What stands between the last field and one of its elements."""
+    type_, found = parts[-1].type if parts and isinstance(parts[-1], Field) else None, ""
+    while type_ is not None and isinstance(value := message.value_type(type_), Array):
+        type_, found = value.element, f"{found}[]"
+    return [found] if found else []
 
 
 def value_inside(message: Message, type_: Type) -> Type:

@@ -26,7 +26,7 @@ from rosetta_jit.lowering.rules.holder_side import HolderSide
 from rosetta_jit.lowering.rules.in_place import obstacle
 from rosetta_jit.lowering.rules.initial_values import initialise, opened_lanes
 from rosetta_jit.lowering.rules.packed_values import AssignedByRules, look_up_arrays
-from rosetta_jit.lowering.rules.shares import clear, initial_of, kept_lanes
+from rosetta_jit.lowering.rules.shares import clear, fixed_arrays, initial_of, keep_texts, kept_lanes
 from rosetta_jit.lowering.rules.state import begin
 from rosetta_jit.lowering.rules.statements import Runner
 from rosetta_jit.lowering.rules.values import Values
@@ -103,6 +103,8 @@ class Mapped:
             return HolderSide(fields, initial, opened, self.unions)
         clear(fields, self.share)
         initialise(fields, initial_of(self.share, of_message, fields.layout), cell.row, opened)
+        for names in fixed_arrays(self.share, fields.layout, opened):
+            keep_texts(fields, names)
         return HolderSide(fields, initial, opened, self.unions, joined=self.share.joined)
 
 

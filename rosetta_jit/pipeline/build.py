@@ -323,11 +323,12 @@ def check_mapping(
     folders: Iterable[str] = (),
     parameters: Mapping[str, object] | None = None,
     *,
+    schema: Mapping[str, str] | None = None,
     encoding: str | None = None,
     framework: str | None = None,
 ) -> CheckedMapping:
     """What is known of a mapping; raises MappingError with all that is wrong."""
-    search, reading = SearchPath.of(folders), Reading()
+    search, reading = SearchPath.of(folders, files=schema), Reading()
     request = Request("decode", mapping=path, encoding=encoding, framework=framework)
     readers = readers_of(request)
     known = [name for each in readers.frameworks.values() for name in each.encodings]

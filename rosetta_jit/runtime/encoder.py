@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
     Target = tuple[NDArray[np.uint8], int]
     """A buffer, and where to write in it."""
+
+PARAMETERS = "holder", "buffer", "offset"
 
 _SIZES = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
 """The compiled `sizes` (`backends/entry/encode.ll`): offsets, first, count, state; the first message that was not measured."""
@@ -58,19 +60,27 @@ class EncoderBase(Program):
     def _start(self, loaded: Loaded, beside: EncoderBase | None = None) -> None:
         self._bind(loaded, self._call_slowly, beside)
 
-    def into(self, holder: Any, buffer: Buffer, offset: int = 0) -> int:
-        """Write a message into a buffer; returns the offset behind it.
+    if TYPE_CHECKING:  # for people and type checkers it is a method
 
-        Where that fails, a part of the message may stand in the buffer.
+        def into(self, holder: Any, buffer: Buffer, offset: int = 0) -> int: ...
 
-        Raises
-        ------
-        EncodeError
-            The holder has values that the wire cannot carry.
-        BufferError
-            The buffer is read-only, or has not enough room.
-        """
-        return self(holder, buffer, offset)
+    else:
+
+        @cached_property
+        def into(self):
+            """``into(holder, buffer, offset=0)`` writes a message into a buffer; returns the offset behind it.
+
+            It is the same as `builtin`, and costs no more than a call of the encoder. Where it fails, a part of the message may stand in
+            the buffer.
+
+            Raises
+            ------
+            EncodeError
+                The holder has values that the wire cannot carry.
+            BufferError
+                The buffer is read-only, or has not enough room.
+            """
+            return self.builtin
 
     def size(self, holder: Any) -> int:
         """How many bytes the message takes."""
@@ -211,10 +221,7 @@ class EncoderBase(Program):
         quick = self._quick.get(type(arguments[0])) if arguments and not named else None
         if quick is not None:
             return quick(*arguments)
-        if len(arguments) == 2:
-            arguments = (*arguments, 0)
-        if named or len(arguments) not in (1, 3):
-            raise TypeError("an encoder takes a holder, and perhaps a buffer and an offset")
+        arguments = _in_order(arguments, named)
         if self._is_to_be_taken(arguments[0]):
             return self._call_with_foreign(*arguments)
         holder, target = self._checked(arguments[0]), _target(*arguments[1:])
@@ -317,6 +324,17 @@ class EncoderBase(Program):
         if result < 0:
             raise run.encode_error(self._loaded.sites[-1 - result], lanes)
         return result
+
+
+def _in_order(arguments: tuple[object, ...], named: Mapping[str, object]) -> tuple[object, ...]:
+    """A holder, or a holder, a buffer and an offset: those that are given by name behind the others."""
+    wanted = PARAMETERS[len(arguments) :]
+    if len(arguments) > len(PARAMETERS) or not named.keys() <= set(wanted) or not (arguments or "holder" in named):
+        raise TypeError("an encoder takes a holder, and perhaps a buffer and an offset")
+    if len(arguments) == 1 and not named:
+        return arguments
+    given: dict[str, object] = {"buffer": None, "offset": 0, **named}
+    return (*arguments, *(given[each] for each in wanted))
 
 
 def _target(buffer: object = None, offset: object = 0) -> Target | None:

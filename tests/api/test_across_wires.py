@@ -17,7 +17,7 @@ SCHEMAS = {
     "lab.proto": """syntax = "proto3"; package lab;
 message Seen {
   string frame = 1; double lead = 2; repeated double ranges = 3; optional int64 count = 4; double least = 5; bool ready = 6;
-  double tilt = 7; repeated double joined = 8; int64 steps = 9; string kind = 10; double pick = 11;
+  double tilt = 7; repeated double joined = 8; int64 steps = 9; string kind = 10; double pick = 11; repeated string names = 12;
 }""",
 }
 MAPPING = """import "lab/Scan.msg"
@@ -43,6 +43,10 @@ unpack-rules:
   len(.joined) = 2
   .joined[0] = .pose.sigma[1]
   .joined[1] = .pose.sigma[0] * .tilt.step
+  len(.names) = 3
+  .names[0] = .scan.frame
+  .names[1] = text(.pose.seq)
+  .names[2] = "step " + text(.tilt.step) if .tilt.step > 0 else ""
   .steps = steps
   .kind = .scan.frame + "!" if .pose.x > 0.0 else "none"
   when .scan.good
@@ -85,7 +89,7 @@ class Model:
     """What the mapping means, in plain Python."""
 
     def __init__(self):
-        self.last, self.fields, self.joined, self.steps = {}, {}, [0.0, 0.0], 0
+        self.last, self.fields, self.joined, self.names, self.steps = {}, {}, [0.0, 0.0], [""] * 3, 0
 
     def take(self, wire, values):
         """What a message makes of the holder; False if it is refused."""
@@ -96,16 +100,19 @@ class Model:
         self.last, found = last, {}
         if wire == "scan":
             found = {"frame": scan["frame"], "ranges": [each + pose["x"] for each in scan["ranges"]] if pose else [], "count": None}
+            self.names[0] = scan["frame"]
             found["kind"] = (scan["frame"] + "!" if pose["x"] > 0 else "none") if pose else ""
             if pose and scan["good"]:
                 found["count"] = pose["seq"] + len(scan["ranges"])
         if wire == "tilt":
             found["tilt"] = tilt["angle"]
+            self.names[2] = f"step {tilt['step']}" if tilt["step"] > 0 else ""
         if wire in ("pose", "tilt"):
             found["lead"] = pose["x"] - tilt["angle"] if pose and tilt else 0.0
             self.joined[1] = pose["sigma"][0] * tilt["step"] if pose and tilt else self.joined[1]
         if wire == "pose":
             self.joined[0] = pose["sigma"][1]
+            self.names[1] = str(pose["seq"])
             found["count"] = pose["seq"] + len(scan["ranges"]) if scan and scan["good"] else None
         if wire in ("scan", "pose"):
             known = scan and pose and pose["seq"] > 0 and scan["ranges"]
@@ -113,7 +120,7 @@ class Model:
         if wire in ("scan", "tilt"):
             found["ready"] = bool(scan and tilt and scan["frame"] == "map" and tilt["step"] > 0)
         found["pick"] = (pose["x"] if scan["good"] else tilt["angle"]) if scan and pose and tilt else 0.0
-        self.fields = {**self.fields, **found, "joined": list(self.joined), "steps": self.steps}
+        self.fields = {**self.fields, **found, "joined": list(self.joined), "names": list(self.names), "steps": self.steps}
         if wire in ("pose", "tilt") and pose and tilt:
             self.steps += pose["seq"] + tilt["step"]
         return True
@@ -122,7 +129,7 @@ class Model:
         return holder_type.from_dict({name: value for name, value in self.fields.items() if value is not None})
 
 
-@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter", "numba"])
 @settings(max_examples=15, deadline=None)
 @given(ARRIVALS)
 def test_a_rule_that_reads_several_wires_runs_when_all_have_come(backend, arrivals):

@@ -180,6 +180,11 @@ def test_encode_is_the_inverse(backend, decode, dialect):
     buffer = bytearray(40)
     assert encode.into(decode(MESSAGE), buffer, 4) == 36
     assert bytes(buffer[4:36]) == written
+    assert encode.into(holder=decode(MESSAGE), buffer=buffer) == encode(decode(MESSAGE), offset=0, buffer=buffer) == 32
+    for wrong in ({"buffer": buffer}, {"holder": decode(MESSAGE), "into": buffer}):
+        with pytest.raises(TypeError):
+            encode(**wrong)
+    assert encode.into is encode.builtin  # no function of Python's in between
     assert np.allclose(np.degrees(rj.Decoder(TORSO, backend=backend)(written).angles), DEGREES, rtol=1e-6)
 
 

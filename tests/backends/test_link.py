@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import struct
 import time
 from dataclasses import replace
 
@@ -19,6 +20,8 @@ from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.allowed import ALLOWED
 from rosetta_jit.runtime.code.object_file import undefined_symbols
 from tests.backends import kernels
+from tests.backends.engines import outcome
+from tests.backends.holders import rows
 
 PROGRAMS = [("decode", (kernels.counted(),)), ("borrow", (kernels.tagged(),)), ("encode", kernels.encoder())]
 
@@ -58,15 +61,32 @@ def test_no_arithmetic_is_relaxed(with_numba):
 
 def test_long_kernels_without_loops_have_vectors_too():
     """Fewer of LLVM's passes run for them."""
-    (body,) = kernels.fixed(300).bodies
-    read = tuple(Let(f"value{each}", Load("f64", add(BEGIN, 8 * each))) for each in range(300))
-    scaled = [Convert("f32", Binary("mul", Local("f64", f"value{each}"), Const("f64", 0.1))) for each in range(300)]
-    written = tuple(SetField(Place(0, ROW, 4 * each), value) for each, value in enumerate(scaled))
-    long = replace(kernels.fixed(300), bodies=((*body[:2], *read, *written, body[-1]),))
+    long = _scaled(300)
     assert are_straight_and_compute([long])
     for other in (kernels.specialised(), kernels.text()):
         assert not are_straight_and_compute([long, other])
     assert re.search(r"fmul <\d+ x double>", llvm_text([long], "decode", with_numba=False))
+
+
+def _scaled(count):
+    """So many doubles, each of which is scaled and stored as a float."""
+    (body,) = kernels.fixed(count).bodies
+    read = tuple(Let(f"value{each}", Load("f64", add(BEGIN, 8 * each))) for each in range(count))
+    scaled = [Convert("f32", Binary("mul", Local("f64", f"value{each}"), Const("f64", 0.1))) for each in range(count)]
+    written = tuple(SetField(Place(0, ROW, 4 * each), value) for each, value in enumerate(scaled))
+    return replace(kernels.fixed(count), bodies=((*body[:2], *read, *written, body[-1]),))
+
+
+def test_values_loaded_where_they_are_needed_are_the_same():
+    made = _scaled(300)
+    message = struct.pack("<450d", *range(450))  # as many bytes as 300 tagged ones
+    for data in (message, message[:-1]):
+        assert outcome("llvm", made, data, rows(made)) == outcome("interpreter", made, data, rows(made))
+
+
+def test_statements_that_compute_take_time_in_proportion():
+    few, many = (_took_to_compile([_scaled(count)]) for count in (200, 1600))
+    assert many < 12 * few  # 23 times as long where all is loaded before anything is stored
 
 
 def test_loops_over_elements_are_worth_more_passes_in_kernels_of_some_size():
@@ -117,8 +137,10 @@ def _took(count):
     """The CPU time to compile a decoder of arrays whose numbers have their high byte first, each array behind the one before."""
     text = "\n".join(f"float64[] numbers{number}" for number in range(count))
     request = Request("decode", type="a/msg/Arrays", files=(("a/msg/Arrays.msg", text),), encoding="cdr", byte_order="big")
-    build = Build(request)
-    kernels = build.kernels
+    return _took_to_compile(Build(request).kernels)
+
+
+def _took_to_compile(kernels):
     started = time.process_time()
-    object_file(kernels, build.entry, with_numba=False)
+    object_file(kernels, "decode", with_numba=False)
     return time.process_time() - started

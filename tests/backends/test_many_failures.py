@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from rosetta_jit.backends.entry.link import llvm_text
@@ -12,30 +14,43 @@ from tests.backends.engines import outcome
 from tests.backends.holders import rows
 from tests.backends.kernels import failure, kernel
 
-BYTES, ROUNDS = 600, 3
+BYTES, ROUNDS, LAST = 600, 3, 4
 
 
 def checked(*, goes_wrong_at=1):
-    """Two attempts: all bytes are 0, the last of them in three rounds; or the byte at a place is 7."""
+    """Two attempts: all bytes are 0, the last four of them in three rounds; or the byte at a place is 7."""
     every = [Expect(Compare("eq", Load("u8", add(BEGIN, at)), Const("u8", 0)), failure(2, add(BEGIN, at))) for at in range(BYTES)]
     number = Local("i64", "number")
-    last = Expect(Compare("eq", Load("u8", add(BEGIN, BYTES)), Const("u8", 0)), failure(3, add(BEGIN, BYTES), number))
-    size = Require(BEGIN, index(BYTES + 1), failure(1))
+    ends = [add(BEGIN, at) for at in range(BYTES, BYTES + LAST)]
+    last = tuple(Expect(Compare("eq", Load("u8", each), Const("u8", 0)), failure(3, each, number)) for each in ends)
+    size = Require(BEGIN, index(BYTES + LAST), failure(1))
     second = Expect(Compare("eq", Load("u8", add(BEGIN, goes_wrong_at)), Const("u8", 7)), failure(4, add(BEGIN, goes_wrong_at), index(5)))
-    first = (size, *every, For(number.name, Const("i64", ROUNDS), (last,)), Return(END))
+    first = (size, *every, For(number.name, Const("i64", ROUNDS), last), Return(END))
     return kernel(first, (size, second, Return(END)), strides=(8,), name="checked")
 
 
 @pytest.mark.parametrize("at", [1, 300, BYTES])
 @pytest.mark.parametrize("name", ["llvm", "python"])
-@pytest.mark.parametrize("wrong", [None, 0, 1, 299, BYTES - 1, BYTES])
+@pytest.mark.parametrize("wrong", [None, 0, 1, 299, BYTES - 1, BYTES, BYTES + 2])
 def test_failures_are_those_of_the_interpreter(name, wrong, at):
     made = checked(goes_wrong_at=at)
     verify(made)
-    message = bytes(9 if place == wrong else 0 for place in range(BYTES + 1))
+    message = bytes(9 if place == wrong else 0 for place in range(BYTES + LAST))
     assert outcome(name, made, message, rows(made)) == outcome("interpreter", made, message, rows(made))
 
 
 def test_no_instruction_names_all_failures():
     text = llvm_text([checked()], "decode", with_numba=False)
     assert max(line.count("[ ") for line in text.splitlines() if "= phi " in line) < 64
+
+
+def test_failures_of_one_round_share_the_block_that_stores_its_number():
+    text = llvm_text([checked()], "decode", with_numba=False)
+    assert len(re.findall(r"^indices[.\d]*:", text, re.MULTILINE)) == 1
+
+
+def test_failures_end_in_what_they_do_not_share():
+    """Where the last instructions of blocks are the same, LLVM compares each block with each other one, to merge them."""
+    text = llvm_text([checked()], "decode", with_numba=False)
+    last = re.findall(r"store i64 (\S+), ptr [^\n]*\n  br label %(?:failed|indices)\b", text)
+    assert sum(each.isdigit() for each in last) > BYTES

@@ -16,7 +16,12 @@ static void show(const seen_holder *holder)
     for (int64_t at = 0; at < message->joined.count; at++) {
         printf("%.17g ", holder->joined.rows[message->joined.start + at]);
     }
-    printf("] %lld", (long long)message->steps);
+    printf("] ");
+    for (int64_t at = 0; at < message->names.count; at++) {
+        const seen_span *name = &holder->names.rows[message->names.start + at];
+        printf("%s%.*s", at == 0 ? "" : "|", (int)name->count, (const char *)holder->names_bytes.rows + name->start);
+    }
+    printf(" %lld", (long long)message->steps);
 }
 
 int main(void)

@@ -15,7 +15,12 @@ static void show(const seen::holder &seen)
     for (const double each : seen.joined) {
         std::printf("%.17g ", each);
     }
-    std::printf("] %lld", static_cast<long long>(seen.steps));
+    const char *between = "] ";
+    for (const std::string &each : seen.names) {
+        std::printf("%s%s", between, each.c_str());
+        between = "|";
+    }
+    std::printf(" %lld", static_cast<long long>(seen.steps));
 }
 
 int main()

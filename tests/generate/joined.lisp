@@ -16,10 +16,10 @@
   (prin1-to-string (coerce value 'double-float)))
 
 (defun show (seen)
-  (format t "ok ~A ~A ~A ~D ~A ~D ~A ~A ~D"
+  (format t "ok ~A ~A ~A ~D ~A ~D ~A ~A ~{~A~^|~} ~D"
           (seen:seen-frame seen) (number-of (seen:seen-lead seen)) (numbers (seen:seen-ranges seen)) (or (seen:seen-count seen) -1000)
           (number-of (seen:seen-least seen)) (if (seen:seen-ready seen) 1 0) (number-of (seen:seen-tilt seen))
-          (numbers (seen:seen-joined seen)) (seen:seen-steps seen)))
+          (numbers (seen:seen-joined seen)) (coerce (seen:seen-names seen) 'list) (seen:seen-steps seen)))
 
 (defun show-error (condition)
   (let ((line (seen:message-error-line condition)))

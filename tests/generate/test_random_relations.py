@@ -16,6 +16,7 @@ from tests.generate import cpp, lisp, test_python
 from tests.generate.driver import answers, driver, expected, needs_gcc, write
 from tests.generate.test_random_in_python import module
 from tests.random_mappings.blocks import Relations
+from tests.random_mappings.conditional import conditional
 from tests.random_mappings.defaults import defaulted, demanded
 from tests.random_mappings.hostile import altered
 from tests.random_mappings.sums import sums
@@ -82,10 +83,13 @@ def case_of(rng: random.Random, names: tuple[str, str], src: Side, dst: Side, pa
 
 
 def solved(seed: int) -> Case:
-    """Sums and differences that are solved together, elements that have their default, and rejections that say what packing computes."""
+    """Sums and differences that are solved together, elements that have their default, rejections that say what packing computes, and
+    reductions of some elements.
+    """
     rng, names = random.Random(seed), ("ros1", "proto3")
     made = Relations(rng, *(WIRES[each] for each in names), "")
-    parts = [form(made, f"f{number}") for number, form in enumerate((sums, demanded, defaulted, sums, demanded, defaulted))]
+    forms = (sums, demanded, defaulted, conditional) * 2
+    parts = [form(made, f"f{number}") for number, form in enumerate(forms)]
     return case_of(rng, names, *sides(rng, names, parts), parts)
 
 
@@ -123,8 +127,10 @@ LANGUAGES = [
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_what_relations_solve_and_compute(language, tmp_path):
-    language(solved(1), tmp_path)
+@pytest.mark.parametrize("seed", [1, 43])
+def test_what_relations_solve_and_compute(seed, language, tmp_path):
+    """The second one has a decoder and an encoder with hidden lanes of other widths, and an encoder with more than what measures."""
+    language(solved(seed), tmp_path)
 
 
 @pytest.mark.campaign

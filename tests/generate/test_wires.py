@@ -65,7 +65,7 @@ def fields(seen):
     is_there = seen.HasField("count") if hasattr(seen, "HasField") else seen.count is not None
     count = seen.count if is_there else -1000
     numbers = f"{count} {seen.least:.17g} {int(seen.ready)} {seen.tilt:.17g}"
-    return f"{seen.frame} {seen.lead:.17g} [{ranges}] {numbers} [{joined}] {seen.steps}"
+    return f"{seen.frame} {seen.lead:.17g} [{ranges}] {numbers} [{joined}] {'|'.join(seen.names)} {seen.steps}"
 
 
 @cache

@@ -104,7 +104,7 @@ rules:
 
 NUMBERS = {
     "lab/msg/Part.msg": "int8 a\nfloat64 b\nInner c\nint16 d\n",
-    "lab/msg/Inner.msg": "int16 e\nint64 f\n",
+    "lab/msg/Inner.msg": "int16 e\nint64 f\nbool g\n",
     "lab/msg/Parts.msg": "Part[] parts\nfloat64 x\n",
     "h.proto": 'syntax = "proto3"; message H { repeated int32 d = 1; double x = 2; }',
     "m.mapping": """import "lab/msg/Parts.msg"
@@ -126,7 +126,7 @@ def test_every_byte_of_a_message_is_written(encoding: str, order: Any, backend: 
     encode = rj.Encoder("m.mapping", schema=NUMBERS, encoding=encoding, byte_order=order, backend=backend)
     message = written(encode, {"d": [1, -2, 3], "x": 0.5})
     read = rj.Decoder.of("lab/msg/Parts", schema=NUMBERS, imports=["lab/msg/Parts.msg"], encoding=encoding, backend="interpreter")
-    nothing = {"a": 0, "b": 0.0, "c": {"e": 0, "f": 0}}
+    nothing = {"a": 0, "b": 0.0, "c": {"e": 0, "f": 0, "g": False}}
     parts = [{**nothing, "d": number} for number in (1, -2, 3)]
     assert read(message).to_dict() == {"parts": parts, "x": 0.5}
 

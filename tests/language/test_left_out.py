@@ -143,3 +143,38 @@ rules:
     message = encode(encode.holder_type.from_dict({"x": [1.5, 2.5]}))
     assert read(message).to_dict() == {"points": [{"x": 1.5, "y": 0.0, "tags": []}, {"x": 2.5, "y": 0.0, "tags": []}]}
     assert decode(message).to_dict() == {"x": [1.5, 2.5]}
+
+
+ELEMENTS = {
+    "lab/msg/Part.msg": "float64 x\nstring note\n",
+    "lab/msg/Whole.msg": "Part[] parts\nuint32 count\n",
+    "w.proto": """syntax = "proto2"; package h;
+message P { required double x = 1; optional string memo = 2; }
+message W { repeated P parts = 1; required uint32 count = 2; }""",
+}
+OF_ELEMENTS = 'import "lab/msg/Whole.msg"\nimport "w.proto"\ndata-holder: h.W\nwire-schema: lab/msg/Whole\nrules:\n  .count <-> .count\n'
+
+
+@pytest.mark.parametrize("rule", [".parts[].x <-> .parts[].x\n  ignore .parts[].note", '.parts <-> .parts via "p.mapping"'])
+def test_what_is_left_out_of_elements(rule):
+    part = (
+        OF_ELEMENTS.replace("h.W", "h.P")
+        .replace("lab/msg/Whole\n", "lab/msg/Part\n")
+        .replace(".count <-> .count", ".x <-> .x\n  ignore .note")
+    )
+    files = {**ELEMENTS, "p.mapping": part, "m.mapping": f"{OF_ELEMENTS}  {rule}\n"}
+    found = rj.check("m.mapping", schema=files)
+    assert [(each.code, each.message.split("`")[1]) for each in found] == [("left-out", ".parts[].memo"), ("never-read", ".parts[].memo")]
+    assert [loss.place for loss in found.laws.holders.losses] == [".parts[].memo"]
+    meant = rj.check("m.mapping", schema={**files, "m.mapping": f"{OF_ELEMENTS}  {rule}\n  default .parts[].memo\n"})
+    assert not meant.warnings
+    assert [loss.place for loss in meant.laws.holders.losses] == [".parts[].memo"]
+
+
+def test_a_length_that_is_read_alone():
+    text = f"{OF_ELEMENTS.partition('rules:')[0]}unpack-rules:\n  .count = uint32(len(.parts))\n  len(.parts) = 0\n  ignore .count\n"
+    found = rj.check("m.mapping", schema={**ELEMENTS, "m.mapping": text})
+    assert [(each.code, each.message.split("`")[1]) for each in found if each.code == "never-read"] == [
+        ("never-read", ".parts[].x"),
+        ("never-read", ".parts[].note"),
+    ]

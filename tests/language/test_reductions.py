@@ -14,6 +14,7 @@ import rosetta_jit as rj
 from rosetta_jit.explain.operations import operations
 
 BACKENDS = ["llvm", "python", "interpreter"]
+ALL = [*BACKENDS, "numba"]
 SCHEMAS = {
     "lab/msg/Row.msg": "string name\nfloat64[] cells\n",
     "lab/msg/In.msg": "float64[] a\nfloat64[] b\nfloat32[] f\nint64[] n\nint32[] i\nuint8[] d\nbool[] ok\nRow[] rows\n",
@@ -99,7 +100,7 @@ CHOSEN = {
 }
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("backend", ALL)
 @pytest.mark.filterwarnings("ignore:invalid value")
 def test_of_the_elements_for_which_a_condition_holds(backend):
     run = decoder(set_to(".a", CHOSEN), backend)
@@ -123,7 +124,7 @@ COUNTED = {
 }
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("backend", ALL)
 def test_elements_that_are_left_out_are_not_computed(backend):
     """A division by 0 of one that the condition leaves out is no error."""
     run = decoder(set_to(".m", COUNTED), backend)
@@ -133,7 +134,7 @@ def test_elements_that_are_left_out_are_not_computed(backend):
         assert run(i=i, n=n)["m"] == [int(each(i, n)) for each in COUNTED.values()]
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("backend", ALL)
 def test_of_no_element_for_which_a_condition_holds(backend):
     run = decoder([".x = mean(.a[] where .a[] > 0)", ".n = count(.a[] > 1 where .a[] > 0)"], backend)
     assert run(a=[-1.0, 3.0, 5.0]) == {**run(a=[3.0, 5.0]), "x": 4.0, "n": 2}
@@ -142,7 +143,7 @@ def test_of_no_element_for_which_a_condition_holds(backend):
     refused("rejected", ".x", "different lengths", decoder([".x = mean(.a[] where .ok[])"], backend), a=[1.0], ok=[])
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("backend", ALL)
 def test_elements_of_each_round_by_a_condition(backend):
     rules = ["len(.a) = len(.rows)", "for i from 0 to len(.rows)", "  .a[i] = sum(.rows[i].cells[] where .rows[i].cells[] > .b[i])", "end"]
     found = decoder(rules, backend)(rows=[{"name": "", "cells": [1.0, 2.0, 4.0]}, {"name": "", "cells": [8.0]}], b=[1.5, 9.0])

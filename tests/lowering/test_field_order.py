@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 import struct
 
 import pytest
@@ -94,6 +95,15 @@ def test_what_is_guessed_is_jumped_to(backend):
     code = decoder(backend).stage("llvm")
     # Behind a field: its bytes are compared with the next one's tag, but not in the last of each run of 16, nor before tags of three bytes.
     assert code.count("load i16") >= len(NUMBERS) - len(NUMBERS) // 16 - 2
+
+
+def test_what_one_message_is_read_with_is_not_kept_for_the_next_one(backend):
+    if backend != "llvm":
+        pytest.skip("the others go through the loop")
+    schema = "syntax = 'proto2'; package order; message In { required int32 a = 1; required int32 b = 2; }"
+    schema += f" message Out {{ {' '.join(f'required In inner{number} = {number};' for number in range(1, 5))} }}"
+    code = rj.Decoder.of("order.Out", encoding="protobuf", schema={"order.proto": schema}, backend=backend).stage("llvm")
+    assert not re.search(r"= phi [^\n]*\bundef\b", code)
 
 
 def test_what_may_be_absent_is_not_guessed(backend):

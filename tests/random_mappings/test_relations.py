@@ -11,6 +11,7 @@ import pytest
 import rosetta_jit as rj
 from tests.language.test_random_laws import is_near
 from tests.random_mappings.blocks import Relations
+from tests.random_mappings.conditional import conditional
 from tests.random_mappings.defaults import defaulted, demanded
 from tests.random_mappings.digits import digits, divided, moment, taken_apart
 from tests.random_mappings.fields import plain, written
@@ -30,7 +31,7 @@ from tests.random_mappings.wrapped import held, repeated, united
 
 MESSAGES = 15
 FORMS = (parameter, date, unit, digits, taken_apart, flags, joined, sums, divided, moment, rejected, demanded, within_blocks, same)
-ARRAY_FORMS = (listed, widened, octets, searched, maps, separated, of_elements, same_arrays, defaulted)
+ARRAY_FORMS = (listed, widened, octets, searched, maps, separated, of_elements, same_arrays, defaulted, conditional)
 WRAPPED = (held, repeated, united)
 ORDERS = (ordered, padded, flagged, sliced, members, chosen_element, elementwise_digits)
 

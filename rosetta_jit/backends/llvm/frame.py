@@ -41,12 +41,15 @@ MESSAGE = (-1, 0)
 REGISTER = -2
 """In the place of a lane, the registers, which are loaded at the start, too."""
 
-CROWDED = 64
-"""Lanes from which on a function keeps what it knows of them in memory."""
+CROWDED, CROWDED_DECODER = 64, 24
+"""Lanes from which on an encoder, and a decoder, keeps what it knows of them in memory. A decoder has their used lengths to keep, too."""
 
 COLD = (1 << 20, 1)
 """Branch weights where the second edge is taken for a broken message only."""
 
+
+INDICES = 2
+"""Which of the words of a failure is its first index: before it stand the site and the offset."""
 
 ESCAPED = ir.FunctionType(ir.VoidType(), [POINTER])
 """The type of an instruction that does nothing with a slot, but takes its address: LLVM leaves the slot in memory."""
@@ -112,22 +115,32 @@ class Exit:
 
 @dataclass(slots=True)
 class StoredExit:
-    """A block that very many edges lead to: each stores its values in words of the state.
+    """A block that very many edges lead to: each stores its values in words of the state, whose addresses are computed once.
 
-    LLVM looks through all edges of a phi for each edge that it moves, which takes quadratic time.
+    LLVM looks through all edges of a phi for each edge that it moves, which takes quadratic time. So it does with blocks whose last
+    instructions are the same; theirs stores the site, in which they differ. ``shared`` are blocks on the way that store the same indices
+    for many edges, by these and by the values that they are computed from.
     """
 
     block: ir.Block
-    state: ir.Value
-    words: tuple[int, ...]
+    words: tuple[ir.Value, ...]
     is_reached: bool = False
+    shared: dict[tuple[object, ...], ir.Block] = field(default_factory=dict[tuple[object, ...], "ir.Block"])
 
-    def enter(self, builder: ir.IRBuilder, values: Sequence[ir.Value]) -> None:
-        """End the builder's block with a jump here; words whose values are not given stay as they are."""
-        for word, value in zip(self.words, values, strict=False):
-            builder.store(value, state_word(builder, self.state, word), align=8)
-        builder.branch(self.block)
+    def enter(self, builder: ir.IRBuilder, values: Sequence[ir.Value], through: ir.Block | None = None) -> None:
+        """End the builder's block with a jump here, or to a block on the way; words whose values are not given stay as they are."""
+        self._store(builder, self.words, values)
+        builder.branch(self.block if through is None else through)
         self.is_reached = True
+
+    def enter_with_indices(self, builder: ir.IRBuilder, indices: Sequence[ir.Value]) -> None:
+        """The same where the site and the offset are stored before."""
+        self._store(builder, self.words[INDICES:], indices)
+        builder.branch(self.block)
+
+    def _store(self, builder: ir.IRBuilder, words: Sequence[ir.Value], values: Sequence[ir.Value]) -> None:
+        for word, value in reversed(tuple(zip(words, values, strict=False))):
+            builder.store(value, word, align=8)
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,7 +257,7 @@ class Frame:
 
     @property
     def is_crowded(self) -> bool:
-        return len(self.strides) >= CROWDED
+        return len(self.strides) >= (CROWDED_DECODER if self.emptied else CROWDED)
 
     def variable(self, name: str, type_: ir.Type) -> Variable:
         """A stack slot in the entry block, so that a loop does not take more of them."""

@@ -225,7 +225,8 @@ def _exit(entry: ir.IRBuilder, name: str, values: int) -> Exit:
 def _failed(entry: ir.IRBuilder, kernel: Kernel, state: ir.Value, *, is_first: bool) -> Exit | StoredExit:
     """Where the failures of a body lead to."""
     if is_first and sum(1 for _ in statements(kernel.bodies[0])) >= MANY_STATEMENTS:
-        return StoredExit(entry.function.append_basic_block("failed"), state, _words(2 + _width(kernel)))
+        words = tuple(state_word(entry, state, word) for word in _words(2 + _width(kernel)))
+        return StoredExit(entry.function.append_basic_block("failed"), words)
     return _exit(entry, "failed", 2 + _width(kernel))
 
 

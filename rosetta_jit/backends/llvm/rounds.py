@@ -17,7 +17,7 @@ from rosetta_jit.backends.base import statements
 from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.frame import I64, Frame, Variable, forgotten
 from rosetta_jit.backends.llvm.series import print_cases
-from rosetta_jit.kernel.ir import Assign, Block, Const, Expect, If, Local, Switch, While
+from rosetta_jit.kernel.ir import Assign, Block, Const, Expect, If, Local, Switch, Var, While
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -127,9 +127,13 @@ def _end(frame: Frame, part: Block, over: ir.Block, block: Printer) -> None:
 
 
 def _forget(frame: Frame, part: Block) -> None:
-    """Let LLVM know nothing of variables that change: of a hundred cases it would work out what each of them knows from all before it."""
-    changed = {each.name for each in statements(part) if isinstance(each, Assign) and not isinstance(each.value, Const)}
-    for name in sorted(changed):
+    """Let LLVM know nothing of variables that change: of a hundred cases it would work out what each of them knows from all before it.
+
+    Variables of the part itself end with it. To read them here would keep them, and their registers, alive in all other cases.
+    """
+    every = tuple(statements(part))
+    changed = {each.name for each in every if isinstance(each, Assign) and not isinstance(each.value, Const)}
+    for name in sorted(changed - {each.name for each in every if isinstance(each, Var)}):
         variable = frame.locals.get(name)
         if isinstance(variable, Variable) and variable.type == I64:
             value = frame.builder.load(variable.slot, typ=I64)

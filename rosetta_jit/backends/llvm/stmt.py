@@ -25,7 +25,7 @@ from rosetta_jit.backends.llvm.expr import (
     store,
     wire_pointer,
 )
-from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Frame, Variable, constant, forgotten, state_word
+from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Frame, StoredExit, Variable, constant, forgotten, state_word
 from rosetta_jit.backends.llvm.host import host_called
 from rosetta_jit.backends.llvm.rounds import print_switch, rounds_of
 from rosetta_jit.backends.llvm.series import print_cases, print_series
@@ -186,7 +186,24 @@ def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Val
     while frame.caller is not None:
         frame, call = frame.caller
         sites, indices = tuple(call.sites[each - 1] for each in sites), call.indices
-    frame.failed.enter(frame.builder, [_site(frame, number, sites), offset, *(expression(frame, each) for each in indices)])
+    told = [_site(frame, number, sites), offset]
+    if indices and isinstance(frame.failed, StoredExit) and frame.given is None:
+        frame.failed.enter(frame.builder, told, _stores_indices(frame, frame.failed, indices))
+    else:
+        frame.failed.enter(frame.builder, [*told, *(expression(frame, each) for each in indices)])
+
+
+def _stores_indices(frame: Frame, failed: StoredExit, indices: tuple[kernel.Expr, ...]) -> ir.Block:
+    """The block that stores indices on the way out: one for all failures in a round of a loop, whose indices are the same."""
+    names = sorted(set[str]().union(*map(locals_in, indices)))
+    key = (indices, *(frame.locals[each] for each in names))
+    if key not in failed.shared:
+        here, shared = frame.builder.block, frame.block("indices")
+        failed.shared[key] = shared
+        frame.builder.position_at_end(shared)
+        failed.enter_with_indices(frame.builder, [expression(frame, each) for each in indices])
+        frame.builder.position_at_end(here)
+    return failed.shared[key]
 
 
 def _call(frame: Frame, call: kernel.Call) -> None:

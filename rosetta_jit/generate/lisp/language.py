@@ -62,15 +62,16 @@ class _Source:
         self.verbs = {role: f"decode-{self.wires[wire_of(role)]}" if wire_of(role) else NAMES[role] for role in unit.kernels}
         self.shares: dict[Role, str] = {}
         self.functions = function_symbols(self.classes, [each.name for each in unit.functions])
-        self.lanes_in_c = named_lanes(unit, frozenset())
-        longest = self.lanes_in_c(max((each.strides for each in unit.kernels.values()), key=len))
-        self.lanes = lanes_of(longest.all, longest.own)
+        longest = max(unit.kernels.values(), key=lambda each: len(each.strides))
+        c = named_lanes(unit, frozenset())(longest.strides)
+        self.lanes = lanes_of(c.all, c.own)
         self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.printed: dict[Role, Printed] = {role: self._kernel(role, kernel) for role, kernel in unit.kernels.items()}
 
     def _kernel(self, role: Role, kernel: Kernel) -> Printed:
         about = About(self.unit.origins.get(role, ()), self.paths, self.functions)
-        lanes = replace(self.lanes, all=self.lanes_in_c(kernel.strides).all)  # each kernel has hidden lanes of its own
+        rows = zip(self.lanes.all, kernel.strides, strict=False)
+        lanes = replace(self.lanes, all=tuple(replace(lane, stride=stride) for lane, stride in rows))  # hidden ones have rows of their own
         return print_kernel(kernel, lanes, self.verbs[role], about)
 
     def head(self) -> str:

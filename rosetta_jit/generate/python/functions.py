@@ -16,6 +16,7 @@ from rosetta_jit.generate.python.expressions import CODES, Scope, expression, fl
 from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.statements import Attempt, Function, Objects, print_block
 from rosetta_jit.generate.reached import reached, read_names
+from rosetta_jit.generate.shares import moved_lanes
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import Role, kind_of
 from rosetta_jit.kernel import ir
@@ -167,18 +168,19 @@ def _lanes(function: Function) -> set[int]:
 
 def _begin(function: Function, role: Role) -> list[str]:
     """Lanes that start empty, or as another message has left them, and views of those that are given."""
-    kept, kind = function.kernel.kept, kind_of(role)
+    kept, moved, kind = function.kernel.kept, moved_lanes(function.kernel), kind_of(role)
     scope, own, lines = function.scope, function.scope.lanes.own, list[str]()
     for lane in sorted(_lanes(function) - {0}):
         name = scope.lanes.rows(lane)
         codes = sorted(code for number, code in scope.views if number == lane and code)
         if lane < own and kind in ("encode", "size"):
             continue
-        if lane in kept:
+        if lane in kept or lane in moved:
             lines.append(f'{name} = bytearray(_rows["{name}"])')
             lines += [f"{name}_room = len({name}) // {scope.lanes.stride(lane)}"] if lane in scope.rooms else []
             lines += [f'{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
-            lines += [f"{name}_used = len({name}) // {scope.lanes.stride(lane)}"] if lane in scope.counted else []
+            used = f"len({name}) // {scope.lanes.stride(lane)}" if lane in kept else "0"
+            lines += [f"{name}_used = {used}"] if lane in scope.counted else []
             continue
         if lane in function.measured:
             lines += [f"{name}_room = len({name}) // {scope.lanes.stride(lane)}"] if lane in scope.rooms else []

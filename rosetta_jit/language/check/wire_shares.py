@@ -1,7 +1,7 @@
 """Shares: the part of the holder that messages of one of several wires fill.
 
 It is cleared before a message fills it, and nothing else is touched. So all rules of a field run at messages of the same wires, but for
-arrays of numbers whose elements several wires set: those are *joined*.
+arrays of numbers or texts whose elements several wires set: those are *joined*.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rosetta_jit.language.places import places_in, shown_names
 from rosetta_jit.language.scope import Message
 from rosetta_jit.language.typed import Assign, FieldStep, Place, Rule, SetLength
 from rosetta_jit.model.expr import Side
-from rosetta_jit.model.types import Array, Bool, Enum, Float, Int, Type
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Type
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -89,9 +89,9 @@ def _type_at(names: Names, mine: list[tuple[Rule, Wires, Place]], holder: Messag
 
 
 def _can_be_joined(names: Names, mine: list[tuple[Rule, Wires, Place]], holder: Message) -> bool:
-    """Whether a field is an array of numbers, whose length no wire tells, and of which wires set single elements."""
+    """Whether a field is an array of numbers or texts, whose length no wire tells, and of which wires set single elements."""
     type_ = _type_at(names, mine, holder)
-    if not isinstance(type_, Array) or not isinstance(holder.value_type(type_.element), Bool | Int | Float | Enum):
+    if not isinstance(type_, Array) or not isinstance(holder.value_type(type_.element), Bool | Int | Float | Enum | String | Bytes):
         return False
     elements = [(rule, place) for rule, wires, place in mine if wires]
     lengths = [rule for rule, wires, _ in mine if not wires and isinstance(rule, SetLength)]

@@ -129,8 +129,9 @@ def _outcomes(path: ExecutionPath, second: tuple[Rule, ...], message: Message) -
         yield "", Lost(f'some are refused on the way back: "{refusal.text}"'), refusal.span
     for result in results:
         yield _shown(result), _outcome(result, trip), result.span
-    touched = {field_names(result.place) for result in results}
-    for names in untouched(touched, message, message.root, ()):
+    touched = {field_names(result.place) for result in results if not result.is_length}
+    lengths = {field_names(result.place) for result in results if result.is_length}
+    for names in untouched(touched, message, message.root, (), lengths):
         if trip.is_absent(names, message):
             continue
         yield shown_names(names, message), Lost("no rule sets it on the way back"), None

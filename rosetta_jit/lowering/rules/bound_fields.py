@@ -45,13 +45,17 @@ class _Here:
 
 @dataclass(slots=True)
 class BoundFields:
-    """The fields that are bound so far, by absolute path; what rules give is bound when the walk asks for it."""
+    """The fields that are bound so far, by absolute path; what rules give is bound when the walk asks for it.
+
+    The values of ``translated`` fields have other numbers on the wire.
+    """
 
     direction: Direction
     rules: tuple[typed.Rule, ...]
     numbers: set[wire.Path] = field(default_factory=set["wire.Path"])
     counts: set[wire.Path] = field(default_factory=set["wire.Path"])
     regions: set[wire.Path] = field(default_factory=set["wire.Path"])
+    translated: set[wire.Path] = field(default_factory=set["wire.Path"])
     deferred: list[Iterator[Obstacle]] = field(default_factory=list["Iterator[Obstacle]"])
 
     def message(self, codec: wire.Codec) -> Iterator[Obstacle]:
@@ -71,7 +75,10 @@ class BoundFields:
             case wire.Seq(items):
                 for item in items:
                     yield from self.walk(item, here)
-            case wire.Number(path) | wire.Unsent(path) | wire.Table(path):
+            case wire.Number(path) | wire.Unsent(path):
+                yield from self.number(path, here)
+            case wire.Table(path):
+                self.translated.add(here.path + path)
                 yield from self.number(path, here)
             case wire.Computed(path, _, value):
                 yield from self.computed(path, value, here)

@@ -28,6 +28,7 @@ from rosetta_jit.lowering.codec.fields import (
 )
 from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.rules.initial_values import initialise, initialise_each
+from rosetta_jit.lowering.rules.shares import keep_texts
 from rosetta_jit.lowering.writer import Writer, block, integer
 from rosetta_jit.model.initial_values import InitialValues, selected
 from rosetta_jit.model.layout import Member, Number, Row, Span, Variant
@@ -225,7 +226,7 @@ class HolderSide:
         fields, path, _ = self.descend(place, values)
         where = fields.shown(path)
         self.writer.expect(Compare("ge", count, index(0)), "count", where, "a length must not be negative", line=values.line)
-        if field_names(place) in self.joined:
+        if isinstance(place.steps[-1], FieldStep) and field_names(place) in self.joined:
             self.keep_length(fields, path, count)
             return
         elements = fields.open(path, count)
@@ -238,7 +239,7 @@ class HolderSide:
             initialise_each(fields, self.initial.of_elements(place.type.element, elements.lane), elements.start, count, self.opened)
 
     def keep_length(self, fields: HolderFields, path: Path, count: Expr) -> None:
-        """Take room for numbers, unless the array has this length already: then they stay.
+        """Take room for numbers or texts, unless the array has this length already: then they stay.
 
         A message that failed behind this may have left a length without the room for it, which is taken then.
         """
@@ -252,6 +253,7 @@ class HolderSide:
         begins = Binary("and", Compare("ge", start, index(0)), Compare("ge", used, count))
         has_room = Binary("and", begins, Compare("le", start, Binary("sub", used, count)))
         self.writer.emit(If(negated(Binary("and", Compare("eq", size, count), has_room)), block(new)))
+        keep_texts(fields, path)
 
     @property
     def borrows(self) -> bool:

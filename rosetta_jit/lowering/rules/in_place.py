@@ -9,7 +9,6 @@ set later must have its room by then. An `Obstacle` says what is in the way of t
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from rosetta_jit.kernel.ir import Direction
 from rosetta_jit.language import typed
@@ -21,7 +20,7 @@ from rosetta_jit.lowering.rules.bound_fields import BoundFields, Obstacle
 from rosetta_jit.lowering.rules.filters import filtered_arrays
 from rosetta_jit.lowering.rules.rescaling import UINT16
 from rosetta_jit.lowering.rules.wire_side import wire_key
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Schema, String, Struct, Type
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Schema, String, Type
 from rosetta_jit.model.walk import every_rule
 from rosetta_jit.wire.codec import Codec, Encoding, Path
 
@@ -39,10 +38,10 @@ def obstacle(
         for place in (rule.place for rule in rules_within(rules) if isinstance(rule, typed.Default)):
             if has_array(place.type, schema, counted=False):
                 return Obstacle(wire_key(place)[0], "it is left alone, and must have elements nevertheless")
-    return next((found for attempt in attempts for found in _obstacles(attempt, rules, direction, schema)), None)
+    return next((found for attempt in attempts for found in _obstacles(attempt, rules, direction)), None)
 
 
-def _obstacles(attempt: Codec, rules: tuple[typed.Rule, ...], direction: Direction, schema: Schema) -> Iterator[Obstacle]:
+def _obstacles(attempt: Codec, rules: tuple[typed.Rule, ...], direction: Direction) -> Iterator[Obstacle]:
     bound = BoundFields(direction, rules)
     yield from bound.message(attempt)
     if direction == "decode":
@@ -50,8 +49,6 @@ def _obstacles(attempt: Codec, rules: tuple[typed.Rule, ...], direction: Directi
             yield from _of_expressions(expressions_of(rule), bound)
     elif direction == "encode":
         yield from _of_writing(rules, bound)
-        for left in (rule.place for rule in rules_within(rules) if isinstance(rule, typed.Default)):
-            yield from _of_leaving(left, bound, schema)
 
 
 # --- rules that read the wire ------------------------------------------------------------------------------------------------
@@ -134,8 +131,17 @@ def _of_writing(rules: tuple[typed.Rule, ...], bound: BoundFields) -> Iterator[O
                 yield from _of_writing(body, bound)
             case typed.When(_, then, otherwise):
                 yield from _of_writing((*then, *otherwise), bound)
+            case typed.Default(place):
+                yield from _of_leaving(place, bound)
             case _:
                 pass
+
+
+def _of_leaving(place: typed.Place, bound: BoundFields) -> Iterator[Obstacle]:
+    """The walk leaves room for an element's numbers, and writes nothing there."""
+    key, indices = wire_key(place)
+    if indices:
+        yield from (Obstacle(each, UNKNOWN) for each in sorted(bound.translated) if each[: len(key)] == key)
 
 
 def _of_setting(place: typed.Place, value: typed.Expr, bound: BoundFields) -> Iterator[Obstacle]:
@@ -157,18 +163,3 @@ def _of_setting(place: typed.Place, value: typed.Expr, bound: BoundFields) -> It
                 yield from _of_number(place, bound)
         case _:
             yield Obstacle(key, "a message as a whole is copied between lanes")
-
-
-def _of_leaving(place: typed.Place, bound: BoundFields, schema: Schema) -> Iterator[Obstacle]:
-    """All numbers of an element that is left alone have a place: each byte is written; arrays of one size are staged anyway."""
-    match schema.resolve(place.type):
-        case _ if not wire_key(place)[1]:
-            pass  # the walk writes it
-        case Struct(fields=fields):
-            for field in fields:
-                if field.constant is None:
-                    yield from _of_leaving(replace(place, steps=(*place.steps, typed.FieldStep(field)), type=field.type), bound, schema)
-        case Bool() | Int() | Float() | Enum():
-            yield from _of_number(place, bound)
-        case _:
-            yield from _of_count(place, bound)
