@@ -56,7 +56,7 @@ class Part:
         Their times in nanoseconds since 1970.
     first
         The number of the first among all messages that are read.
-    count
+    given
         How many were read, those that could not be decoded included.
     refused
         Of these, those that could not be decoded, as `Batch.errors` numbers them.
@@ -66,7 +66,7 @@ class Part:
     log_ns: NDArray[np.int64]
     publish_ns: NDArray[np.int64]
     first: int
-    count: int
+    given: int
     refused: Mapping[int, Refused]
 
 

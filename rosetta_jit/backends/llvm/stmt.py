@@ -187,7 +187,7 @@ def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Val
         frame, call = frame.caller
         sites, indices = tuple(call.sites[each - 1] for each in sites), call.indices
     told = [_site(frame, number, sites), offset]
-    if indices and isinstance(frame.failed, StoredExit) and frame.given is None:
+    if indices and isinstance(frame.failed, StoredExit) and frame.stretch is None:
         frame.failed.enter(frame.builder, told, _stores_indices(frame, frame.failed, indices))
     else:
         frame.failed.enter(frame.builder, [*told, *(expression(frame, each) for each in indices)])

@@ -181,7 +181,7 @@ class FolderConversion:
             rejected.add(stream.channel.topic, part.first, part.batch.errors, part.refused)
             if len(part.log_ns):
                 parts.add(stream.name, table_of(part, columns, clocks, options), part.log_ns)
-            progress.seen[stream.label] = part.first + part.count
+            progress.seen[stream.label] = part.first + part.given
 
 
 def _labels(channels: Sequence[Channel]) -> list[str]:

@@ -58,5 +58,5 @@ class Conversion:
     def _tables(self, rejected: Rejected) -> Iterator[pa.Table]:
         for part, table in self.channel.tables_of_parts(on_error=rejected.on_error, **self.options):
             rejected.add(self.channel.topic, part.first, part.batch.errors, part.refused)
-            self.advance(part.count)
+            self.advance(part.given)
             yield table
