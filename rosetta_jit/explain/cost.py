@@ -16,8 +16,8 @@ from typing import assert_never
 
 from rosetta_jit.explain.counts import count_text, factored, named_counts
 from rosetta_jit.kernel import ir
-from rosetta_jit.kernel.shape import operands
 from rosetta_jit.kernel.terms import END, type_of
+from rosetta_jit.kernel.walk import operands
 from rosetta_jit.startup.dataclass import dataclass
 
 

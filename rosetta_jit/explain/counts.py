@@ -14,7 +14,7 @@ from rosetta_jit.explain.limits import MAX_COUNT_DEPTH, MAX_COUNT_TEXT
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.printer import SYMBOL
 from rosetta_jit.kernel.rewrite import locals_in
-from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.walk import statements
 
 ROUNDS = "round of a loop"
 """How often a loop runs of which no more is known."""

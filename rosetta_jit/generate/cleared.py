@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from rosetta_jit.kernel.ir import Block, Fill, Get, Kernel, Place, Return, SetField, Stmt
 from rosetta_jit.kernel.rewrite import with_bodies
-from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import index, type_of
+from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span
 
 

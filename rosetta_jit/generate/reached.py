@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.rewrite import ends, locals_in, with_blocks
-from rosetta_jit.kernel.shape import expressions_of, statements
+from rosetta_jit.kernel.walk import expressions_of, statements
 
 
 def read_names(block: ir.Block, results: Iterable[str] = ()) -> frozenset[str]:

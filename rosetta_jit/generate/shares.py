@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rosetta_jit.kernel.ir import Copy, Fill, Kernel, Place, Reserve, SetField, Stmt
-from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.walk import statements
 
 Ways = frozenset[tuple[str, ...]]
 WHOLE: Ways = frozenset({()})

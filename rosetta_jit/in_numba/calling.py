@@ -19,8 +19,8 @@ from rosetta_jit.in_numba.reading import Reader
 from rosetta_jit.in_numba.taking import BrokenMessage, Program, entries
 from rosetta_jit.in_numba.types import MessageType
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.shape import is_short
 from rosetta_jit.kernel.state import CLEAN, VALID
+from rosetta_jit.kernel.traits import is_short
 from rosetta_jit.runtime.holder.classes import HolderFamily
 
 if TYPE_CHECKING:

@@ -13,7 +13,6 @@ from rosetta_jit.kernel import arithmetic, ir
 from rosetta_jit.kernel.arithmetic import demand
 from rosetta_jit.kernel.evaluation import Machine, bytes_at, field, integer, value_of
 from rosetta_jit.kernel.host import NO_FUNCTIONS, Functions, RefusedError
-from rosetta_jit.kernel.shape import extents_of
 from rosetta_jit.kernel.state import (
     CAPACITY,
     ERROR_INDICES,
@@ -28,6 +27,7 @@ from rosetta_jit.kernel.state import (
     lane_word,
 )
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
+from rosetta_jit.kernel.walk import extents_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import assert_never
 
 from rosetta_jit.kernel import ir
-from rosetta_jit.kernel.shape import blocks_of, expressions_of, operands, parts_of, statements, subexpressions
+from rosetta_jit.kernel.walk import blocks_of, expressions_of, operands, parts_of, statements, subexpressions
 
 NO_NAMES: Mapping[str, str] = MappingProxyType({})
 

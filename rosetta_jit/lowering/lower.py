@@ -19,7 +19,7 @@ from rosetta_jit.language.check.wire_shares import Share
 from rosetta_jit.language.scope import Message
 from rosetta_jit.language.typed import Rule
 from rosetta_jit.lowering.codec.ending import end
-from rosetta_jit.lowering.codec.fields import HolderFields, root_fields
+from rosetta_jit.lowering.codec.holder_fields import HolderFields, root_fields
 from rosetta_jit.lowering.codec.walk import walk
 from rosetta_jit.lowering.codec.wire_fields import Found, WireFields
 from rosetta_jit.lowering.rules.holder_side import HolderSide

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from rosetta_jit.kernel.ir import Advance, Fill, Place, Reserve, Used
 from rosetta_jit.kernel.terms import index
-from rosetta_jit.lowering.codec.fields import Cell, HolderFields
+from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields
 from rosetta_jit.lowering.writer import Writer
 from rosetta_jit.model.layout import Lane, Layout, Number, behind
 

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from dataclasses import field, replace
 
 from rosetta_jit.kernel import ir, state
-from rosetta_jit.kernel.shape import subexpressions
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, type_of
+from rosetta_jit.kernel.walk import subexpressions
 from rosetta_jit.lowering.limits import MAX_SIZE, MAX_STATEMENTS
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -18,7 +18,8 @@ from rosetta_jit.kernel.host import UserFunction
 from rosetta_jit.kernel.ir import Kernel, Reserve
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.rewrite import with_registers_behind
-from rosetta_jit.kernel.shape import asks_host, our_functions, statements
+from rosetta_jit.kernel.traits import asks_host, our_functions
+from rosetta_jit.kernel.walk import statements
 from rosetta_jit.language.uses import Signature
 from rosetta_jit.lowering.writer import References
 from rosetta_jit.model.layout import Layout, Members, Number, Row, Slot, Span, Variant

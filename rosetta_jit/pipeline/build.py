@@ -25,7 +25,7 @@ from rosetta_jit.kernel.ir import Kernel, Site
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError
-from rosetta_jit.kernel.shape import asks_host, our_functions
+from rosetta_jit.kernel.traits import asks_host, our_functions
 from rosetta_jit.language.check.mapping import Checked, check
 from rosetta_jit.language.function import GROUP as FUNCTIONS
 from rosetta_jit.language.imports.search import Reading, SearchPath

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.shape import calls_to_host, registers_read
+from rosetta_jit.kernel.traits import calls_to_host, registers_read
 from rosetta_jit.lowering.rules.state import word_of
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ import pytest
 from rosetta_jit.backends.entry.link import assembly, compile_program, llvm_text, object_file
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.ir import Binary, Const, Convert, Let, Load, Local, Place, SetField
-from rosetta_jit.kernel.shape import are_straight_and_compute, has_loops_for_vectors, leaves_something
 from rosetta_jit.kernel.terms import BEGIN, ROW, add
+from rosetta_jit.kernel.traits import are_straight_and_compute, has_loops_for_vectors, leaves_something
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request
 from rosetta_jit.runtime.code import native

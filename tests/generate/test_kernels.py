@@ -8,7 +8,7 @@ import pytest
 
 from rosetta_jit.kernel.ir import Advance
 from rosetta_jit.kernel.passes.alone import alone
-from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.walk import statements
 from tests.backends import engines, kernels, test_agreement
 from tests.backends.holders import rows
 from tests.backends.messages import hostile

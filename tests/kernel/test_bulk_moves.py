@@ -36,9 +36,9 @@ from rosetta_jit.kernel.passes.hoist import hoist
 from rosetta_jit.kernel.passes.reuse import reuse
 from rosetta_jit.kernel.passes.simplify import simplify
 from rosetta_jit.kernel.proof.verify import verify
-from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.state import ERROR_INDICES
 from rosetta_jit.kernel.terms import BEGIN, ROW, add, index, mul
+from rosetta_jit.kernel.walk import statements
 from tests.kernel import kernels
 from tests.kernel.kernels import ROW_EXISTS, compare, expect, i64, kernel, need
 

@@ -13,8 +13,9 @@ from rosetta_jit.kernel.passes.hoist import hoist
 from rosetta_jit.kernel.passes.simplify import simplify
 from rosetta_jit.kernel.proof.less import is_less
 from rosetta_jit.kernel.proof.verify import VerificationError, settled, verify
-from rosetta_jit.kernel.shape import is_large, statements
 from rosetta_jit.kernel.terms import BEGIN, ROW, add, index
+from rosetta_jit.kernel.traits import is_large
+from rosetta_jit.kernel.walk import statements
 from tests.kernel import kernels
 from tests.kernel.kernels import ROW_EXISTS, compare, expect, i64, kernel, need
 from tests.kernel.random_kernels import random_kernel

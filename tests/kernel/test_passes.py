@@ -41,8 +41,8 @@ from rosetta_jit.kernel.passes.simplify import simplify
 from rosetta_jit.kernel.passes.unroll import unroll
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import verify
-from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.terms import BEGIN, ROW, add, index, mul
+from rosetta_jit.kernel.walk import statements
 from tests.golden import GOLDEN, check_golden
 from tests.kernel import kernels
 from tests.kernel.kernels import ROW_EXISTS, compare, expect, i64, kernel, need

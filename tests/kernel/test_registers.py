@@ -36,9 +36,10 @@ from rosetta_jit.kernel.ir import (
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError, verify
-from rosetta_jit.kernel.shape import registers_read, shape_error
+from rosetta_jit.kernel.shape import shape_error
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, REGISTERS, STRIDE, lane_word, state_words
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, index
+from rosetta_jit.kernel.traits import registers_read
 from rosetta_jit.runtime.code import native
 from tests.backends.holders import KERNEL
 

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from rosetta_jit.backends.llvm.host import symbol
 from rosetta_jit.kernel.entries import HOST
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.shape import calls_to_host, extents_of, our_functions
+from rosetta_jit.kernel.traits import calls_to_host, our_functions
+from rosetta_jit.kernel.walk import extents_of
 
 FUNCTION = """
 define i32 @"{name}"(ptr %result, ptr %exception{parameters}) {{

@@ -30,7 +30,8 @@ from rosetta_jit.backends.llvm import definitions, support
 from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.kernel.entries import HOST, ON_DEMAND, SYMBOLS, EntryName
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.shape import (
+from rosetta_jit.kernel.state import ERROR_SITE, USED, lane_word, state_words
+from rosetta_jit.kernel.traits import (
     are_straight_and_compute,
     are_vast,
     asks_host,
@@ -43,7 +44,6 @@ from rosetta_jit.kernel.shape import (
     leaves_something,
     our_functions,
 )
-from rosetta_jit.kernel.state import ERROR_SITE, USED, lane_word, state_words
 from rosetta_jit.runtime.cache.texts import kept
 from rosetta_jit.runtime.code.assembler import linked, make_private, object_of, run_few_passes, run_passes, shortened, target_machine
 from rosetta_jit.runtime.code.prelink import is_prelinking, prelinked

@@ -15,7 +15,7 @@ from rosetta_jit.backends.llvm.alike_names import Carried, carried_names, stay_i
 from rosetta_jit.backends.llvm.outline import Outline, Slot, is_number
 from rosetta_jit.kernel.ir import Block, Call, Const, Copy, Expr, Fill, For, If, Kernel, Local, Reserve, Scalar, Stmt, Switch, While
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
-from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import dataclass
 
 MANY = 512

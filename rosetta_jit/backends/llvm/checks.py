@@ -22,7 +22,7 @@ from rosetta_jit.backends.llvm.frame import F32, F64, I32, I64, Frame, Variable,
 from rosetta_jit.backends.llvm.outline import FIXED
 from rosetta_jit.kernel.ir import Block, Expect, Fill, If, Let, Load, Require, Return, SetField, Stmt, Store
 from rosetta_jit.kernel.rewrite import locals_in
-from rosetta_jit.kernel.shape import expressions_of
+from rosetta_jit.kernel.walk import expressions_of
 
 if TYPE_CHECKING:
     Part = Stmt | Series

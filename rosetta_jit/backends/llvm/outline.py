@@ -11,8 +11,8 @@ from operator import attrgetter
 from typing import Any, Literal, NamedTuple
 
 from rosetta_jit.kernel import ir as kernel
-from rosetta_jit.kernel.shape import blocks_of, expressions_of, operands
 from rosetta_jit.kernel.terms import BEGIN, END, ROW
+from rosetta_jit.kernel.walk import blocks_of, expressions_of, operands
 
 FIXED = frozenset((BEGIN.name, END.name, ROW.name))
 """Names that mean the same in all statements."""

@@ -31,7 +31,7 @@ from numba.extending import intrinsic
 from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.backends.llvm.frame import POINTER
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.shape import calls_to_host
+from rosetta_jit.kernel.traits import calls_to_host
 
 if TYPE_CHECKING:
     from llvmlite import ir

@@ -17,9 +17,9 @@ from rosetta_jit.backends.python.expr import FLOATS, FORMATS, Names, expression,
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.host import NO_FUNCTIONS, Functions
 from rosetta_jit.kernel.interpret import runnable as interpreted
-from rosetta_jit.kernel.shape import expressions_of, extents_of, subexpressions
 from rosetta_jit.kernel.state import CAPACITY, USED, lane_word
 from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.kernel.walk import expressions_of, extents_of, subexpressions
 
 IMPORTS = (
     "from struct import pack_into, unpack_from",

@@ -24,7 +24,7 @@ from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.reached import leaves, reached, read_names
 from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel.ir import Advance, Call, Direction, For, Kernel, Routine, While
-from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

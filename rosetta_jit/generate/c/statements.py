@@ -21,8 +21,8 @@ from rosetta_jit.generate.reached import leaves
 from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded
-from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.terms import END, add, type_of
+from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

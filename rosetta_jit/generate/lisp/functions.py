@@ -17,8 +17,8 @@ from rosetta_jit.generate.reached import leaves, reached, read_names
 from rosetta_jit.generate.shares import changed_lanes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import Binary, Compare, Convert, Decimal, Expr, Kernel, Routine, Unary
-from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

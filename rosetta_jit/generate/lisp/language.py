@@ -21,7 +21,7 @@ from rosetta_jit.generate.lisp.words import package_of, runtime_text
 from rosetta_jit.generate.shares import changed_lanes
 from rosetta_jit.generate.unit import Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Kernel, Part, Site
-from rosetta_jit.kernel.shape import asks_host
+from rosetta_jit.kernel.traits import asks_host
 
 API = Path(__file__).with_name("api.lisp")
 NO_MEMORY = "the message asks for more memory than its size allows"

@@ -19,8 +19,8 @@ from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
-from rosetta_jit.kernel.shape import expressions_of, extents_of, statements, subexpressions
 from rosetta_jit.kernel.terms import add, index, mul
+from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
 from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -16,8 +16,8 @@ from rosetta_jit.generate.reached import reached, read_names
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.ir import Block, Expect, Kernel, Routine
-from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.terms import index
+from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.types import Ref
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -20,8 +20,8 @@ from rosetta_jit.generate.shares import moved_lanes
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import Role, kind_of
 from rosetta_jit.kernel import ir
-from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes

@@ -7,8 +7,8 @@ from itertools import pairwise
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.rewrite import locals_in
-from rosetta_jit.kernel.shape import bound_names, statements
 from rosetta_jit.kernel.terms import END, index, type_of
+from rosetta_jit.kernel.walk import bound_names, statements
 
 
 def grouped(block: ir.Block) -> Iterator[list[ir.Stmt]]:

@@ -22,7 +22,8 @@ from rosetta_jit.generate.python.statements import Objects
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
 from rosetta_jit.generate.unit import Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Advance, Const, Direction, Kernel, Return
-from rosetta_jit.kernel.shape import asks_host, statements
+from rosetta_jit.kernel.traits import asks_host
+from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.types import Ref
 
 REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}

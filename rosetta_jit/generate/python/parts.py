@@ -22,8 +22,8 @@ from rosetta_jit.generate.python.statements import Function, fail, print_stateme
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded
-from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import index, type_of
+from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.model.layout import Number
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rosetta_jit.kernel.ir import Assign, Binary, Block, Call, Compare, Const, Expect, Expr, Get, Let, Local, Place, Site, Stmt, Var
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
-from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
+from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 
 CHANGED = "the holder changed while it was written"
 

@@ -8,8 +8,8 @@ from rosetta_jit.kernel.ir import Binary, Const, Expr, For, Get, IsText, Let, Lo
 from rosetta_jit.kernel.limits import MAX_HOISTED_NODES
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, substituted, with_operands
-from rosetta_jit.kernel.shape import bound_names, operands, statements, subexpressions
 from rosetta_jit.kernel.terms import add, index, mul
+from rosetta_jit.kernel.walk import bound_names, operands, statements, subexpressions
 from rosetta_jit.startup.dataclass import dataclass
 
 

@@ -30,8 +30,8 @@ from rosetta_jit.kernel.ir import (
     Used,
 )
 from rosetta_jit.kernel.rewrite import with_blocks, with_bodies
-from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.startup.dataclass import dataclass
 
 

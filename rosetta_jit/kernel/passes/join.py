@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.limits import MAX_PIECE, MAX_PIECES
 from rosetta_jit.kernel.rewrite import reads_memory, with_blocks, with_bodies
-from rosetta_jit.kernel.shape import expressions_of, subexpressions
 from rosetta_jit.kernel.terms import add, index, split, type_of
+from rosetta_jit.kernel.walk import expressions_of, subexpressions
 from rosetta_jit.startup.dataclass import dataclass
 
 

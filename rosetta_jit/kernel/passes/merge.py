@@ -12,8 +12,8 @@ from dataclasses import field, replace
 from rosetta_jit.kernel.ir import Block, Const, Expect, Expr, Failure, Kernel, Part, Require, Site, Stmt
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, may_return, reads_memory, with_blocks, with_bodies
-from rosetta_jit.kernel.shape import blocks_of
 from rosetta_jit.kernel.terms import index, split
+from rosetta_jit.kernel.walk import blocks_of
 from rosetta_jit.startup.dataclass import dataclass
 
 _Key = tuple["Expr", tuple["Expr", ...], str]

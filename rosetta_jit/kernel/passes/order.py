@@ -18,7 +18,7 @@ from rosetta_jit.kernel.passes.sink import sink
 from rosetta_jit.kernel.passes.unroll import unroll
 from rosetta_jit.kernel.proof.less import is_less
 from rosetta_jit.kernel.proof.verify import VerificationError, check_shape, settled, verify
-from rosetta_jit.kernel.shape import is_large
+from rosetta_jit.kernel.traits import is_large
 
 Pass = Callable[["Kernel"], "Kernel"]
 

@@ -7,7 +7,7 @@ from collections import Counter
 from rosetta_jit.kernel.ir import Block, Expr, Kernel, Let, Load, Local, Stmt
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, substituted, with_blocks, with_bodies, with_expressions
-from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
+from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 
 
 def postpone(kernel: Kernel) -> Kernel:

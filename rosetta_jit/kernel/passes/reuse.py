@@ -33,8 +33,8 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_bodies, with_expressions, with_operands
-from rosetta_jit.kernel.shape import blocks_of, bound_names, expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.kernel.walk import blocks_of, bound_names, expressions_of, statements, subexpressions
 from rosetta_jit.startup.dataclass import dataclass
 
 MESSAGE = -1

@@ -10,8 +10,8 @@ from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.passes.fold import FALSE, TRUE, folded
 from rosetta_jit.kernel.rewrite import ends, names_in, names_read, with_blocks, with_bodies, with_expressions, with_operands
-from rosetta_jit.kernel.shape import statements, subexpressions
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, index, split, type_of
+from rosetta_jit.kernel.walk import statements, subexpressions
 from rosetta_jit.startup.dataclass import dataclass
 
 

@@ -25,8 +25,8 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, with_blocks, with_bodies
-from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import index, mul
+from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 
 
 def sink(kernel: Kernel) -> Kernel:

@@ -7,7 +7,7 @@ from functools import partial
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.rewrite import may_return, with_blocks, with_bodies
-from rosetta_jit.kernel.shape import blocks_of
+from rosetta_jit.kernel.walk import blocks_of
 
 
 def is_less(kernel: ir.Kernel, proven: ir.Kernel, known: frozenset[int]) -> bool:

@@ -20,8 +20,8 @@ from rosetta_jit.kernel.proof.paths import anchors, from_begin, grown, variable
 from rosetta_jit.kernel.proof.scope import Scope, Typed
 from rosetta_jit.kernel.proof.symbolic import linear
 from rosetta_jit.kernel.rewrite import locals_in
-from rosetta_jit.kernel.shape import bound_names, expressions_of, statements
 from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.kernel.walk import bound_names, expressions_of, statements
 from rosetta_jit.startup.dataclass import dataclass
 
 ZERO = Linear(0)

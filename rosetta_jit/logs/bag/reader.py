@@ -15,7 +15,8 @@ from rosetta_jit.logs.bag.old import MAGIC as OLD_MAGIC
 from rosetta_jit.logs.bag.old import OldBagReader
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Reader, Wanted, widened
 from rosetta_jit.logs.limits import MAX_INDEX_BYTES
-from rosetta_jit.logs.reading.chunked_records import PEEK, Records, Scanned
+from rosetta_jit.logs.reading.chunked_records import PEEK, Records
+from rosetta_jit.logs.reading.scan import Scanned
 from rosetta_jit.logs.reading.segments import Chunk, Region, pieces_of, segments_of
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -13,8 +13,9 @@ from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.limits import MAX_SUMMARY_BYTES
 from rosetta_jit.logs.mcap.grammar import CHANNEL, CHUNK_INDEX, FOOTER, HEADER, MAGIC, PREFIX, SCHEMA, STATISTICS, McapGrammar
-from rosetta_jit.logs.reading.chunked_records import Records, Scanned
+from rosetta_jit.logs.reading.chunked_records import Records
 from rosetta_jit.logs.reading.fields import Fields
+from rosetta_jit.logs.reading.scan import Scanned
 from rosetta_jit.logs.reading.segments import Chunk, Region, pieces_of, segments_of
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -13,7 +13,7 @@ from dataclasses import field, replace
 
 from rosetta_jit.kernel.ir import Binary, Block, Compare, Const, Expect, Expr, Get, If, Local, SetField, Switch, Used, While
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
-from rosetta_jit.lowering.codec.fields import Cell, HolderElements, HolderFields
+from rosetta_jit.lowering.codec.holder_fields import Cell, HolderElements, HolderFields
 from rosetta_jit.lowering.codec.walk import begin_elements, if_present, switch_cases, walk
 from rosetta_jit.lowering.codec.work_list import link
 from rosetta_jit.lowering.codec.xcdr2_members import store_size

@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import add, index, mul
-from rosetta_jit.lowering.codec.fields import HolderFields, converted, scalar_name
+from rosetta_jit.lowering.codec.fields import converted, scalar_name
+from rosetta_jit.lowering.codec.holder_fields import HolderFields
 from rosetta_jit.lowering.codec.varint import SEVEN_BITS, from_varint
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import Number as NumberSlot

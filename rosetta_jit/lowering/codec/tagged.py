@@ -15,7 +15,8 @@ from functools import partial
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, add, index
 from rosetta_jit.lowering.codec.field_order import NONE, Case, read_cases
-from rosetta_jit.lowering.codec.fields import Cell, HolderFields, converted, scalar_name, span_of
+from rosetta_jit.lowering.codec.fields import converted, scalar_name
+from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields, span_of
 from rosetta_jit.lowering.codec.packed import read_fixed, read_varints, reads_several
 from rosetta_jit.lowering.codec.tagged_message import (
     Message,

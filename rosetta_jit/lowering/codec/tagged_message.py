@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from rosetta_jit.kernel.ir import WIDTH, Binary, Compare, Const, Expr, Fill, Get, If, Local, Select, SetField, Used
 from rosetta_jit.kernel.terms import index
-from rosetta_jit.lowering.codec.fields import HolderFields, converted, span_of
+from rosetta_jit.lowering.codec.fields import converted
+from rosetta_jit.lowering.codec.holder_fields import HolderFields, span_of
 from rosetta_jit.lowering.writer import Writer
 from rosetta_jit.model.layout import UNKNOWN, Row, Slot, Span, Variant
 from rosetta_jit.model.layout import Number as NumberSlot

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
-from rosetta_jit.lowering.codec.fields import HolderFields, root_fields, span_of
+from rosetta_jit.lowering.codec.holder_fields import HolderFields, root_fields, span_of
 from rosetta_jit.lowering.limits import MAX_LIST_NESTING
 from rosetta_jit.lowering.writer import MESSAGE, References, Writer, block, integer
 from rosetta_jit.model.layout import Layout

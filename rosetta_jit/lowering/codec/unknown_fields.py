@@ -6,7 +6,7 @@ from functools import partial
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
-from rosetta_jit.lowering.codec.fields import HolderFields
+from rosetta_jit.lowering.codec.holder_fields import HolderFields
 from rosetta_jit.lowering.codec.varint import read_length, read_tag, read_varint
 from rosetta_jit.lowering.limits import MAX_GROUPS
 from rosetta_jit.lowering.writer import MESSAGE, Contract, Where, Writer, block

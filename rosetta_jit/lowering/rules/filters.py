@@ -29,8 +29,8 @@ from rosetta_jit.kernel.ir import (
     Stmt,
     Unary,
 )
-from rosetta_jit.kernel.shape import bound_names, subexpressions
 from rosetta_jit.kernel.terms import add, index
+from rosetta_jit.kernel.walk import bound_names, subexpressions
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import places_in
 from rosetta_jit.lowering.arithmetic import inside

@@ -16,16 +16,8 @@ from rosetta_jit.language.check.discriminators import Discriminator, discriminat
 from rosetta_jit.language.places import field_names
 from rosetta_jit.language.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.arithmetic import inside
-from rosetta_jit.lowering.codec.fields import (
-    OTHER_CASE,
-    HolderElements,
-    HolderFields,
-    has_gaps,
-    member_of,
-    negated,
-    presence_bit,
-    scalar_name,
-)
+from rosetta_jit.lowering.codec.fields import OTHER_CASE, negated, scalar_name
+from rosetta_jit.lowering.codec.holder_fields import HolderElements, HolderFields, has_gaps, member_of, presence_bit
 from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.rules.initial_values import initialise, initialise_each
 from rosetta_jit.lowering.rules.shares import keep_texts

@@ -11,7 +11,7 @@ from rosetta_jit.kernel.ir import Expr, Fill, For, Local, Place, SetField
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import rules_within
-from rosetta_jit.lowering.codec.fields import HolderFields, member_of
+from rosetta_jit.lowering.codec.holder_fields import HolderFields, member_of
 from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.initial_values import FirstCase, FixedArray, InitialValue
 from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span, Variant

@@ -10,7 +10,7 @@ from rosetta_jit.kernel.ir import Binary, Block, Compare, Const, Convert, Copy, 
 from rosetta_jit.kernel.terms import index, mul, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.typed import Change
-from rosetta_jit.lowering.codec.fields import HolderFields, presence_bit
+from rosetta_jit.lowering.codec.holder_fields import HolderFields, presence_bit
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.made_arrays import Put
 from rosetta_jit.lowering.rules.holder_side import HolderSide

@@ -13,7 +13,8 @@ from rosetta_jit.kernel.ir import Assign, Binary, Capacity, Compare, Const, Copy
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.language.check.wire_needs import Names
 from rosetta_jit.language.check.wire_shares import Share
-from rosetta_jit.lowering.codec.fields import HolderFields, member_of, presence_bit, scalar_name, span_of
+from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.lowering.codec.holder_fields import HolderFields, member_of, presence_bit, span_of
 from rosetta_jit.lowering.rules.initial_values import lanes_below
 from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model.initial_values import InitialValue

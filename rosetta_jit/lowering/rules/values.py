@@ -8,8 +8,8 @@ from pathlib import PurePath
 from typing import TypeGuard, assert_never, cast
 
 from rosetta_jit.kernel import ir
-from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.terms import index, type_of
+from rosetta_jit.kernel.walk import statements
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.function import functions

@@ -1,0 +1,117 @@
+"""What is to be known of a kernel before it is improved and compiled: how large it is, what it computes, what it asks of its host."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from rosetta_jit.kernel import ir
+from rosetta_jit.kernel.walk import every_statement, parts_of, statements
+
+SHORT = 32
+"""Statements up to which a call costs any kernel more than 5 % of its time."""
+
+
+SHORT_IN_VECTORS = 64
+"""The same where LLVM computes many of them at once."""
+
+
+MODERATE = 512
+"""Statements up to which LLVM can be asked for all that it can do."""
+
+
+LARGE = 4_000
+"""Statements of a kernel from which on work that is done twice takes seconds."""
+
+
+VAST = 12_000
+"""Statements of kernels, each counted once for every block that it stands in, from which on work that grows faster takes minutes."""
+
+
+def is_large(kernel: ir.Kernel) -> bool:
+    """Whether a kernel is so large that it is not worth while to improve it again and again."""
+    return sum(1 for body in kernel.bodies for _ in statements(body)) > LARGE
+
+
+def are_vast(kernels: Iterable[ir.Kernel]) -> bool:
+    """Whether kernels are so large, or nested so deep, that only work in proportion to their size is done on them."""
+    return sum(depth for kernel in kernels for body in kernel.bodies for _, depth in statements(body)) > VAST
+
+
+def are_straight_and_compute(kernels: Iterable[ir.Kernel]) -> bool:
+    """Whether kernels, in the first of their bodies, compute with floats, without loops and without what stands for loops."""
+    every = [each for kernel in kernels for each in _usual_statements(kernel)]
+    if any(isinstance(each, ir.For | ir.While) for each in every):
+        return False
+    parts = parts_of(every)
+    has_floats = any(isinstance(part, ir.Const | ir.Convert) and part.type in ("f32", "f64") for part in parts)
+    return has_floats and not any(isinstance(part, ir.IsText | ir.Nearest | ir.Digits | ir.Scale) for part in parts)
+
+
+def has_loops_for_vectors(kernel: ir.Kernel) -> bool:
+    """Whether a kernel has, in the first of its bodies, loops over elements that do nothing but compute and store."""
+    return any(isinstance(each, ir.For) and _only_stores(each.body) for each in _usual_statements(kernel))
+
+
+def is_moderate(kernel: ir.Kernel) -> bool:
+    """Whether a kernel is of a size for which LLVM can be asked for all that it can do."""
+    return sum(1 for _ in _usual_statements(kernel)) <= MODERATE
+
+
+def _only_stores(block: ir.Block) -> bool:
+    return all(isinstance(each, ir.Let | ir.Store | ir.SetField) for each in block)
+
+
+def _usual_statements(kernel: ir.Kernel) -> Iterator[ir.Stmt]:
+    """What runs for the usual message: all but the later bodies."""
+    for block in (kernel.bodies[0], *(routine.body for routine in kernel.routines)):
+        yield from (each for each, _ in statements(block))
+
+
+def is_short_and_straight(kernel: ir.Kernel) -> bool:
+    """Whether a kernel, in the first of its bodies, takes no longer than a call of it by much."""
+    every = [each for each, _ in statements(kernel.bodies[0])]
+    if len(every) > SHORT and not (len(every) <= SHORT_IN_VECTORS and are_straight_and_compute((kernel,))):
+        return False
+    return not any(isinstance(each, ir.For | ir.While) for each in every)
+
+
+def is_short(kernel: ir.Kernel) -> bool:
+    """Whether the first of a kernel's bodies has so few statements that it can be compiled once more."""
+    return sum(1 for _ in statements(kernel.bodies[0])) <= SHORT_IN_VECTORS
+
+
+def calls_to_host(kernels: Iterable[ir.Kernel]) -> list[ir.HostCall]:
+    """What kernels ask functions of the host."""
+    return [stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, ir.HostCall)]
+
+
+def leaves_something(kernel: ir.Kernel) -> bool:
+    """Whether a kernel writes into lanes, so that another one may find something there."""
+    return any(_writes(stmt) for block in (*kernel.bodies, *(each.body for each in kernel.routines)) for stmt, _ in statements(block))
+
+
+def _writes(stmt: ir.Stmt) -> bool:
+    match stmt:
+        case ir.SetField() | ir.Advance():
+            return True
+        case ir.Copy(target=target) | ir.Fill(target=target):
+            return isinstance(target, ir.Place)
+        case ir.HostCall():
+            return stmt.target is not None
+        case _:
+            return False
+
+
+def our_functions(kernels: Iterable[ir.Kernel]) -> list[str]:
+    """The names of the functions that kernels ask and that are not the user's, in order."""
+    return sorted({call.function for call in calls_to_host(kernels) if "." in call.function})
+
+
+def asks_host(kernels: Iterable[ir.Kernel]) -> bool:
+    """Whether kernels ask the host for the time, or for the number of a message."""
+    return any(isinstance(part, ir.HostValue) for kernel in kernels for part in parts_of(every_statement(kernel)))
+
+
+def registers_read(kernel: ir.Kernel) -> set[int]:
+    """The registers whose values a kernel asks for."""
+    return {part.number for part in parts_of(every_statement(kernel)) if isinstance(part, ir.Register)} if kernel.registers else set()
