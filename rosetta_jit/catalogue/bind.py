@@ -6,7 +6,8 @@ import re
 from collections.abc import Collection
 
 from rosetta_jit.catalogue.mapping import CALLED, shorten
-from rosetta_jit.catalogue.resolve import nearest, written_at
+from rosetta_jit.catalogue.resolve import written_at
+from rosetta_jit.catalogue.suggestions import nearest
 from rosetta_jit.diagnostics import Diagnostic, Mistake, error, warning
 from rosetta_jit.source import Span
 

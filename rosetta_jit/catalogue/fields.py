@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.habits import for_member, path_before
 from rosetta_jit.catalogue.mapping import shorten
-from rosetta_jit.catalogue.resolve import did_you_mean, there_are
+from rosetta_jit.catalogue.suggestions import did_you_mean, there_are
 from rosetta_jit.diagnostics import Diagnostic, error
 from rosetta_jit.source import Span
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from rosetta_jit.catalogue.mapping import CALLED, shorten
-from rosetta_jit.catalogue.resolve import nearest
+from rosetta_jit.catalogue.suggestions import nearest
 from rosetta_jit.diagnostics import Diagnostic, error, warning
 from rosetta_jit.source import Span
 

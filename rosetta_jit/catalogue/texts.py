@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from rosetta_jit.catalogue.mapping import shorten
-from rosetta_jit.catalogue.resolve import did_you_mean, nearest, there_are, written_at
+from rosetta_jit.catalogue.resolve import written_at
+from rosetta_jit.catalogue.suggestions import did_you_mean, nearest, there_are
 from rosetta_jit.diagnostics import Diagnostic, Mistake, error
 from rosetta_jit.source import Span
 

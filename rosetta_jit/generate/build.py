@@ -20,7 +20,7 @@ from rosetta_jit.kernel.passes.alone import alone
 from rosetta_jit.kernel.passes.postpone import postpone
 from rosetta_jit.kernel.traits import calls_to_host, our_functions
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
-from rosetta_jit.lowering.rules.values import scalar_type
+from rosetta_jit.lowering.rules.scalars import scalar_type
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.types import Ref, Schema, Type
 from rosetta_jit.pipeline.build import Build, within_stack

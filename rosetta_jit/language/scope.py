@@ -8,7 +8,7 @@ from typing import assert_never
 
 from rosetta_jit.catalogue import fields as words
 from rosetta_jit.catalogue import layouts
-from rosetta_jit.catalogue.resolve import nearest
+from rosetta_jit.catalogue.suggestions import nearest
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.constants import Constants
 from rosetta_jit.language.conversions import SMALL, describe

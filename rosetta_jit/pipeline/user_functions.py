@@ -13,7 +13,7 @@ from rosetta_jit.kernel.host import UserFunction
 from rosetta_jit.kernel.ir import Kernel, Scalar
 from rosetta_jit.kernel.traits import calls_to_host
 from rosetta_jit.language.uses import Signature
-from rosetta_jit.lowering.rules.values import scalar_type
+from rosetta_jit.lowering.rules.scalars import scalar_type
 from rosetta_jit.runtime.code.allowed import ALLOWED
 from rosetta_jit.runtime.code.object_file import undefined_symbols
 

@@ -10,7 +10,7 @@ from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields, span_of
 from rosetta_jit.lowering.codec.tagged_write import Lengths, present, write_message, write_tag
-from rosetta_jit.lowering.codec.varint import write_varint
+from rosetta_jit.lowering.codec.varint_write import write_varint
 from rosetta_jit.lowering.codec.work_list import BEGIN_WORD, MORE_WORD, SIZE_WORD, link
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, block

@@ -29,7 +29,8 @@ from rosetta_jit.lowering.codec.tagged_message import (
     set_number,
 )
 from rosetta_jit.lowering.codec.unknown_fields import skip_unknown
-from rosetta_jit.lowering.codec.varint import from_varint, read_element, read_length, read_tag, read_varint, varint_bytes
+from rosetta_jit.lowering.codec.varint import from_varint, read_element, read_length, read_tag, read_varint
+from rosetta_jit.lowering.codec.varint_write import varint_bytes
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import Number as NumberSlot
 from rosetta_jit.model.layout import Slot, Span

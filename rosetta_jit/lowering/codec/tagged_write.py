@@ -12,7 +12,8 @@ from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields, span_of
-from rosetta_jit.lowering.codec.varint import VARINT_BYTES, size_of_varint, to_varint, varint_bytes, write_varint
+from rosetta_jit.lowering.codec.varint import VARINT_BYTES
+from rosetta_jit.lowering.codec.varint_write import size_of_varint, to_varint, varint_bytes, write_varint
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import UNKNOWN, Row, Span, Variant

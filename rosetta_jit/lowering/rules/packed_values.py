@@ -12,7 +12,8 @@ from rosetta_jit.language import typed
 from rosetta_jit.language.functions.texts import is_textual
 from rosetta_jit.language.walk import expressions_of, operands
 from rosetta_jit.lowering.rules.holder_side import HolderSide
-from rosetta_jit.lowering.rules.values import Values, constant, scalar_type
+from rosetta_jit.lowering.rules.scalars import constant, scalar_type
+from rosetta_jit.lowering.rules.values import Values
 from rosetta_jit.lowering.rules.wire_side import wire_key
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Type, Union

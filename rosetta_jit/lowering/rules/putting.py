@@ -15,7 +15,8 @@ from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.made_arrays import Put
 from rosetta_jit.lowering.rules.holder_side import HolderSide
 from rosetta_jit.lowering.rules.rescaling import by_number, change_of_member, rescaled
-from rosetta_jit.lowering.rules.values import NAMES, RANGES, Values, scalar_type
+from rosetta_jit.lowering.rules.scalars import NAMES, RANGES, scalar_type
+from rosetta_jit.lowering.rules.values import Values
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.layout import Layout, Member, Number, Row, Slot, Span, Variant
 from rosetta_jit.startup.dataclass import dataclass

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import field, replace
 from pathlib import PurePath
-from typing import TypeGuard, assert_never, cast
+from typing import assert_never, cast
 
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.terms import index, type_of
@@ -15,19 +15,19 @@ from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.function import functions
 from rosetta_jit.language.walk import parts
 from rosetta_jit.lowering.arithmetic import COMPARISONS, binary, differ
-from rosetta_jit.lowering.codec.fields import converted, scalar_name
+from rosetta_jit.lowering.codec.fields import converted
 from rosetta_jit.lowering.evaluation import Awaited, Source, lowered
 from rosetta_jit.lowering.rules.host_calls import called
 from rosetta_jit.lowering.rules.look_ahead import look_ahead_of
 from rosetta_jit.lowering.rules.nearest import nearest
 from rosetta_jit.lowering.rules.reductions import number_in, reduced
 from rosetta_jit.lowering.rules.rejections import reject_with
+from rosetta_jit.lowering.rules.scalars import NAMES, RANGES, constant, converted_constant, is_named, scalar_type
 from rosetta_jit.lowering.rules.state import remembered
 from rosetta_jit.lowering.texts.search import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.expr import Operator
-from rosetta_jit.model.layout import scalar_of
-from rosetta_jit.model.types import Bool, Enum, Float, Int, Type
+from rosetta_jit.model.types import Bool, Enum
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -233,7 +233,7 @@ class Values:
         """A number as another type, by the rule that the mapping states."""
         source = type_of(value)
         if isinstance(value, ir.Const):
-            folded = _folded(value, target)
+            folded = converted_constant(value, target)
             if folded is not None:
                 return folded
         match rule:
@@ -319,50 +319,6 @@ KEPT = (typed.IsText, typed.Choice, typed.Reduce)
 
 FAILING = (ir.Require, ir.Expect, ir.HostCall, ir.Call)
 """Statements that may refuse a message."""
-
-RANGES: dict[str, tuple[int, int]] = {
-    "i8": (-(1 << 7), 1 << 7),
-    "u8": (0, 1 << 8),
-    "i16": (-(1 << 15), 1 << 15),
-    "u16": (0, 1 << 16),
-    "i32": (-(1 << 31), 1 << 31),
-    "u32": (0, 1 << 32),
-    "i64": (-(1 << 63), 1 << 63),
-    "u64": (0, 1 << 64),
-}
-"""Least value and first one too large."""
-
-NAMES = {scalar: f"{'u' if scalar[0] == 'u' else ''}int{scalar[1:]}" for scalar in RANGES} | {"f32": "float32", "f64": "float64"}
-
-
-def scalar_type(type_: Type) -> ir.Scalar:
-    """The kernel's type of a number."""
-    match type_:
-        case Bool() | Int() | Float() | Enum():
-            return scalar_name(scalar_of(type_))
-        case _:
-            raise AssertionError(type_)
-
-
-def is_named(type_: Type, number: ir.Expr) -> TypeGuard[Bool | Enum]:
-    """Whether a type has some numbers alone, and it is not known which one comes."""
-    return isinstance(type_, Bool | Enum) and not isinstance(number, ir.Const) and type_of(number) != "bool"
-
-
-def constant(number: float | str, scalar: ir.Scalar) -> ir.Const:
-    """A number that the mapping writes down."""
-    assert not isinstance(number, str)
-    return ir.Const(scalar, float(number) if scalar in ("f32", "f64") else int(number))
-
-
-def _folded(value: ir.Const, target: ir.Scalar) -> ir.Const | None:
-    """A constant of another type, where that is the same number."""
-    if target in ("f32", "f64"):
-        return ir.Const(target, float(value.value)) if abs(value.value) <= 1 << 24 or target == "f64" else None
-    if target in RANGES and float(value.value).is_integer():
-        low, high = RANGES[target]
-        return ir.Const(target, int(value.value)) if low <= value.value < high else None
-    return None
 
 
 def calls_out(value: typed.Expr) -> bool:
