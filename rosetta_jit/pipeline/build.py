@@ -201,7 +201,9 @@ class Build:
         """The framework whose IDL declares a type."""
         readers = readers_of(self.request)
         owner = readers.owner(struct.span.source.name) if struct.span is not None else None
-        return owner or readers.frameworks[self.request.framework or ""]
+        if owner is None and self.request.framework is None and self.request.encoding is None:
+            raise report(self.request, words.nameless_schema())
+        return owner or readers.likely[0]
 
     # --- results -----------------------------------------------------------------------------------------------------
 
