@@ -115,14 +115,17 @@ MAY_IMPORT = {
     "runtime": HOLDERS | RUNTIME - {"runtime.functions"},
     "runtime.holder": HOLDERS
     | {"runtime.holder.objects", "runtime.attributes", "runtime.looks", "runtime.limits"}
-    | {f"runtime.{module}" for module in ("callable", "cells", "columns", "contents", "lanes", "locks", "memory", "plan", "room", "specs")},
+    | {
+        f"runtime.{module}"
+        for module in ("callable", "cells", "columns", "contents", "lanes", "locks", "memory", "plan", "row_counts", "specs")
+    },
     "runtime.holder.objects": REPORTS
     | {"model.types", "runtime.attributes", "runtime.limits", "runtime.callable", "runtime.specs", "runtime.holder"},
     "runtime.attributes": REPORTS
     | {"model.types", "model.layout", "kernel.state", "runtime.limits", "runtime.code", "runtime.cache"}
     | {"runtime.callable", "runtime.cells", "runtime.plan", "runtime.specs", "runtime.holder.record", "runtime.holder.objects.in_c"},
     "runtime.looks": HOLDERS | {"runtime.limits", "runtime.holder"},
-    "runtime.arrow": HOLDERS | {"runtime.holder"} | {f"runtime.{module}" for module in ("cells", "handed", "lanes", "rows")},
+    "runtime.arrow": HOLDERS | {"runtime.holder"} | {f"runtime.{module}" for module in ("cells", "lanes", "memory_for_arrow", "rows")},
     "runtime.limits": set(),
     "runtime.code": set(),
     "runtime.cache": REPORTS | {"runtime.limits", "runtime.code"},

@@ -164,7 +164,7 @@ class Reader(Protocol):
         ...
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
-        """The messages. Several blocks are in use at a time, because they are read ahead (`rosetta_jit.logs.ahead`)."""
+        """The messages. Several blocks are in use at a time, because they are read ahead (`rosetta_jit.logs.read_ahead`)."""
         ...
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from rosetta_jit.logs.ahead import ahead
 from rosetta_jit.logs.base import Block, Connection, Format, Piece, Reader, Wanted
+from rosetta_jit.logs.read_ahead import ahead
 
 if TYPE_CHECKING:
     from rosetta_jit.api.options import Options

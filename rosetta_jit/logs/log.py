@@ -15,10 +15,10 @@ from rosetta_jit.errors import LogError, LogWarning, MappingError
 from rosetta_jit.logs.base import Block, Connection, Format, Wanted
 from rosetta_jit.logs.channel import Channel
 from rosetta_jit.logs.file import LogFile
+from rosetta_jit.logs.installed import formats
 from rosetta_jit.logs.moments import Moment, nanoseconds, shown
 from rosetta_jit.logs.parts import OnError
 from rosetta_jit.logs.reading.storage import Storage, open_storage
-from rosetta_jit.logs.table import formats
 
 if TYPE_CHECKING:
     from rosetta_jit.api.options import Options

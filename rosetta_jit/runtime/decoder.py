@@ -18,7 +18,7 @@ from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.runtime.memory import LARGE
 from rosetta_jit.runtime.message_spans import MessageSpans, laid_out, source_of
 from rosetta_jit.runtime.program import Loaded, Program, is_foreign
-from rosetta_jit.runtime.room import roomier
+from rosetta_jit.runtime.row_counts import roomier
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:

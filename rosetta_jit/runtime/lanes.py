@@ -36,8 +36,8 @@ from rosetta_jit.kernel.state import (
 from rosetta_jit.model.initial_values import FirstCase, FixedArray, InitialValue
 from rosetta_jit.model.layout import Layout
 from rosetta_jit.runtime.attributes.code import functions, library
-from rosetta_jit.runtime.beginning import address_of_bytes, begin
 from rosetta_jit.runtime.cells import Array, Arrays, Cells, Memory
+from rosetta_jit.runtime.first_memory import address_of_bytes, begin
 from rosetta_jit.runtime.limits import MAX_READINGS
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.memory import ALIGNMENT, Hidden, address_of, aligned, aligned_bytes

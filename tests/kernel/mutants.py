@@ -35,28 +35,13 @@ PROOF = (
     "loops",
     "record",
     "meetings",
-    "less",
+    "without_checks",
 )
 PASSES = ("affine", "bulk", "drop", "fold", "forget", "hoist", "join", "merge", "reuse", "simplify", "sink", "unroll", "widen", "order")
 MODULES = tuple(
-    f"rosetta_jit.kernel.{name}" for name in ("shape", *(f"proof.{name}" for name in PROOF), *(f"passes.{name}" for name in PASSES))
+    f"rosetta_jit.kernel.{name}" for name in ("shape", "walk", *(f"proof.{name}" for name in PROOF), *(f"passes.{name}" for name in PASSES))
 )
 
-NO_PROOF = {
-    "is_large",
-    "are_straight_and_compute",
-    "has_loops_for_vectors",
-    "is_moderate",
-    "_usual_statements",
-    "_only_stores",
-    "is_short_and_straight",
-    "calls_to_host",
-    "our_functions",
-    "asks_host",
-    "leaves_something",
-    "_writes",
-}
-"""Functions of `shape` that tell backends and passes how large kernels are, and whom they call."""
 DEMANDS = {"oblige", "certify", "demand"}
 LEARNS = {"assume", "derive"}
 SWAPPED = {"any": "all", "all": "any", "min": "max", "max": "min", "plus": "minus", "minus": "plus"}
@@ -160,7 +145,7 @@ def _statements(tree: ast.Module) -> Iterator[tuple[str, ast.stmt]]:
     """The statements of all functions, each with the function's name."""
     inside: dict[int, tuple[str, ast.stmt]] = {}
     for top in ast.walk(tree):
-        if isinstance(top, ast.FunctionDef) and top.name not in NO_PROOF:
+        if isinstance(top, ast.FunctionDef):
             inside |= {stmt.number: (top.name, stmt) for stmt in ast.walk(top) if isinstance(stmt, ast.stmt)}
             inside.pop(top.number)
     yield from (each for each in inside.values() if not isinstance(each[1], ast.FunctionDef) and not _is_text(each[1]))

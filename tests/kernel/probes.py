@@ -21,11 +21,11 @@ from rosetta_jit.kernel.passes.drop import drop, without
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof import symbolic
 from rosetta_jit.kernel.proof.formula import All, Any, negated
-from rosetta_jit.kernel.proof.less import is_less
 from rosetta_jit.kernel.proof.linear import Linear, plus, shifted, times
 from rosetta_jit.kernel.proof.prove import Facts
 from rosetta_jit.kernel.proof.record import Record
 from rosetta_jit.kernel.proof.verify import VerificationError, settled, verify
+from rosetta_jit.kernel.proof.without_checks import is_less
 from rosetta_jit.kernel.terms import BEGIN, index
 from tests.kernel import kernels
 from tests.kernel.unsafe import ACCEPTED, REFUSED
@@ -205,7 +205,7 @@ def texts() -> Iterator[Probe]:
 
 def less() -> Iterator[Probe]:
     """Which kernels need no proof because of another's, and which do."""
-    from tests.kernel import test_less as cases
+    from tests.kernel import test_without_checks as cases
 
     for number, proven in enumerate((cases.TWICE, cases.INSIDE)):
         known = settled(proven)
@@ -235,7 +235,7 @@ def less() -> Iterator[Probe]:
 
 def orders() -> Iterator[Probe]:
     """What is made by passes some of which spoil a kernel, and how often it is proven for that."""
-    from tests.kernel import test_less as cases
+    from tests.kernel import test_without_checks as cases
 
     tried = {
         "nothing": (cases.TWICE, ()),

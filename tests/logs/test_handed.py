@@ -7,7 +7,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.runtime.batch import hand_over
-from rosetta_jit.runtime.handed import SPARE
+from rosetta_jit.runtime.memory_for_arrow import SPARE
 
 SCHEMA = b"string name\nuint8[] data\nfloat64[4] fixed\nuint16[] numbers"
 NUMBERS = {"data", "fixed", "numbers"}

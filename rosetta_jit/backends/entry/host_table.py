@@ -1,6 +1,6 @@
 """Functions of the host that are found at run time: each reads its address from a table that whoever loads the code fills in.
 
-@host = dso_local global [n x ptr]        in the order of `kernel.shape.our_functions`
+@host = dso_local global [n x ptr]        in the order of `kernel.traits.our_functions`
 """
 
 from __future__ import annotations

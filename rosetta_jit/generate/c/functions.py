@@ -21,7 +21,7 @@ from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.reached import leaves, reached, read_names
+from rosetta_jit.generate.reachable import leaves, reached, read_names
 from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel.ir import Advance, Call, Direction, For, Kernel, Routine, While
 from rosetta_jit.kernel.walk import statements

@@ -17,7 +17,7 @@ from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.origins import Origin, described, origin_of
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.reached import leaves
+from rosetta_jit.generate.reachable import leaves
 from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.passes.fold import FALSE, folded

@@ -11,9 +11,9 @@ from rosetta_jit.generate.c.functions import Printed, print_kernel
 from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.language import parts_of
 from rosetta_jit.generate.cleared import without_clearing
-from rosetta_jit.generate.cpp.filled import straight_numbers
 from rosetta_jit.generate.cpp.manners import MANNERS, Manners
 from rosetta_jit.generate.cpp.reading import addressed_in, viewed_in
+from rosetta_jit.generate.cpp.set_in_place import straight_numbers
 from rosetta_jit.generate.cpp.source import header, source
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.undamaged import undamaged_kernel

@@ -9,7 +9,7 @@ from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.source import run
 from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.lists import Listed, row_name, viewed
-from rosetta_jit.generate.cpp.straight import addressed_lanes, is_local
+from rosetta_jit.generate.cpp.read_in_place import addressed_lanes, is_local
 from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.model.layout import Row

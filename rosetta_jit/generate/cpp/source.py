@@ -15,10 +15,10 @@ from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import C_TYPES, RESERVED
 from rosetta_jit.generate.cpp.classes import classes
-from rosetta_jit.generate.cpp.filled import straight_numbers
 from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
+from rosetta_jit.generate.cpp.read_in_place import is_local
 from rosetta_jit.generate.cpp.reading import addressed_in, container_type, directs_of, encoder, source_struct, viewed_in, writes_apart
-from rosetta_jit.generate.cpp.straight import is_local
+from rosetta_jit.generate.cpp.set_in_place import straight_numbers
 from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
 from rosetta_jit.generate.shares import WHOLE, changed_lanes
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of, wires_of

@@ -13,7 +13,7 @@ from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.statements import Function, Variable, declaration, print_block, registers
 from rosetta_jit.generate.lisp.words import LISP_TYPES, Names, hyphenated
 from rosetta_jit.generate.origins import Origin
-from rosetta_jit.generate.reached import leaves, reached, read_names
+from rosetta_jit.generate.reachable import leaves, reached, read_names
 from rosetta_jit.generate.shares import changed_lanes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import Binary, Compare, Convert, Decimal, Expr, Kernel, Routine, Unary

@@ -12,7 +12,7 @@ from rosetta_jit.generate.python.parts import Parts
 from rosetta_jit.generate.python.positions import NotInParts, Sum, without_places, without_positions
 from rosetta_jit.generate.python.presence import without_lengths
 from rosetta_jit.generate.python.statements import Function, Objects
-from rosetta_jit.generate.reached import reached, read_names
+from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.ir import Block, Expect, Kernel, Routine

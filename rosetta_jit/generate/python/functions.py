@@ -15,7 +15,7 @@ from rosetta_jit.generate.python.direct import FEW, direct
 from rosetta_jit.generate.python.expressions import CODES, Scope, expression, flat_name, view_name
 from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.statements import Attempt, Function, Objects, print_block
-from rosetta_jit.generate.reached import reached, read_names
+from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.shares import moved_lanes
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import Role, kind_of

@@ -15,7 +15,7 @@ from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.both_ways.bit_sums import with_sums
 from rosetta_jit.language.both_ways.bits import Bits
 from rosetta_jit.language.both_ways.checks import checks_of
-from rosetta_jit.language.both_ways.demanded import demanded, known_to_pack
+from rosetta_jit.language.both_ways.demanded_values import demanded, known_to_pack
 from rosetta_jit.language.both_ways.inverse import condition_in
 from rosetta_jit.language.both_ways.knowledge import Beside
 from rosetta_jit.language.both_ways.packing import Packing

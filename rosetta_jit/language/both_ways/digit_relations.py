@@ -20,8 +20,8 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf
+    from rosetta_jit.language.both_ways.joint_relations import Related
     from rosetta_jit.language.both_ways.knowledge import Loops
-    from rosetta_jit.language.both_ways.together import Related
 
 BEYOND = 1 << 63
 

@@ -23,7 +23,7 @@ from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.walk import Field, fields_of, parts, path_of, rebuilt
 
 if TYPE_CHECKING:
-    from rosetta_jit.language.both_ways.together import Together
+    from rosetta_jit.language.both_ways.joint_relations import Together
 
 
 def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops, is_assigned: Callable[[Field], bool]) -> None:

@@ -18,7 +18,7 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf
-    from rosetta_jit.language.both_ways.together import Related
+    from rosetta_jit.language.both_ways.joint_relations import Related
 
 
 @dataclass(frozen=True, slots=True)

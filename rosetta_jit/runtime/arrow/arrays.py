@@ -30,7 +30,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.handed import Handed
+    from rosetta_jit.runtime.memory_for_arrow import Handed
     from rosetta_jit.runtime.rows import Flags, Indices
 
     Arrow = pa.Array

@@ -33,7 +33,7 @@ from rosetta_jit.runtime.limits import MAX_RECIPES
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.looks.described import Constructor, Described
 from rosetta_jit.runtime.plan import Plan, plan
-from rosetta_jit.runtime.room import begun_as, initialised, roomier
+from rosetta_jit.runtime.row_counts import begun_as, initialised, roomier
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.late import Late
 from rosetta_jit.startup.sha import sha256

@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 
-from rosetta_jit.logs.ahead import ahead
+from rosetta_jit.logs.read_ahead import ahead
 from rosetta_jit.logs.reading.compression import Scratch
 
 
