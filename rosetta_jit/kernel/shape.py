@@ -187,7 +187,7 @@ def our_functions(kernels: Iterable[ir.Kernel]) -> list[str]:
 
 def asks_host(kernels: Iterable[ir.Kernel]) -> bool:
     """Whether kernels ask the host for the time, or for the number of a message."""
-    return any(isinstance(part, ir.HostValue) for kernel in kernels for part in parts_of(_statements_of(kernel)))
+    return any(ir.HostValue in set(map(type, parts_of(_statements_of(kernel)))) for kernel in kernels)
 
 
 def registers_read(kernel: ir.Kernel) -> set[int]:
@@ -311,7 +311,7 @@ def _statements_error(
 def _statement_error(stmt: ir.Stmt, depth: int, sites: int, routines: Mapping[str, ir.Routine]) -> str | None:
     if depth > MAX_BLOCKS:
         return "blocks are nested too deep"
-    if any(_too_deep(expr) for expr in expressions_of(stmt)):
+    if len(parts_of((stmt,))) > MAX_EXPRESSION and any(map(_too_deep, expressions_of(stmt))):
         return "an expression is nested too deep"
     match stmt:
         case ir.Require(_, _, failure) | ir.Expect(_, failure) | ir.HostCall(_, _, _, failure):
