@@ -174,12 +174,13 @@ def _is_behind_begin(at: kernel.Expr) -> bool:
 
 def _check(frame: Frame, holds: ir.Value, failure: kernel.Failure) -> None:
     """Go on where the condition holds. In a body of very many checks, those that report the same lead to one block."""
+    shared = frame.failed.shared if isinstance(frame.failed, StoredExit) else {}
     told = _told(frame, failure.site, failure.at, *failure.indices) if isinstance(frame.failed, StoredExit) else None
-    broken = None if told is None else frame.failed.shared.get(told)
+    broken = None if told is None else shared.get(told)
     good = _cold(frame, holds, broken)
     if broken is None:
         if told is not None:
-            frame.failed.shared[told] = frame.builder.block
+            shared[told] = frame.builder.block
         _fail(frame, (failure.site,), constant(1), expression(frame, failure.at), failure.indices)
     frame.builder.position_at_end(good)
 
