@@ -109,7 +109,7 @@ def our_functions(kernels: Iterable[ir.Kernel]) -> list[str]:
 
 def asks_host(kernels: Iterable[ir.Kernel]) -> bool:
     """Whether kernels ask the host for the time, or for the number of a message."""
-    return any(isinstance(part, ir.HostValue) for kernel in kernels for part in parts_of(every_statement(kernel)))
+    return any(ir.HostValue in set(map(type, parts_of(every_statement(kernel)))) for kernel in kernels)
 
 
 def registers_read(kernel: ir.Kernel) -> set[int]:
