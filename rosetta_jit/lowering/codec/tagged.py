@@ -184,6 +184,7 @@ def _read_single(message: Message, entry: Entry) -> None:
         case Recursion() as recursion:
             from rosetta_jit.lowering.codec.work_list import read_recursive
 
+            clear_other_case(message, entry.path)
             mark(message, entry.path)
             read_recursive(message, entry, recursion, where)
         case _:

@@ -164,6 +164,18 @@ def decoded(decode, message):
         return error
 
 
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
+def test_a_case_that_comes_again_behind_another_one_starts_empty_in_recursive_messages_too(backend):
+    schema = {"m.proto": 'syntax = "proto3"; message A { oneof o { A a = 1; int32 b = 2; } string s = 3; }'}
+    decode, encode = programs("A", backend, schema=schema)
+    inner, other, empty = b"\x0a\x03\x1a\x01x", b"\x10\x01", b"\x0a\x00"
+    assert decode(inner + other + empty).a.s == ""
+    assert encode(decode(inner + other + empty)) == empty
+    assert decode(inner + other + inner).a.s == "x"
+    assert decode(inner + empty).a.s == "x"  # of one case, pieces merge
+    assert decode(inner + other).b == 1
+
+
 def test_unknown_fields_are_copied_where_there_are_any():
     """A call that copies nothing costs as much as a field."""
     schema = {"m.proto": 'syntax = "proto3"; message M { int32 x = 1; }'}
