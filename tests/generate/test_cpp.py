@@ -107,6 +107,32 @@ def test_elements_that_lie_as_rows_do_are_not_copied_one_by_one(tmp_path):
         subprocess.run(["g++", "-std=c++17", "-fsyntax-only", f"-I{tmp_path}", tmp_path / "check.cpp"], check=True)
 
 
+FEW = """
+#include <rosetta_jit/rosetta_jit.hpp>
+int main() {
+    unsigned char given[64];
+    for (int at = 0; at < 64; at++) { given[at] = static_cast<unsigned char>(at); }
+    for (int size = 0; size < 40; size++) {
+        unsigned char filled[64] = {}, copied[64] = {};
+        rosetta_jit::detail::fill_few(filled, 3, size, 255);
+        rosetta_jit::detail::copy_few(copied, 3, given, 5, size);
+        for (int at = 0; at < 64; at++) {
+            const bool is_within = at >= 3 && at < 3 + size;
+            if (filled[at] != (is_within ? 255 : 0) || copied[at] != (is_within ? at + 2 : 0)) { return 1; }
+        }
+    }
+}
+"""
+
+
+@cpp.needs_cpp
+def test_few_bytes_are_filled_and_copied(tmp_path):
+    """Of each size all of them, and none beside."""
+    (tmp_path / "few.cpp").write_text(FEW)
+    subprocess.run(["g++", *cpp.STRICT, *QUICK, f"-I{INCLUDE}", tmp_path / "few.cpp", "-o", tmp_path / "few"], check=True)
+    subprocess.run([tmp_path / "few"], check=True)
+
+
 @cpp.needs_cpp
 @pytest.mark.parametrize("compiler", ["g++", "clang++"])
 def test_no_compiler_complains_of_a_hostile_schema(tmp_path, compiler):

@@ -35,10 +35,10 @@ static int64_t full(struct failure *failure, int64_t lane, int64_t missing)
 }
 
 /* == lacks == */
-/* Whether some of `size` bytes from `at` are missing before `end`. */
+/* Whether some of `size` bytes from `at` are missing before `end`, which is not negative: without a sign, negative numbers are large. */
 static inline bool lacks(int64_t at, int64_t size, int64_t end)
 {
-    return at < 0 || size < 0 || at > end || size > end - at;
+    return (uint64_t)at > (uint64_t)end || (uint64_t)size > (uint64_t)end - (uint64_t)at;
 }
 
 /* == bytes_of == */

@@ -330,21 +330,14 @@ struct scratch {
 /* Sets bytes, of which there are fewer than eight nearly always: a call takes longer than to set them. */
 inline void fill_few(void *target, std::int64_t to, std::int64_t size, int byte) noexcept
 {
-    unsigned char *at = static_cast<unsigned char *>(target) + to;
+    unsigned char *const at = static_cast<unsigned char *>(target) + to;
     if (size >= 8) {
         std::memset(at, byte, static_cast<std::size_t>(size));
+    } else if (size >= 4) { /* the first ones and the last ones, which may be the same */
+        std::memset(at, byte, 4);
+        std::memset(at + size - 4, byte, 4);
     } else if (size > 0) {
-        if ((size & 4) != 0) {
-            std::memset(at, byte, 4);
-            at += 4;
-        }
-        if ((size & 2) != 0) {
-            std::memset(at, byte, 2);
-            at += 2;
-        }
-        if ((size & 1) != 0) {
-            *at = static_cast<unsigned char>(byte);
-        }
+        at[0] = at[size / 2] = at[size - 1] = static_cast<unsigned char>(byte);
     }
 }
 
