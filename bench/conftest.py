@@ -25,6 +25,7 @@ ORDER = (
     "lookup",
     "flags",
     "sums",
+    "left_alone",
     "reductions",
     "mapped",
     "bridges",

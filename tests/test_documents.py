@@ -133,3 +133,20 @@ def test_the_documented_mapping_is_the_shipped_one():
     shipped = (ROOT / "mappings" / "yarp" / "icub" / "torso_state.mapping").read_text()
     rules = [line.strip() for line in shipped.splitlines() if line.startswith("  ")]
     assert all(rule in text for rule in rules)
+
+
+def anchors(document):
+    """What links may lead to within a document."""
+    text = re.sub(r"```.*?```", "", document.read_text("utf-8"), flags=re.DOTALL)
+    headings = re.findall(r"(?m)^#+ (.*)$", text)
+    return {re.sub(r"[^\w\- ]", "", each.lower()).replace(" ", "-") for each in headings}
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_links_lead_somewhere(document):
+    text = re.sub(r"```.*?```", "", document.read_text("utf-8"), flags=re.DOTALL)
+    for link in re.findall(r"\]\(([^)\s:]+)\)", text):
+        file, _, anchor = link.partition("#")
+        found = document.parent / file if file else document
+        assert found.exists(), link
+        assert not anchor or found.suffix != ".md" or anchor in anchors(found), link

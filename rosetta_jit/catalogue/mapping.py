@@ -86,7 +86,13 @@ def _second_value(span: Span, kind: str, expected: frozenset[str]) -> Diagnostic
 
 def _help(span: Span, kind: str, expected: frozenset[str]) -> str:
     found = span.source.text[span.start : span.end]
-    return _undotted(span, kind, expected) or instead(span, kind, expected) or _meant(span, kind, expected) or _hint(found, kind, expected)
+    return (
+        _undotted(span, kind, expected)
+        or instead(span, kind, expected)
+        or _meant(span, kind, expected)
+        or _itself(span)
+        or _hint(found, kind, expected)
+    )
 
 
 def _meant(span: Span, kind: str, expected: frozenset[str]) -> str:
@@ -121,6 +127,13 @@ def _expected(kinds: frozenset[str]) -> list[str]:
     implied = (STARTS_VALUE if "INTEGER" in kinds else frozenset[str]()) | (STARTS_RULE if "FOR" in kinds else frozenset[str]())
     named = [name for kind, name in EXPECTATIONS if kind in kinds - implied]
     return named or (["`else`"] if "ELSE" in kinds else [f"`{WORDS[kind]}`" for kind in sorted(kinds & WORDS.keys())])
+
+
+def _itself(span: Span) -> str:
+    """A hint where a lone dot stands for the message; empty elsewhere."""
+    text = span.source.text
+    is_lone = text[span.start : span.end] == "." and re.match(r"[ \t]*[,)]", text[span.end : span.end + 100]) is not None
+    return "the message itself is no value: write its fields as a list, `[.x, .y, .z, .w]`" if is_lone else ""
 
 
 def _hint(found: str, kind: str, expected: frozenset[str]) -> str:

@@ -85,7 +85,7 @@ def _statements_error(
 def _statement_error(stmt: ir.Stmt, depth: int, sites: int, routines: Mapping[str, ir.Routine]) -> str | None:
     if depth > MAX_BLOCKS:
         return "blocks are nested too deep"
-    if any(_too_deep(expr) for expr in expressions_of(stmt)):
+    if len(parts_of((stmt,))) > MAX_EXPRESSION and any(map(_too_deep, expressions_of(stmt))):
         return "an expression is nested too deep"
     match stmt:
         case ir.Require(_, _, failure) | ir.Expect(_, failure) | ir.HostCall(_, _, _, failure):

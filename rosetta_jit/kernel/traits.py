@@ -48,7 +48,7 @@ def are_straight_and_compute(kernels: Iterable[ir.Kernel]) -> bool:
 
 
 def has_loops_for_vectors(kernel: ir.Kernel) -> bool:
-    """Whether a kernel has, in the first of its bodies, loops over elements that do nothing but compute and store."""
+    """Whether a kernel has, in the first of its bodies, loops over elements that do nothing but compute, and store or add integers."""
     return any(isinstance(each, ir.For) and _only_stores(each.body) for each in _usual_statements(kernel))
 
 
@@ -58,7 +58,16 @@ def is_moderate(kernel: ir.Kernel) -> bool:
 
 
 def _only_stores(block: ir.Block) -> bool:
-    return all(isinstance(each, ir.Let | ir.Store | ir.SetField) for each in block)
+    return all(isinstance(each, ir.Let | ir.Store | ir.SetField) or _gathers_integers(each) for each in block)
+
+
+def _gathers_integers(stmt: ir.Stmt) -> bool:
+    """Whether a round of a loop adds an integer to what the rounds before have, or likewise, in an order that does not matter."""
+    match stmt:
+        case ir.Assign(name, ir.Binary("add" | "xor" | "or" | "and", ir.Local(type_, variable))) if name == variable:
+            return type_ not in ("f32", "f64")
+        case _:
+            return False
 
 
 def _usual_statements(kernel: ir.Kernel) -> Iterator[ir.Stmt]:
@@ -109,7 +118,7 @@ def our_functions(kernels: Iterable[ir.Kernel]) -> list[str]:
 
 def asks_host(kernels: Iterable[ir.Kernel]) -> bool:
     """Whether kernels ask the host for the time, or for the number of a message."""
-    return any(isinstance(part, ir.HostValue) for kernel in kernels for part in parts_of(every_statement(kernel)))
+    return any(ir.HostValue in set(map(type, parts_of(every_statement(kernel)))) for kernel in kernels)
 
 
 def registers_read(kernel: ir.Kernel) -> set[int]:

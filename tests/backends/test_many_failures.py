@@ -54,3 +54,13 @@ def test_failures_end_in_what_they_do_not_share():
     text = llvm_text([checked()], "decode", with_numba=False)
     last = re.findall(r"store i64 (\S+), ptr [^\n]*\n  br label %(?:failed|indices)\b", text)
     assert sum(each.isdigit() for each in last) > BYTES
+
+
+def test_checks_that_report_the_same_lead_to_one_block():
+    every = [Expect(Compare("eq", Load("u8", add(BEGIN, at)), Const("u8", 0)), failure(2, BEGIN)) for at in range(BYTES)]
+    made = kernel((Require(BEGIN, index(BYTES), failure(1)), *every, Return(END)), strides=(8,), name="alike")
+    verify(made)
+    assert len(re.findall(r"^broken[.\d]*:", llvm_text([made], "decode", with_numba=False), re.MULTILINE)) < 5
+    for wrong in (None, 0, 300, BYTES - 1):
+        message = bytes(9 if place == wrong else 0 for place in range(BYTES))
+        assert outcome("llvm", made, message, rows(made)) == outcome("interpreter", made, message, rows(made))

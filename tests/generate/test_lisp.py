@@ -11,8 +11,11 @@ import rosetta_jit as rj
 from rosetta_jit.api.options import request_of, type_request
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.build import Wishes, generated
+from rosetta_jit.generate.c.lanes import Lane
+from rosetta_jit.generate.lisp.lanes import lanes_of
+from rosetta_jit.generate.lisp.language import codec
 from rosetta_jit.generate.lisp.texts import broken, literal
-from rosetta_jit.generate.lisp.words import Names, hyphenated, package_of, symbols
+from rosetta_jit.generate.lisp.words import Names, hyphenated, package_of, runtime_names, symbols
 from tests.generate import lisp
 from tests.generate.corpora import corpora, numbers_in_texts
 from tests.generate.driver import harmed
@@ -113,6 +116,50 @@ def test_a_hostile_schema_stays_in_its_place(tmp_path):
     (one,), (other,) = lisp.answers(tmp_path, both)
     assert one == f"ok {message.hex()} ({' '.join(map(str, range(count)))} (1 2 3 [(4) (5)]) [(6) (7)])"
     assert other.startswith(f"ok {(outer + inner + bytes(12)).hex()} ")
+
+
+ACCESSORS = "Make/failure Make/codec_state Collect/message Take/message Put/message Size/of_rows Encode/rows Site/detail I64/rem"
+ENUMS = """syntax = "proto3"; package rj; enum header { seq = 0; stamp = 1; } message Header { uint32 stamp = 1; header seq = 2; }
+message Outer { Header header = 1; oneof t { int32 nil = 2; string list = 3; }
+optional bool allow_other_keys = 4; map<string, int32> pi = 5; }"""
+
+
+@lisp.needs_sbcl
+def test_types_and_enums_are_called_as_the_unit_calls_its_own(tmp_path):
+    """`make-failure` would be the runtime's as well as the accessor of a field, `+header.seq+` a value as well as a place in a row."""
+    pairs = [each.split("/") for each in ACCESSORS.split()]
+    inner: dict[str, str] = {}
+    for type_, name in pairs:
+        inner[type_] = inner.get(type_, f"===\nMSG: evil/{type_}\n") + f"int16 {name}\n"
+    fields = "".join(f"{type_} the_{type_}\n" for type_ in inner)
+    ours = type_request("decode", "evil/Outer", {"encoding": "ros1", "schema": fields + "".join(inner.values())})
+    message = struct.pack(f"<{len(pairs)}h", *range(len(pairs)))
+    theirs = type_request("decode", "rj.Outer", {"encoding": "protobuf", "schema": {"o.proto": ENUMS}})
+    theirs_message = b"\x0a\x04\x08\x07\x10\x01\x1a\x01x\x20\x01\x2a\x05\x0a\x01k\x10\x02"
+    (one,), (other,) = lisp.answers(tmp_path, [(ours, [message]), (theirs, [theirs_message])])
+    assert one == f"ok {message.hex()} ((0 1) (2) (3) (4) (5) (6) (7) (8))"
+    assert other == f'ok {theirs_message.hex()} ((7 1) <list "120"> t {{"107":2}})'
+
+
+@lisp.needs_sbcl
+def test_names_of_the_runtime_are_known(tmp_path):
+    """SBCL says what it defines, accessors and constructors of structures and what its macros make among them."""
+    (tmp_path / "runtime.lisp").write_text(lisp.runtime("runtime"))
+    defined = "(do-symbols (symbol :runtime) (when (and (eq (symbol-package symbol) (find-package :runtime)) (is-defined symbol))"
+    printed = lisp.run(f'(load "{lisp.MAIN}")', '(load "runtime.lisp")', f'{defined} (format t "~(~A~)~%" symbol)))', cwd=tmp_path)
+    found = {name for name in printed.split() if hyphenated(name) == name}
+    assert "make-failure" in found
+    assert found <= runtime_names()
+
+
+@lisp.needs_sbcl
+def test_a_unit_may_have_many_lanes(tmp_path):
+    """SBCL runs out of stack where it compiles a function of some 300 keywords, as a constructor of them all would be."""
+    lanes = lanes_of([Lane(f"field_{number}", f"field_{number}_used", 1, None) for number in range(400)], 400)
+    (tmp_path / "runtime.lisp").write_text(lisp.runtime("runtime"))
+    (tmp_path / "lanes.lisp").write_text(f"(in-package :runtime)\n{codec(lanes)}(print (length (codec.field-399 (make-codec))))\n")
+    forms = [f'(load "{lisp.MAIN}")', '(load "runtime.lisp")', '(load-source "lanes.lisp")']
+    assert lisp.run(*forms, cwd=tmp_path).split() == ["0"]
 
 
 def test_classes_are_the_systems_own():

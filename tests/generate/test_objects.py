@@ -13,6 +13,7 @@ import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
 from rosetta_jit.cli import main
 from rosetta_jit.generate.build import object_of
+from tests.generate import test_c
 from tests.generate.driver import answers, driver_of_object, expected, harmed, needs_gcc, write
 from tests.generate.test_c import BOTH, TORSO, joint_states, proto_angles
 
@@ -21,6 +22,13 @@ SUBJECTS = {
     "angles": ("rst.kinematics.JointAngles", "protobuf", proto_angles()),
 }
 MACHINES = ["aarch64-linux-gnu", "armv7-linux-gnueabihf", "thumbv7em-none-eabihf", "riscv64-linux-gnu", "wasm32-unknown-unknown"]
+
+LINKED = [
+    ("aarch64-linux-gnu", "aarch64-linux-gnu-gcc", "qemu-aarch64"),
+    ("armv7-linux-gnueabihf", "arm-linux-gnueabihf-gcc", "qemu-arm"),
+    ("riscv64-linux-gnu", "riscv64-linux-gnu-gcc", "qemu-riscv64"),
+]
+TORSO_MESSAGES = test_c.SUBJECTS["torso"][1]
 
 
 @needs_gcc
@@ -43,6 +51,31 @@ def test_objects_of_other_machines_need_nothing_of_cpython(triple):
     assert b"torso_decode_kernel" in code
     assert not re.search(rb"_?Py[A-Z_]", code)
     assert "torso_decode_kernel(" in texts["torso.h"]
+
+
+def elf_flags(code: bytes) -> int:
+    """Those of a machine, which a linker compares: where it has 64 bits, the offsets before them are wider."""
+    return int.from_bytes(code[48:52] if code[4] == 2 else code[36:40], "little")
+
+
+def test_floats_go_in_registers_where_the_machine_is_said_to_pass_them_there():
+    """Else no linker of these machines puts the object beside anything: `linux` stands where a vendor may, and LLVM knows no rv64gc."""
+    assert elf_flags(object_of(TORSO, ("decode",), "torso", "riscv64-linux-gnu")["torso.o"]) & 0x6 == 0x4
+    vfp_args = b"\x1c\x01"  # Tag_ABI_VFP_args: VFP registers
+    for triple in ("armv7-linux-gnueabihf", "armv7-unknown-linux-gnueabihf", "thumbv7em-none-eabihf"):
+        attributes = object_of(TORSO, ("decode",), "torso", triple)["torso.o"].partition(b"aeabi\0")[2]
+        assert vfp_args in attributes[:80], triple
+
+
+@pytest.mark.parametrize(("triple", "compiler", "runner"), LINKED)
+def test_objects_run_on_other_machines(triple, compiler, runner, tmp_path):
+    if shutil.which(compiler) is None or shutil.which(runner) is None:
+        pytest.skip(f"{compiler} and {runner} are not installed")
+    write(tmp_path, object_of(TORSO, BOTH, "torso", triple))
+    decode, encode = (make(TORSO.mapping, encoding="yarp3") for make in (rj.Decoder, rj.Encoder))
+    messages = harmed(TORSO_MESSAGES, 12, triple)
+    found = answers(driver_of_object(tmp_path, "torso", compiler, ("-O2", "-static", "-ffp-contract=off")), messages, runner)
+    assert found == [expected(decode, encode, message) for message in messages]
 
 
 def test_a_small_machine_needs_little(tmp_path):

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import ast
+import re
 import struct
 import subprocess
 import sys
 import types
 from itertools import permutations
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import request_of, type_request
-from rosetta_jit.errors import SchemaError
+from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
 from tests.generate.corpora import corpora, numbers_in_texts
 from tests.generate.driver import expected, harmed
@@ -23,6 +25,7 @@ from tests.generate.test_cpp import OUTER
 from tests.golden import GOLDEN, check_golden
 
 BOTH = ("decode", "encode")
+MAPPINGS = Path(__file__).resolve().parents[2] / "mappings"
 FEW = {"lcm exlcm.example_t", "corba RTC::TimedWChar little", "protobuf rj.OneOf", "protobuf rj.Maps", "protobuf rj.Tree"}
 
 
@@ -194,6 +197,37 @@ def test_types_are_called_as_the_module_calls_its_own(module, name):
     element = struct.pack("<hI2s", 7, 2, b"ab")
     message = element + struct.pack("<I", 2) + element + element
     assert answer(unit, message) == f"ok {message.hex()}"
+
+
+def test_loops_that_do_nothing_are_not_printed(module):
+    """Of points that may lack a coordinate each is checked where it is written, and a loop that did so before has nothing left."""
+    unit = module(request_of("decode", {}, mapping="ros1/grid_cells.mapping"))
+    programs = rj.Decoder("ros1/grid_cells.mapping"), rj.Encoder("ros1/grid_cells.mapping")
+    head = struct.pack("<4I2f", 7, 1, 2, 0, 0.5, 0.5)
+    messages = [head + struct.pack("<I", count) + struct.pack(f"<{3 * count}d", *range(3 * count)) for count in (0, 1, 5)]
+    answers_as_the_library(unit, programs, harmed(messages, 12, "cells"))
+    point = type(unit.decode(messages[1]).points[0])
+    with pytest.raises(unit.EncodeError, match="required"):
+        unit.encode(unit.PointCloud3DFloat(points=[point(x=1.0, y=2.0)]))
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("directions", [BOTH, ("decode",), ("encode",)])
+def test_every_shipped_mapping_is_a_module(directions):
+    """In both directions, or in the one that there is."""
+    written = 0
+    for path in sorted(MAPPINGS.rglob("*.mapping")):
+        name = str(path.relative_to(MAPPINGS))
+        try:
+            request = request_of("decode", {"encoding": "yarp3"} if name.startswith("yarp/") else {}, mapping=name)
+            text = generated(request, "python", directions, "unit")["unit.py"]
+        except (MappingError, SchemaError) as error:
+            if not re.search("wire-unsaid|not-generated|no-rules", str(error)):
+                raise
+            continue
+        compile(text, name, "exec")
+        written += 1
+    assert written > 60
 
 
 def test_docs_of_a_schema_are_docs():

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from tests.random_mappings.meaning import Refused
 from tests.random_mappings.message_types import Array, Kind, Message, Scalar, some
+from tests.random_mappings.refusals import rejected
 from tests.random_mappings.relations import Part
 
 if TYPE_CHECKING:
@@ -19,7 +20,9 @@ BYTE = 256
 
 
 def demanded(relations: Relations, name: str) -> Part:
-    """A field that a rejection asks to be what is computed of another one: packing writes that."""
+    """A field that a rejection asks to be what is computed of another one: packing writes that, but not in elements."""
+    if relations.depth:
+        return rejected(relations, name)
     rng = relations.rng
     a, check = f"{name}a", f"{name}c"
     computed: list[tuple[str, Callable[[int], int]]] = [

@@ -18,6 +18,12 @@ HIGH_BYTE_FIRST = "E"
 """How the data layout of such machines begins."""
 
 
+SYSTEMS = frozenset({"none", "linux", "freebsd", "netbsd", "openbsd", "windows", "fuchsia"})
+"""What stands second in a triple whose vendor is left out."""
+FEATURES = {("riscv64", "linux"): "+m,+a,+f,+d,+c"}
+"""What every machine of a kind has by convention, which LLVM leaves to compilers: with floats in registers, as its libraries pass them."""
+
+
 class TargetError(ValueError):
     """A machine that objects cannot be made for; says why."""
 
@@ -41,12 +47,12 @@ def object_for(kernels: Mapping[str, Kernel], triple: str, cpu: str = "") -> byt
     """
     binding.initialize_all_targets()
     binding.initialize_all_asmprinters()
+    triple = _with_vendor(triple)
     try:
         target = binding.Target.from_triple(triple)
     except RuntimeError as error:
         raise TargetError(str(error)) from error
-    relocation = "static" if "-none" in triple else "pic"
-    machine = target.create_target_machine(cpu=cpu, opt=3, reloc=relocation, codemodel="small" if relocation == "pic" else "default")
+    machine = _machine(target, triple, cpu)
     if str(machine.target_data).startswith(HIGH_BYTE_FIRST):
         raise TargetError("its numbers have their high byte first")
     module = linked(_emitted(kernel, name) for name, kernel in kernels.items())
@@ -56,6 +62,20 @@ def object_for(kernels: Mapping[str, Kernel], triple: str, cpu: str = "") -> byt
     builder = binding.create_pass_builder(machine, options)
     run_passes(builder.getModulePassManager(), module, builder)
     return machine.emit_object(module)
+
+
+def _with_vendor(triple: str) -> str:
+    """A triple as LLVM reads it, which would take `linux` in ``armv7-linux-gnueabihf`` for the vendor, and pass floats otherwise."""
+    arch, *others = triple.split("-")
+    return "-".join([arch, "unknown", *others]) if others and others[0] in SYSTEMS else triple
+
+
+def _machine(target: binding.Target, triple: str, cpu: str) -> binding.TargetMachine:
+    """Code of one machine, which may lie anywhere in memory where an operating system loads it."""
+    arch, _, system = (*triple.split("-"), "", "")[:3]
+    is_bare = system == "none"
+    relocation, model = ("static", "default") if is_bare else ("pic", "small")
+    return target.create_target_machine(cpu=cpu, features=FEATURES.get((arch, system), ""), opt=3, reloc=relocation, codemodel=model)
 
 
 def _emitted(kernel: Kernel, name: str) -> str:

@@ -35,6 +35,8 @@ from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
 
 MANY_CASES = 64
+ANY_SITE = -1
+"""Stands for the site where only the indices of failures count."""
 GOLDEN = 0x9E3779B1
 """2**32 over the golden ratio: its multiples leave the numbers below 2**32 in an order without a pattern."""
 
@@ -167,18 +169,33 @@ def _is_behind_begin(at: kernel.Expr) -> bool:
 
 
 def _check(frame: Frame, holds: ir.Value, failure: kernel.Failure) -> None:
-    """Go on where the condition holds."""
-    good = _cold(frame, holds)
-    _fail(frame, (failure.site,), constant(1), expression(frame, failure.at), failure.indices)
+    """Go on where the condition holds. In a body of very many checks, those that report the same lead to one block."""
+    shared = frame.failed.shared if isinstance(frame.failed, StoredExit) else {}
+    told = _told(frame, failure.site, failure.at, *failure.indices) if isinstance(frame.failed, StoredExit) else None
+    broken = None if told is None else shared.get(told)
+    good = _cold(frame, holds, broken)
+    if broken is None:
+        if told is not None:
+            shared[told] = frame.builder.block
+        _fail(frame, (failure.site,), constant(1), expression(frame, failure.at), failure.indices)
     frame.builder.position_at_end(good)
 
 
-def _cold(frame: Frame, holds: ir.Value) -> ir.Block:
-    """Where to go on if the condition holds; the frame prints what to do else."""
-    good, cold = frame.block("good"), frame.block("broken")
+def _cold(frame: Frame, holds: ir.Value, known: ir.Block | None = None) -> ir.Block:
+    """Where to go on if the condition holds; the frame prints what to do else, unless a block is known that does it."""
+    good = frame.block("good")
+    cold = frame.block("broken") if known is None else known
     frame.builder.cbranch(holds, good, cold).set_weights(COLD)
     frame.builder.position_at_end(cold)
     return good
+
+
+def _told(frame: Frame, site: int, *numbers: kernel.Expr) -> tuple[object, ...] | None:
+    """What a failure reports, and what that is computed from; None where it is another site or another index for each caller or stretch."""
+    if frame.caller is not None or frame.stretch is not None:
+        return None
+    names = sorted(set[str]().union(*map(locals_in, numbers)))
+    return (site, numbers, *(frame.locals[each] for each in names))
 
 
 def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Value, indices: tuple[kernel.Expr, ...]) -> None:
@@ -186,24 +203,22 @@ def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Val
     while frame.caller is not None:
         frame, call = frame.caller
         sites, indices = tuple(call.sites[each - 1] for each in sites), call.indices
-    told = [_site(frame, number, sites), offset]
-    if indices and isinstance(frame.failed, StoredExit) and frame.stretch is None:
-        frame.failed.enter(frame.builder, told, _stores_indices(frame, frame.failed, indices))
+    found = [_site(frame, number, sites), offset]
+    if indices and isinstance(frame.failed, StoredExit) and (told := _told(frame, ANY_SITE, *indices)) is not None:
+        frame.failed.enter(frame.builder, found, _stores_indices(frame, frame.failed, indices, told))
     else:
-        frame.failed.enter(frame.builder, [*told, *(expression(frame, each) for each in indices)])
+        frame.failed.enter(frame.builder, [*found, *(expression(frame, each) for each in indices)])
 
 
-def _stores_indices(frame: Frame, failed: StoredExit, indices: tuple[kernel.Expr, ...]) -> ir.Block:
+def _stores_indices(frame: Frame, failed: StoredExit, indices: tuple[kernel.Expr, ...], told: tuple[object, ...]) -> ir.Block:
     """The block that stores indices on the way out: one for all failures in a round of a loop, whose indices are the same."""
-    names = sorted(set[str]().union(*map(locals_in, indices)))
-    key = (indices, *(frame.locals[each] for each in names))
-    if key not in failed.shared:
+    if told not in failed.shared:
         here, shared = frame.builder.block, frame.block("indices")
-        failed.shared[key] = shared
+        failed.shared[told] = shared
         frame.builder.position_at_end(shared)
         failed.enter_with_indices(frame.builder, [expression(frame, each) for each in indices])
         frame.builder.position_at_end(here)
-    return failed.shared[key]
+    return failed.shared[told]
 
 
 def _call(frame: Frame, call: kernel.Call) -> None:

@@ -12,7 +12,7 @@ Signals DECODE-ERROR. With a codec and an object that are used again, numbers ar
     $tell
     (unless ($begin (attempts codec #'decode-kernel data end $attempts))
       (signal-failure codec *decode-sites* end))
-    (take-message codec data 0 before)))
+    ($take codec data 0 before)))
 ;; == wire
 (defun $decode (octets into &key (end (length octets)) (codec *codec*))
   "Read a message of $wire, bytes 0 to END of a vector, and set what its messages tell of an object, which is given back.
@@ -51,7 +51,7 @@ Signals DECODE-ERROR, and changes nothing then. What arrays hold that several wi
   (declare (type codec codec))
   (setf (codec-state-most codec) most-positive-fixnum$empty)
   (fill (codec.message codec) 0)
-  (handler-case (put-message codec 0 object)
+  (handler-case ($put codec 0 object)
     (type-error (condition)
       (error 'encode-error :kind :range :path "" :detail (remove #\Newline (princ-to-string condition)))))
   $tell)

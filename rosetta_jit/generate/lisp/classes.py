@@ -69,6 +69,11 @@ class Classes:
         scope = Names(frozenset())
         return [(f"+{self.types[enum.name]}.{scope.symbol(name)}+", value) for name, value in enum.values]
 
+    def constants(self) -> list[str]:
+        """Those of all enums."""
+        enums = [each for name in self.types if isinstance(each := self.schema.types[name], Enum)]
+        return [constant for each in enums for constant, _ in self.values(each)]
+
 
 def _slots(struct: Struct) -> list[str]:
     return [*(each.name for each in struct.fields), *([UNKNOWN] if struct.option("unknown") else [])]

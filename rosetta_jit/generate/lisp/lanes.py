@@ -9,7 +9,7 @@ A lane whose element is None has no fields that have names.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING
 
@@ -26,11 +26,12 @@ OWN_WORDS = frozenset({"codec", "data", "end", "attempt"})
 
 @dataclass(slots=True)
 class Lanes:
-    """Those of a unit, hidden ones last; ``offsets`` are the constants that the printed functions need."""
+    """Those of a unit, hidden ones last; ``offsets`` are the constants that the printed functions need, ``others`` those of enums."""
 
     names: tuple[str, ...]
     all: tuple[c.Lane, ...]
     own: int
+    others: frozenset[str] = frozenset()
     offsets: dict[str, int] = field(default_factory=dict[str, int])
 
     def rows(self, lane: int) -> str:
@@ -61,7 +62,7 @@ class Lanes:
             return str(offset)
         parts = [hyphenated(each) if each[:1].isalpha() else each for each in re.split(r"[.\[\]]+", path) if each]
         name = f"+{'.'.join([*([self.names[lane]] if lane else []), *parts])}+"
-        while self.offsets.setdefault(name, offset) != offset:
+        while name in self.others or self.offsets.setdefault(name, offset) != offset:
             name = f"{name[:-1]}.+"
         return name
 
@@ -70,7 +71,7 @@ class Lanes:
         return constants() | OWN_WORDS | {word for name in self.names for word in (name, f"{name}-used")}
 
 
-def lanes_of(all_: Sequence[c.Lane], own: int) -> Lanes:
+def lanes_of(all_: Sequence[c.Lane], own: int, constants_of_enums: Iterable[str] = ()) -> Lanes:
     """Lanes as C has them, with names of Lisp."""
     names = Names(constants() | OWN_WORDS | codec_slots())
-    return Lanes(tuple(names.symbol(lane.identifier, "{}", "{}-used") for lane in all_), tuple(all_), own)
+    return Lanes(tuple(names.symbol(lane.identifier, "{}", "{}-used") for lane in all_), tuple(all_), own, frozenset(constants_of_enums))

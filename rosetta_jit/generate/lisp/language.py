@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
 from string import Template
 
 from rosetta_jit.catalogue import generate as words
@@ -17,13 +16,12 @@ from rosetta_jit.generate.lisp.lanes import Lanes, lanes_of
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.objects import Put, Take
 from rosetta_jit.generate.lisp.texts import comment, literal
-from rosetta_jit.generate.lisp.words import package_of, runtime_text
+from rosetta_jit.generate.lisp.words import API, package_of, runtime_text
 from rosetta_jit.generate.shares import changed_lanes
 from rosetta_jit.generate.unit import Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Kernel, Part, Site
 from rosetta_jit.kernel.traits import asks_host
 
-API = Path(__file__).with_name("api.lisp")
 NO_MEMORY = "the message asks for more memory than its size allows"
 SYSTEM = """\
 (asdf:defsystem "$package"
@@ -61,10 +59,11 @@ class _Source:
         self.wires = wire_symbols(self.classes, filter(None, map(wire_of, unit.kernels)))
         self.verbs = {role: f"decode-{self.wires[wire_of(role)]}" if wire_of(role) else NAMES[role] for role in unit.kernels}
         self.shares: dict[Role, str] = {}
+        self.whole: dict[str, str] = {}
         self.functions = function_symbols(self.classes, [each.name for each in unit.functions])
         longest = max(unit.kernels.values(), key=lambda each: len(each.strides))
         c = named_lanes(unit, frozenset())(longest.strides)
-        self.lanes = lanes_of(c.all, c.own)
+        self.lanes = lanes_of(c.all, c.own, self.classes.constants())
         self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.printed: dict[Role, Printed] = {role: self._kernel(role, kernel) for role, kernel in unit.kernels.items()}
 
@@ -128,12 +127,12 @@ class _Source:
         found: list[str] = []
         take, put = Take(self.classes, self.lanes, "take"), Put(self.classes, self.lanes, "put")
         if "borrow" in self.unit.kernels:
-            take.whole()
+            self.whole["take"] = take.whole()
         self.shares = {role: take.whole(self.wires[wire_of(role)], ways) for role, ways in self.unit.shares.items() if wire_of(role)}
         if take.pending:
             found.append(take.printed())
         if "encode" in self.unit.kernels:
-            put.whole()
+            self.whole["put"] = put.whole()
             found.append(put.printed())
         return found
 
@@ -153,6 +152,7 @@ class _Source:
         sections = dict(part.split("\n", 1) for part in API.read_text("utf-8").split(";; == ")[1:])
         calls_host = asks_host(self.unit.kernels.values())
         filling = {
+            **self.whole,
             "type": self.classes.types[self.unit.type],
             "codec": "*codec*" if self.unit.state else "(make-codec)",
             "tell": "(tell codec)" if calls_host else "",
@@ -212,7 +212,8 @@ def codec(lanes: Lanes, state: Sequence[tuple[str, int]] = (), more: Sequence[st
                 lines.line(str(word), name)
     included = "".join(f" ({each}-registers (apply #'registers *initial-state*))" for each in ("first", "unpack", "pack") if state)
     included += " (forget 'forget-rows)" if more else ""
-    with lines.form(f"(defstruct (codec (:include codec-state{included}) (:conc-name codec.) (:copier nil) (:predicate nil))"):
+    options = "(:conc-name codec.) (:constructor make-codec ()) (:copier nil) (:predicate nil)"
+    with lines.form(f"(defstruct (codec (:include codec-state{included}) {options})"):
         lines.line('"Memory that is kept from one message to the next. Each thread needs its own."')
         for lane in range(len(lanes.all)):
             size = lanes.stride(0) if lane == 0 else 0

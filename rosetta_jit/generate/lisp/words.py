@@ -10,6 +10,9 @@ from pathlib import Path
 from rosetta_jit.startup.dataclass import dataclass
 
 HERE = Path(__file__).parent
+API = HERE / "api.lisp"
+NAME = "[a-z][a-z0-9-]*"
+"""Of what may be called as something of a schema."""
 PARTS = ("errors", "numbers", "kernels", "texts", "objects", "decimals", "host")
 """Of the runtime, in the order in which they need each other."""
 MAX_NAME = 60
@@ -24,7 +27,11 @@ LISP_TYPES = {
 }
 """By the kernel's names; the runtime defines those of numbers."""
 
-PACKAGES = frozenset({"cl", "cl-user", "common-lisp", "common-lisp-user", "keyword", "asdf", "uiop", "sequence"})
+PACKAGES = frozenset(
+    {"cl", "cl-user", "common-lisp", "common-lisp-user", "keyword", "sequence"}
+    | {"asdf", "asdf-action", "asdf-user", "asdf-utilities", "uiop"}
+)
+"""Names of packages and of systems that SBCL has already."""
 
 
 @cache
@@ -47,13 +54,15 @@ def runtime_text() -> str:
 
 @cache
 def runtime_names() -> frozenset[str]:
-    """What the runtime defines, exports, or makes out of the names of numbers."""
-    text = runtime_text()
-    defined = re.findall(r"\((?:def[a-z-]+|:constructor) \(?(?:setf )?([^\s()]+)", text) + re.findall(r"#:([a-z0-9*+/-]+)", text)
+    """What the runtime and the functions that a program calls define, export, or make out of the names of numbers."""
+    text = f"{runtime_text()}\n{API.read_text('utf-8')}"
+    defined = re.findall(rf"\((?:def[a-z-]+|:constructor) \(?(?:setf )?({NAME})", text) + re.findall(rf"#:({NAME})", text)
+    pairs = re.findall(rf"\(define-(?:rounding|saturating) {NAME} ({NAME})", text)
     numbers = [name for name in LISP_TYPES if name != "bool"]
-    made = {f"{first}{name}{last}" for name in numbers for first, last in (("", "s"), ("append-", "s"))}
-    accessors = {f"{struct}-{slot}" for struct in ("codec-state", "failure", "site", "counter") for slot in _slots(struct)}
-    return frozenset((*defined, *numbers, *made, *accessors))
+    made = {form.format(name) for name in numbers for form in ("{}s", "append-{}s", "{}-rem", "{}-neg", "{}-abs")}
+    structs = re.findall(rf"\(defstruct \(({NAME})", text)
+    of_structs = {f"make-{struct}" for struct in structs} | {f"{struct}-{slot}" for struct in structs for slot in _slots(struct)}
+    return frozenset((*defined, *pairs, *numbers, *made, *of_structs))
 
 
 @cache
@@ -63,9 +72,11 @@ def codec_slots() -> frozenset[str]:
 
 
 def _slots(struct: str) -> list[str]:
+    """The slots of a structure: one a line with its type, or several names in a line."""
     found = re.search(rf"\(defstruct \({struct}\b.*?\n\n", runtime_text(), re.DOTALL)
     assert found is not None, struct
-    return re.findall(r"^  \(([a-z0-9-]+) ", found.group(), re.MULTILINE)
+    lines = re.findall(rf"^  (?:\(({NAME}) .*|((?:{NAME} ?)+)\))$", found.group(), re.MULTILINE)
+    return [name for one, several in lines for name in (one or several).split()]
 
 
 @dataclass(slots=True)

@@ -231,10 +231,14 @@ class Parts(Written):
             self.positions.at = outer.plus(self.positions.values[loop.variable], width)
         begin = self.positions.at
         exact, objects = dict(self.exact), dict(self.scope.objects)
+        lines = self.function.writer.lines
+        before = len(lines)
         with self.function.writer.indented(self._head(loop)):
             self._rows(loop)
             self.block(loop.body)
             self.flush()
+        if len(lines) == before + 1:
+            lines.pop()  # the loop does nothing
         self.exact, self.scope.objects = exact, objects
         self._end(holds, begin, width)
         if holds is None:

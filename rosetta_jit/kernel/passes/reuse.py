@@ -34,11 +34,14 @@ from rosetta_jit.kernel.ir import (
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.terms import type_of
-from rosetta_jit.kernel.walk import blocks_of, bound_names, expressions_of, statements, subexpressions
+from rosetta_jit.kernel.walk import blocks_of, bound_names, parts_of, statements
 from rosetta_jit.startup.dataclass import dataclass
 
 MESSAGE = -1
 """Stands for the message among the numbers of the lanes."""
+
+READS, PLAIN = (Load, Get), (Const, Local)
+"""What reads memory, and what has nothing inside."""
 
 _Known = dict[int, dict[Expr, Local]]
 """What has been read of each memory, and the locals that hold it."""
@@ -71,14 +74,12 @@ def reuse(kernel: Kernel) -> Kernel:
 
 
 def _body(body: Block, taken: set[str], written: Mapping[str, set[int]]) -> Block:
-    reads = [part for stmt, _ in statements(body) for expr in expressions_of(stmt) for part in subexpressions(expr)]
-    reads = [part for part in reads if isinstance(part, Load | Get)]
+    reads = [part for part in parts_of(stmt for stmt, _ in statements(body)) if isinstance(part, READS)]
     if len(set(reads)) == len(reads):
         return body
     names = _Names(changed_names(body), taken, written)
     named = _block(body, {}, names)
-    parts = (part for stmt, _ in statements(named) for expr in expressions_of(stmt) for part in subexpressions(expr))
-    uses = Counter(part.name for part in parts if isinstance(part, Local))
+    uses = Counter([part.name for part in parts_of(stmt for stmt, _ in statements(named)) if isinstance(part, Local)])
     return _inlined(named, {name for name in names.made if uses[name] == 1}, {})
 
 
@@ -116,10 +117,10 @@ def _statement(stmt: Stmt, known: _Known, names: _Names) -> Block:
 
 def _read(expr: Expr, known: _Known, names: _Names, lets: list[Stmt]) -> Expr:
     """An expression with names in place of what it reads."""
-    if isinstance(expr, Const | Local):
+    if isinstance(expr, PLAIN):
         return expr
     changed = with_operands(expr, lambda operand: _read(operand, known, names, lets))
-    if not isinstance(changed, Load | Get) or not names.variables.isdisjoint(locals_in(changed)):
+    if not isinstance(changed, READS) or not names.variables.isdisjoint(locals_in(changed)):
         return changed
     seen = known.setdefault(_source(changed), {})
     if changed not in seen:

@@ -8,6 +8,7 @@ is to walk all loops in it again: what can hardly hold is not tried.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 
 from rosetta_jit.kernel.arithmetic import FLOATS, limits
@@ -60,17 +61,19 @@ class Loop:
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """Where a loop begins: a mark to go back to, used lengths, and the variables that the loop changes."""
+    """Where a loop begins: a mark to go back to, used lengths, and the variables and lanes that the loop changes."""
 
     mark: int
     used: list[Linear]
     variables: dict[str, Typed]
+    lanes: set[int]
 
 
 def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
     """Walk any round of a loop, and go to the place after it, with the same guesses known."""
-    names, lanes = changed_names(loop.body), advanced_lanes(loop.body)
-    at_entry = Entry(scope.mark(), list(scope.used), {name: scope.locals[name] for name in sorted(names & scope.locals.keys())})
+    names = changed_names(loop.body)
+    variables = {name: scope.locals[name] for name in sorted(names & scope.locals.keys())}
+    at_entry = Entry(scope.mark(), list(scope.used), variables, advanced_lanes(loop.body))
     kept = [guess for guess in (*guesses(scope, names), *counted(loop, scope)) if guess not in dropped]
     while True:
         written = 0 if scope.record is None else scope.record.mark()
@@ -86,7 +89,7 @@ def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
     if scope.record is not None:
         first = [instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess), ZERO) for guess in kept]
         scope.record.owe_all(first, claims.RELATION_FIRST)
-    forget(scope, at_entry, lanes, kept)
+    forget(scope, at_entry, kept)
     assume_counted(scope, at_entry, kept, loop.count)
 
 
@@ -94,7 +97,7 @@ def _round(scope: Scope, loop: Loop, at_entry: Entry, kept: list[Guess]) -> list
     """Walk one round; returns the guesses that it breaks."""
     facts = scope.facts
     mark, first_atom = facts.mark(), len(facts.lows)
-    forget(scope, at_entry, advanced_lanes(loop.body), kept)
+    forget(scope, at_entry, kept)
     loop.enter(first_atom)
     index = linear(scope.locals[loop.variable][1]) if loop.variable else ZERO
     assume_counted(scope, at_entry, kept, index)
@@ -188,16 +191,18 @@ def guesses(scope: Scope, names: set[str]) -> list[Guess]:
 
 def counted(loop: Loop, scope: Scope) -> list[Guess]:
     """How far variables may get to which each round adds an integer of few bits, in a loop that runs no negative number of times."""
+    if not loop.variable:
+        return []
     named = {stmt.name: stmt.value for stmt in _once(loop.body) if isinstance(stmt, Let)}
-    every = [stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, Assign)]
+    often = Counter([stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, Assign)])
     found: list[Guess] = []
     for stmt in _once(loop.body):
-        added = _added(stmt.value, stmt.name, named) if isinstance(stmt, Assign) and every.count(stmt.name) == 1 else None
+        added = _added(stmt.value, stmt.name, named) if isinstance(stmt, Assign) and often[stmt.name] == 1 else None
         if added is None or not isinstance(stmt, Assign) or not _is_integer(scope.locals.get(stmt.name)):
             continue
         low, high = added
         found += [Guess(stmt.name, ROUNDS, -1, high), *([Guess(stmt.name, ROUNDS, 1, low)] if low < 0 else [])]
-    return found if loop.variable and found and scope.facts.proves(loop.count) else []
+    return found if found and scope.facts.proves(loop.count) else []
 
 
 def _is_integer(known: Typed | None) -> bool:
@@ -258,7 +263,7 @@ def _now(scope: Scope, guess: Guess) -> Linear:
     return linear(scope.locals[guess.name][1])
 
 
-def forget(scope: Scope, at_entry: Entry, lanes: set[int], kept: list[Guess]) -> None:
+def forget(scope: Scope, at_entry: Entry, kept: list[Guess]) -> None:
     """Go to the head of some round: what the loop changes is unknown but for the guesses."""
     for name, (type_, old) in at_entry.variables.items():
         if type_ == "bool" or type_ in FLOATS:
@@ -268,5 +273,5 @@ def forget(scope: Scope, at_entry: Entry, lanes: set[int], kept: list[Guess]) ->
     for guess in kept:
         if guess.anchor != ROUNDS:
             scope.facts.assume(instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess), ZERO))
-    for lane in sorted(lanes):
+    for lane in sorted(at_entry.lanes):
         scope.used[lane] = grown(scope, lane, at_entry.used[lane])

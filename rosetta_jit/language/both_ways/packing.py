@@ -181,7 +181,7 @@ class Packing:
         if conditional is not None and not fields_of(place, "wire"):
             return self.split(rule, conditional, loops)
         if not all(map(self.is_completed, missing)):
-            self.problems.append(_reason(rule, missing, place, self.known))
+            self.problems.append(_reason(replace(rule, value=wanted), missing, place, self.known, id(rule)))
         return ()
 
     def setting(self, target: Field, loops: Loops, rule: Relation) -> tuple[Rule, ...]:
@@ -372,13 +372,13 @@ def _rejects(rules: tuple[Rule, ...]) -> bool:
     return bool(rules) and all(isinstance(rule, Reject) for rule in rules)
 
 
-def _reason(rule: Relation, missing: list[Field], place: Expr, known: Knowledge) -> Diagnostic:
-    """Why a relation cannot be packed."""
-    shown = [show_expr(each) for each in missing]
+def _reason(rule: Relation, missing: list[Field], place: Expr, known: Knowledge, number: int) -> Diagnostic:
+    """Why a relation, in which what is known of the wire has been replaced, cannot be packed."""
+    shown = list(dict.fromkeys(show_expr(each) for each in missing))
     if fields_of(place, "wire"):
         return words.index_reads(fields_of(place, "wire")[0].span)
-    if len(fields_in(rule.value)) > 1:
-        return words.several_fields(rule.value.span, shown, known.unsolved.get(id(rule), ""))
+    if len(shown) > 1:
+        return words.several_fields(rule.value.span, shown, known.unsolved.get(number, ""))
     try:
         solve(rule.value, rule.place, known.type_of)
     except NoInverseError as error:

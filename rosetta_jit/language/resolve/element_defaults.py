@@ -12,7 +12,22 @@ from rosetta_jit.language.places import field_names, value_inside
 from rosetta_jit.language.resolve.defaults import ManyDefaultsError, default_rules
 from rosetta_jit.language.resolve.expressions import type_index
 from rosetta_jit.language.scope import Broken, Message, Scope, resolve_path
-from rosetta_jit.language.typed import INT64, Const, Expr, FieldStep, For, IndexStep, Local, Place, Rule, SetLength, When
+from rosetta_jit.language.typed import (
+    INT64,
+    Assign,
+    Const,
+    Default,
+    Expr,
+    FieldStep,
+    For,
+    IndexStep,
+    Local,
+    Place,
+    Rule,
+    SetLength,
+    Step,
+    When,
+)
 from rosetta_jit.language.untouched import Names
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.expr import Each, Index, Literal
@@ -76,9 +91,9 @@ def named_elements(
 
 
 def with_defaults(rules: tuple[Rule, ...], wanted: Sequence[tuple[Elements, Span | None]], scope: Scope) -> tuple[Rule, ...]:
-    """The rules, and behind each that sets the length of such an array a loop over its elements."""
+    """The rules, and behind each that sets the length of such an array a loop over its elements, unless a loop that sets them can do it."""
     try:
-        return tuple(made for rule in rules for made in _with(rule, wanted, scope.messages[scope.target], 0))
+        return in_one_loop(tuple(made for rule in rules for made in _with(rule, wanted, scope.messages[scope.target], 0)))
     except ManyDefaultsError:
         scope.problems.append(many_defaults(wanted[0][1], MAX_DEFAULTS))
         return rules
@@ -97,6 +112,53 @@ def _with(rule: Rule, wanted: Sequence[tuple[Elements, Span | None]], message: M
             return [When(condition, first, second, span)]
         case _:
             return [rule]
+
+
+def in_one_loop(rules: tuple[Rule, ...]) -> tuple[Rule, ...]:
+    """The rules, with loops that only leave fields of elements alone within those that set other fields of the same elements."""
+    within = dict[int, list[For["Rule", "Expr"]]]()
+    for rule in rules:
+        array = _left_alone(rule)
+        if isinstance(rule, For) and array is not None:
+            loop = next((each for each in rules if isinstance(each, For) and _sets(each, array) and each.stop == rule.stop), None)
+            within.setdefault(id(loop), []).extend([rule] if loop is not None else [])
+    joined = {id(each) for found in within.values() for each in found}
+    return tuple(
+        replace(rule, body=(*rule.body, *(_renamed(each, rule.variable) for loop in within.get(id(rule), ()) for each in loop.body)))
+        if isinstance(rule, For)
+        else rule
+        for rule in rules
+        if id(rule) not in joined
+    )
+
+
+def _left_alone(rule: Rule) -> tuple[Step, ...] | None:
+    """The array of whose elements a loop does nothing but leave fields alone, each element in turn."""
+    match rule:
+        case For(variable, Const(0), _, body, kept=None) if body and all(isinstance(each, Default) for each in body):
+            arrays = {_array(each.place, variable) for each in body if isinstance(each, Default)}
+            return arrays.pop() if len(arrays) == 1 else None
+        case _:
+            return None
+
+
+def _sets(loop: For[Rule, Expr], array: tuple[Step, ...]) -> bool:
+    """Whether a loop sets something of each element of an array in turn."""
+    places = [each.place for each in loop.body if isinstance(each, Assign)]
+    return loop.kept is None and loop.start == Const(0, INT64) and any(_array(place, loop.variable) == array for place in places)
+
+
+def _array(place: Place, variable: str) -> tuple[Step, ...] | None:
+    """The way to an array one of whose elements is chosen by a loop's variable, which is the only index of the place."""
+    indices = [number for number, step in enumerate(place.steps) if isinstance(step, IndexStep)]
+    return place.steps[: indices[0]] if len(indices) == 1 and place.steps[indices[0]] == IndexStep(Local(variable)) else None
+
+
+def _renamed(rule: Rule, variable: str) -> Rule:
+    """A field of an element left alone in a loop with another variable."""
+    assert isinstance(rule, Default)
+    steps = (IndexStep(Local(variable, counts=True)) if isinstance(step, IndexStep) else step for step in rule.place.steps)
+    return replace(rule, place=replace(rule.place, steps=tuple(steps)))
 
 
 def _loop(array: Place, length: Expr, fields: Sequence[tuple[Names, Span | None]], message: Message, depth: int) -> Rule:

@@ -54,7 +54,7 @@ def write_message(writer: Writer, fields: HolderFields, tagged: Tagged, lengths:
 
 
 def _write_unknown(writer: Writer, fields: HolderFields) -> None:
-    """The fields that reading did not know, as they came."""
+    """The fields that reading did not know, as they came. Mostly there are none; to call what copies nothing costs as much as a field."""
     row = fields.cell.slot
     if not isinstance(row, Row) or row.unknown is None:
         return
@@ -62,7 +62,8 @@ def _write_unknown(writer: Writer, fields: HolderFields) -> None:
     start, size = fields.read_span(fields.find((UNKNOWN,)), where)
     writer.require(size, where, "no room for the message")
     if writer.direction == "encode":
-        writer.emit(ir.Copy(ir.Wire(writer.position), ir.Place(row.unknown.lane, start), size))
+        copied = ir.Copy(ir.Wire(writer.position), ir.Place(row.unknown.lane, start), size)
+        writer.emit(ir.If(ir.Compare("gt", size, index(0)), (copied,)))
     writer.advance(size)
 
 

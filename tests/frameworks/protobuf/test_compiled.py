@@ -164,6 +164,14 @@ def decoded(decode, message):
         return error
 
 
+def test_unknown_fields_are_copied_where_there_are_any():
+    """A call that copies nothing costs as much as a field."""
+    schema = {"m.proto": 'syntax = "proto3"; message M { int32 x = 1; }'}
+    lines = rj.Encoder.of("M", encoding="protobuf", schema=schema).stage("kernel").splitlines()
+    (at,) = (number for number, line in enumerate(lines) if line.strip().startswith("copy [") and "lane 1[" in line)
+    assert lines[at - 1].strip().startswith("if (")
+
+
 def test_fields_in_any_order_unknown_ones_and_merges():
     inner = "message P { optional int32 x = 1; repeated int32 y = 2; }"
     outer = "message M { optional P p = 1; repeated int32 n = 2; optional string s = 3; }"

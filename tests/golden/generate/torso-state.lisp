@@ -31,7 +31,11 @@
 (defconstant +unknown.start+ 0)
 (defconstant +unknown.count+ 8)
 
-(defstruct (codec (:include codec-state) (:conc-name codec.) (:copier nil) (:predicate nil))
+(defstruct (codec (:include codec-state)
+                  (:conc-name codec.)
+                  (:constructor make-codec ())
+                  (:copier nil)
+                  (:predicate nil))
   "Memory that is kept from one message to the next. Each thread needs its own."
   (message (make-array 32 :element-type 'u8) :type octets)
   (unknown (make-array 0 :element-type 'u8) :type octets)
@@ -78,8 +82,8 @@
     (site :tag "" "must be one of 266, 256" "")))
 
 (defun decode-kernel (codec data end attempt)
-  (declare (optimize (speed 1) (safety 0) (debug 0)) (type codec codec) (type octets data) (type i64 end)
-           (type fixnum attempt) (ignorable codec data end attempt))
+  (declare (optimize (speed 1) (safety 0) (debug 0) (compilation-speed 2)) (type codec codec) (type octets data)
+           (type i64 end) (type fixnum attempt) (ignorable codec data end attempt))
   (labels
       ((decode-1 ()
          (let* ((message (codec.message codec))
@@ -191,8 +195,8 @@
     (site :rejected "" "`len(.angles)` is not `3`, as the mapping says" "torso_state.mapping:10:3")))
 
 (defun encode-kernel (codec data end attempt)
-  (declare (optimize (speed 1) (safety 0) (debug 0)) (type codec codec) (type octets data) (type i64 end)
-           (type fixnum attempt) (ignorable codec data end attempt))
+  (declare (optimize (speed 1) (safety 0) (debug 0) (compilation-speed 2)) (type codec codec) (type octets data)
+           (type i64 end) (type fixnum attempt) (ignorable codec data end attempt))
   (labels
       ((encode-1 ()
          (let* ((message (codec.message codec))
@@ -243,8 +247,8 @@
     (site :length ".angles" "the holder is damaged" "")))
 
 (defun size-kernel (codec data end attempt)
-  (declare (optimize (speed 1) (safety 0) (debug 0)) (type codec codec) (type octets data) (type i64 end)
-           (type fixnum attempt) (ignorable codec data end attempt))
+  (declare (optimize (speed 1) (safety 0) (debug 0) (compilation-speed 2)) (type codec codec) (type octets data)
+           (type i64 end) (type fixnum attempt) (ignorable codec data end attempt))
   (labels
       ((size-1 ()
          (let* ((message (codec.message codec))
