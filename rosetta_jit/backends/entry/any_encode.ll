@@ -1,10 +1,11 @@
-; encode(holder, buffer, offset) -> the offset behind what was written; encode(object) of the class that word 9 of the context leads to, behind which
+; encode(holder, buffer, offset = 0) -> the offset behind what was written; encode(object) of the class that word 9 of the context leads to, behind which
 ; lie what is called for it and what calls that; whatever else is left to the slow path.
 define ptr @any_call(ptr %self, ptr %args, i64 %nargsf, ptr %names) noinline {
   %view = alloca [80 x i8], align 8
   %context = call ptr @context(ptr %self)
   %count = call i64 @positional(i64 %nargsf, ptr %names)
   switch i64 %count, label %slow [ i64 3, label %holder
+                                   i64 2, label %holder
                                    i64 1, label %object ]
 object:
   %others.at = getelementptr ptr, ptr %context, i64 9
@@ -31,16 +32,20 @@ holder:
   %mine = icmp ne ptr %state, null
   br i1 %mine, label %into, label %slow, !prof !0
 into:
+  %somewhere = icmp eq i64 %count, 3
+  br i1 %somewhere, label %place, label %target
+place:
   %offset.at = getelementptr ptr, ptr %args, i64 2
   %offset.object = load ptr, ptr %offset.at
-  %offset = call i64 @PyLong_AsSsize_t(ptr %offset.object)
-  %positive = icmp sge i64 %offset, 0
+  %asked = call i64 @PyLong_AsSsize_t(ptr %offset.object)
+  %positive = icmp sge i64 %asked, 0
   br i1 %positive, label %target, label %negative, !prof !0
 negative:
   %error = call ptr @PyErr_Occurred()
   %clean = icmp eq ptr %error, null
   br i1 %clean, label %slow, label %raise
 target:
+  %offset = phi i64 [ 0, %into ], [ %asked, %place ]
   %target.at = getelementptr ptr, ptr %args, i64 1
   %target.object = load ptr, ptr %target.at
   ; PyBUF_WRITABLE
