@@ -1,4 +1,4 @@
-"""The nodes that kernels are made of: scalars, expressions, statements. What each of them means `rosetta_jit.kernel.ir` says, on one page."""
+"""The nodes that kernels are made of: scalars, expressions, statements. `rosetta_jit.kernel.ir` says what each of them means."""
 
 from __future__ import annotations
 
