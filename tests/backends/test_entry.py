@@ -199,7 +199,7 @@ def test_encodes(count):
     assert space == bytes(7) + expected + bytes(493 - len(expected))
 
 
-@pytest.mark.parametrize("arguments", [(), (bytearray(100), 0)])
+@pytest.mark.parametrize("arguments", [(), (bytearray(100),), (bytearray(100), 0)])
 def test_a_holder_in_use_is_not_encoded(arguments):
     encode = encoder()
     assert encode(encode.holder, *arguments) != "slow"
@@ -209,7 +209,7 @@ def test_a_holder_in_use_is_not_encoded(arguments):
 
 def test_only_valid_holders_of_the_type_are_encoded():
     encode = encoder()
-    assert encode(object()) == encode(5) == encode() == encode(encode.holder, 5) == "slow"
+    assert encode(object()) == encode(5) == encode() == encode(encode.holder, bytearray(100), 0, 5) == "slow"
     encode.rows.state[VALID] = 0
     assert encode(encode.holder) == "slow"
     encode.rows.state[VALID] = 1
@@ -220,8 +220,11 @@ def test_only_valid_holders_of_the_type_are_encoded():
 
 def test_encoding_into_what_does_not_take_it():
     encode = encoder()
-    with pytest.raises(BufferError, match="writable"):
-        encode(encode.holder, bytes(100), 0)
+    for offset in ((), (0,)):
+        with pytest.raises(BufferError, match="writable"):
+            encode(encode.holder, bytes(100), *offset)
+        with pytest.raises(TypeError):
+            encode(encode.holder, 5, *offset)
     with pytest.raises(TypeError):
         encode(encode.holder, bytearray(100), "0")
     with pytest.raises(OverflowError):
