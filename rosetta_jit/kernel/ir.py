@@ -76,6 +76,7 @@ of a batch are added to the rows before. A kernel for one of several wires fills
 it **keeps**, lane 0 first of all, have the used lengths of the state then, too.
 """
 
+# pyright: reportUnusedImport=false
 from __future__ import annotations
 
 from rosetta_jit.kernel.nodes import (
