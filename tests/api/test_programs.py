@@ -8,7 +8,6 @@ import subprocess
 import sys
 import threading
 import weakref
-from functools import partial
 
 import numpy as np
 import pytest
@@ -423,27 +422,3 @@ print(len(made), len({each.holder_type for each in made}))
 def test_threads_of_a_new_process_make_programs_at_once(_round):
     ended = subprocess.run([sys.executable, "-c", AT_ONCE], check=False, capture_output=True, text=True)
     assert (ended.stdout.strip(), ended.stderr) == ("6 3", "")
-
-
-@pytest.mark.parametrize("backend", [None, "numba"])
-def test_calls_that_run_no_python(backend):
-    """What is usual is compiled from the call to its result, in each of its forms."""
-    encode, decode = (made.of("geometry_msgs/Point", encoding="ros1", backend=backend) for made in (rj.Encoder, rj.Decoder))
-    holder, own = encode.holder_type(x=1.0), decode.holder_type()
-    message, buffer = encode(holder), bytearray(30)
-    run: list[str] = []
-    for call in (
-        partial(encode, holder),
-        partial(encode, holder, buffer),
-        partial(encode, holder, buffer, 3),
-        partial(encode.into, holder, buffer),
-        partial(encode.into, holder, buffer, 3),
-        partial(decode, message),
-        partial(decode, message, own),
-        partial(decode.into, message, own),
-    ):
-        call()
-        sys.setprofile(lambda frame, event, _: run.append(frame.f_code.co_qualname) if event == "call" else None)
-        call()
-        sys.setprofile(None)
-    assert run == []
