@@ -98,7 +98,7 @@ class Collector:
         self._batch: Batch | None = None
         self._filling: Filling | None = None
         self._rows = np.empty((4, MESSAGES), np.int64)
-        self._spans = MessageSpans(self._rows[0], self._rows[1])
+        self._spans = MessageSpans(self._rows[0], self._rows[1], self._rows.strides[0])
         self._bytes = 0
         self._refused: dict[int, Refused] = {}
 

@@ -70,8 +70,8 @@ class EncoderBase(Program):
         def into(self):
             """``into(holder, buffer, offset=0)`` writes a message into a buffer; returns the offset behind it.
 
-            It is the same as `builtin`, and costs no more than a call of the encoder. Where it fails, a part of the message may stand in
-            the buffer.
+            It is the same as `builtin`, so that it costs no more than a call of the encoder, and returns the message itself where no buffer
+            is given. Where it fails, a part of the message may stand in the buffer.
 
             Raises
             ------

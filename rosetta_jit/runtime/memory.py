@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -35,15 +35,16 @@ def aligned(size: int, alignment: int = ALIGNMENT) -> int:
 
 def address_of(memory: NDArray[Any]) -> int:
     """Where an array of ours lies, which has elements and can be written: numpy takes six times as long to say it."""
-    return ctypes.addressof(ctypes.c_char.from_buffer(cast("Any", memory)))
+    writable: Any = memory
+    return ctypes.addressof(ctypes.c_char.from_buffer(writable))
 
 
 def pointer_to(memory: NDArray[np.uint8]) -> int | bytes:
     """Where bytes lie, as ctypes takes it for a ``c_void_p``: it takes a bytes object itself, much sooner than numpy says an address."""
-    base = cast("Any", memory.base)
+    base: Any = memory.base
     if type(base) is memoryview and type(base.obj) is bytes and len(base.obj) == memory.size:
         return base.obj
-    return memory.ctypes.data
+    return address_of(memory) if memory.size and memory.flags.writeable else memory.ctypes.data
 
 
 def aligned_bytes(size: int) -> NDArray[np.uint8]:

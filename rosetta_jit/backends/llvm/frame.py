@@ -41,6 +41,9 @@ MESSAGE = (-1, 0)
 REGISTER = -2
 """In the place of a lane, the registers, which are loaded at the start, too."""
 
+LIMIT = -3
+"""The same for where bytes of a size can begin."""
+
 CROWDED, CROWDED_DECODER = 64, 24
 """Lanes from which on an encoder, and a decoder, keeps what it knows of them in memory. A decoder has their used lengths to keep, too."""
 
@@ -187,6 +190,17 @@ class Frame:
         if MESSAGE not in self.loaded:
             self.loaded[MESSAGE] = self.entry.gep(self.parameters.buffer, [self.parameters.begin], source_etype=I8, name="message")
         return self.loaded[MESSAGE]
+
+    def limit(self, size: int) -> ir.Value:
+        """What the places stay below from which on the message has so many bytes, without a sign: 0 where it has not as many at all."""
+        if size == 1:
+            return self.parameters.end
+        key = (LIMIT, size)
+        if key not in self.loaded:
+            limit = self.entry.sub(self.parameters.end, constant(size - 1))
+            has_any = self.entry.icmp_signed(">", limit, constant(0))
+            self.loaded[key] = self.entry.select(has_any, limit, constant(0))
+        return self.loaded[key]
 
     def based(self, what: tuple[object, ir.Value], made: Callable[[], ir.Value]) -> ir.Value:
         """An address that depends on a value: made once in a block for a value of which there is but one."""

@@ -146,13 +146,14 @@ def _nested(frame: Frame, statement: kernel.For | kernel.While | kernel.If | ker
 def _require(frame: Frame, at: kernel.Expr, size: kernel.Expr, failure: kernel.Failure) -> None:
     """Check ``at >= 0``, ``size >= 0`` and ``size <= end - at``: a difference that cannot wrap where the first holds.
 
-    For one byte that is one comparison without signs, since `end` is not negative.
+    Of a size that is known that is one comparison without signs.
     """
     builder = frame.builder
-    start, length = expression(frame, at), expression(frame, size)
-    if size == kernel.Const("i64", 1):
-        _check(frame, builder.icmp_unsigned("<", start, frame.parameters.end), failure)
+    start = expression(frame, at)
+    if isinstance(size, kernel.Const) and not _is_behind_begin(at):
+        _check(frame, builder.icmp_unsigned("<", start, frame.limit(int(size.value))), failure)
         return
+    length = expression(frame, size)
     holds = builder.icmp_signed("<=", length, builder.sub(frame.parameters.end, start))
     for value, is_positive in ((start, _is_behind_begin(at)), (length, isinstance(size, kernel.Const))):
         if not is_positive:

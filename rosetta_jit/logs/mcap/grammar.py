@@ -20,6 +20,9 @@ STATISTICS, DATA_END = 0x0B, 0x0F
 PREFIX = struct.Struct("<BQ")
 """Opcode and length of each record."""
 
+CONTENT = struct.Struct("<16xQI")
+"""Of a chunk: its size before it was compressed, and its checksum, behind the times of its messages."""
+
 KINDS: dict[int, Kind] = {
     0: "damaged",
     FOOTER: "end",
@@ -88,8 +91,8 @@ class McapGrammar:
 
     def packed(self, record: memoryview) -> Packed:
         fields = Fields(record, PREFIX.size)
-        fields.view(16)
-        size, crc, compression, promised = fields.u64(), fields.u32(), fields.text(), fields.u64()
+        size, crc = fields.some(CONTENT)
+        compression, promised = fields.text(), fields.u64()
         return Packed(compression, size, fields.view(min(promised, fields.left)), crc or None)
 
     def knows(self, channel: int) -> bool:

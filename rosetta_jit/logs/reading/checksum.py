@@ -13,6 +13,7 @@ import numpy as np
 from rosetta_jit.logs.reading.walking import library_of
 from rosetta_jit.runtime.code.native import Library
 from rosetta_jit.runtime.code.processor import carryless_bits
+from rosetta_jit.runtime.memory import address_of, pointer_to
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ class Fold:
     """A compiled function, which runs without the interpreter lock, and the bytes that it takes at a time."""
 
     block: int
-    run: Callable[[int, int, int, int], None]
+    run: Callable[[int | bytes, int, int, int], None]
 
 
 def crc32(data: NDArray[np.uint8]) -> int:
@@ -45,7 +46,7 @@ def crc32(data: NDArray[np.uint8]) -> int:
         return zlib.crc32(data.data)
     assert data.flags.c_contiguous
     blocks, rest = data.size // fold.block, np.empty(16, np.uint8)
-    fold.run(data.ctypes.data, blocks, CONSTANTS.ctypes.data, rest.ctypes.data)
+    fold.run(pointer_to(data), blocks, address_of(CONSTANTS), address_of(rest))
     return zlib.crc32(data[blocks * fold.block :].data, zlib.crc32(rest.data, ALL_ONES))  # zlib's register is empty when it is given ones
 
 

@@ -11,7 +11,6 @@ writer was killed, or one whose index lies.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias
 
 import numpy as np
@@ -131,7 +130,8 @@ class Records:
                 own = range(segment.at, segments[chosen.stop].at if chosen.stop < len(segments) else end)
                 blocks = self._region(self._true_place(segments[: each.number]), end, wanted, scratch, own)
             del content  # its memory is free when its messages are read
-            yield from (replace(block, piece=each.number) for block in blocks)
+            for block in blocks:
+                yield Block(block.data, block.rows, each.number)
             if not each.is_true:
                 return
 
@@ -253,7 +253,7 @@ class Records:
     def _unpacked(self, sealed: Packed | Content, at: int, scratch: Scratch) -> Content:
         """The content of a chunk, with its first messages."""
         content = unpacked(sealed, self._storage.name, at, scratch, check=self._check)
-        return replace(content, walked=walk(self._grammar.walk, content.data, 0)) if content.data.size else content
+        return Content(content.data, content.problem, walk(self._grammar.walk, content.data, 0)) if content.data.size else content
 
     def _sealed(self, record: memoryview, at: int) -> Packed | Content:
         """What a chunk says of its content."""

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import bz2
 from collections.abc import Callable
+from functools import cache
+from importlib import import_module
 from sys import getrefcount
 from threading import Lock, local
 from typing import TYPE_CHECKING, Any
@@ -62,9 +64,8 @@ class Scratch:
 
 def _unused(memory: list[Bytes], size: int) -> Bytes:
     """The first of some memory that is large enough, and which no array and no view shows; else memory anew. What is too small goes."""
-    unused = _references([np.empty(0, np.uint8)], 0)
     for number in range(len(memory)):
-        if _references(memory, number) == unused:
+        if _references(memory, number) == _UNUSED:
             if memory[number].size >= size:
                 return memory[number][:size]
             del memory[number]
@@ -76,6 +77,9 @@ def _unused(memory: list[Bytes], size: int) -> Bytes:
 def _references(memory: list[Bytes], number: int) -> int:
     """How many objects refer to an array of a list: the list, every view of the array, and the call that counts."""
     return getrefcount(memory[number])
+
+
+_UNUSED = _references([np.empty(0, np.uint8)], 0)
 
 
 def decompressed(name: str, compression: str, body: memoryview, size: int, scratch: Scratch) -> tuple[Bytes, str]:
@@ -155,12 +159,13 @@ def _pieces(new: Callable[[], Any], body: memoryview, size: int, errors: tuple[t
 
 
 def _package(module: str, name: str) -> Any:
-    from importlib import import_module
-
     try:
-        return import_module(module)
+        return _imported(module)
     except ImportError:
         raise LogError((words.needs(name, module.partition(".")[0], "logs"),)) from None
+
+
+_imported = cache(import_module)
 
 
 _STREAMS = {"zstd": _zstd, "lz4": _lz4, "bz2": _bz2}

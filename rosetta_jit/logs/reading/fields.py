@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Iterator
+from struct import Struct
+from typing import Any
+
+U16, U32, U64 = Struct("<H"), Struct("<I"), Struct("<Q")
 
 
 class Fields:
@@ -23,23 +26,23 @@ class Fields:
 
     def view(self, size: int) -> memoryview:
         """The same, not copied."""
-        if not 0 <= size <= self.left:
+        if not 0 <= size <= len(self._data) - self.at:
             raise ValueError(f"{size} bytes are promised, and {self.left} are left")
         self.at += size
         return self._data[self.at - size : self.at]
 
-    def number(self, form: str) -> int:
-        """An integer, in a form of `struct`."""
-        return int(struct.unpack(form, self.view(struct.calcsize(form)))[0])
+    def some(self, form: Struct) -> tuple[Any, ...]:
+        """Several values of fixed size."""
+        return form.unpack(self.view(form.size))
 
     def u16(self) -> int:
-        return self.number("<H")
+        return self.some(U16)[0]
 
     def u32(self) -> int:
-        return self.number("<I")
+        return self.some(U32)[0]
 
     def u64(self) -> int:
-        return self.number("<Q")
+        return self.some(U64)[0]
 
     def text(self) -> str:
         """A length of 32 bits and that many bytes of UTF-8; a byte that is none becomes a replacement character."""

@@ -19,6 +19,7 @@ import numpy as np
 from rosetta_jit.runtime.cache.texts import kept
 from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.native import Library
+from rosetta_jit.runtime.memory import address_of, pointer_to
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -103,8 +104,9 @@ def walk(records: Literal["mcap", "lcm", "bag"], data: NDArray[np.uint8], at: in
     state = np.array([at, 0, 0, seed], np.uint64)
     room = min(ROOM, (data.size - at) // _LEAST[records] + 1)
     rows = _rows(room)
-    count = _function(records)(data.ctypes.data, data.size, state.ctypes.data, rows.ctypes.data, room)
-    return Rows.of(rows[:, :count].copy()), Stop(int(state[0]), Why(int(state[1])), int(state[2]))
+    count = _function(records)(pointer_to(data), data.size, address_of(state), address_of(rows), room)
+    at, why, size = map(int, state[:3].tolist())
+    return Rows.of(rows[:, :count].copy()), Stop(at, Why(why), size)
 
 
 _SCRATCH = threading.local()

@@ -57,7 +57,12 @@ def read_length(writer: Writer, where: Where, stop: Expr) -> Local:
 
 
 def _read_size(writer: Writer) -> Contract:
-    return _first_byte(writer, lambda _, at: writer.call("read_long_size", _read_long_size, (at,), MESSAGE))
+    """As of any varint: lengths of two bytes are common, too."""
+    return _first_byte(writer, lambda _, at: writer.call("read_size_of_two_bytes", _read_size_of_two, (at,), MESSAGE))
+
+
+def _read_size_of_two(writer: Writer) -> Contract:
+    return _two_bytes(writer, lambda at: writer.call("read_long_size", _read_long_size, (at,), MESSAGE))
 
 
 def _read_long_size(writer: Writer) -> Contract:
@@ -83,11 +88,15 @@ def _read(writer: Writer) -> Contract:
 
 
 def _read_two(writer: Writer) -> Contract:
-    """A varint of two bytes, or of more."""
+    return _two_bytes(writer, lambda at: writer.call("read_long_varint", _read_long, (at,), MESSAGE))
+
+
+def _two_bytes(writer: Writer, further: Callable[[Local], tuple[Local, ...]]) -> Contract:
+    """Two bytes, or what begins at a place."""
     at = writer.parameter("at", "i64")
     writer.position = at
     first = writer.let("byte", writer.load("u8", MESSAGE))
-    value, after = _second(writer, first, lambda: writer.call("read_long_varint", _read_long, (at,), MESSAGE))
+    value, after = _second(writer, first, lambda: further(at))
     return Contract((at,), (value, after), writer.within(at), writer.behind(at, after))
 
 
