@@ -12,8 +12,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from rosetta_jit.errors import MissingPackage
+from rosetta_jit.logs.decoded_parts import CLOCKS
 from rosetta_jit.logs.moments import nanoseconds
-from rosetta_jit.logs.parts import CLOCKS
 from rosetta_jit.logs.shares import Reading, Share, paths_of, shares_of
 
 try:

@@ -117,13 +117,31 @@ MAY_IMPORT = {
     | {"runtime.holder.objects", "runtime.attributes", "runtime.looks", "runtime.limits"}
     | {
         f"runtime.{module}"
-        for module in ("callable", "cells", "columns", "contents", "lanes", "locks", "memory", "plan", "row_counts", "specs")
+        for module in (
+            "callable",
+            "cells",
+            "columns",
+            "pickled_lanes",
+            "lanes",
+            "locks",
+            "memory",
+            "memory_plan",
+            "row_counts",
+            "type_specs",
+        )
     },
     "runtime.holder.objects": REPORTS
-    | {"model.types", "runtime.attributes", "runtime.limits", "runtime.callable", "runtime.specs", "runtime.holder"},
+    | {"model.types", "runtime.attributes", "runtime.limits", "runtime.callable", "runtime.type_specs", "runtime.holder"},
     "runtime.attributes": REPORTS
     | {"model.types", "model.layout", "kernel.state", "runtime.limits", "runtime.code", "runtime.cache"}
-    | {"runtime.callable", "runtime.cells", "runtime.plan", "runtime.specs", "runtime.holder.record", "runtime.holder.objects.in_c"},
+    | {
+        "runtime.callable",
+        "runtime.cells",
+        "runtime.memory_plan",
+        "runtime.type_specs",
+        "runtime.holder.record",
+        "runtime.holder.objects.in_c",
+    },
     "runtime.looks": HOLDERS | {"runtime.limits", "runtime.holder"},
     "runtime.arrow": HOLDERS | {"runtime.holder"} | {f"runtime.{module}" for module in ("cells", "lanes", "memory_for_arrow", "rows")},
     "runtime.limits": set(),
@@ -273,7 +291,7 @@ def test_readers_of_logs_know_no_compiler():
         "logs.log",
         "logs.file",
         "logs.channel",
-        "logs.parts",
+        "logs.decoded_parts",
         "logs.tables",
         "logs.converting",
     }

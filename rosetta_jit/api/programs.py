@@ -130,7 +130,7 @@ class Decoder(_Made, DecoderBase):
         self._refuse_state()
         imported("rosetta_jit.in_numba.calling")
         from rosetta_jit.in_numba.calling import callable_kernel
-        from rosetta_jit.in_numba.taking import Program
+        from rosetta_jit.in_numba.ownership import Program
 
         build = _build(replace(self._request, borrow=False))
         tell = self._tell if build.header["asks_host"] else None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.suggestions import closest
 from rosetta_jit.diagnostics import Diagnostic, error
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.spelling import shorten
+from rosetta_jit.catalogue.suggestions import shorten
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Span

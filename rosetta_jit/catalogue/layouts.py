@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from rosetta_jit.catalogue.habits import for_function
 from rosetta_jit.catalogue.mapping import shorten
-from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.suggestions import closest
 from rosetta_jit.diagnostics import Diagnostic, Mistake, error
 from rosetta_jit.source import Span
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import replace
 
-from rosetta_jit.catalogue.spelling import closest, shorten
+from rosetta_jit.catalogue.suggestions import closest, shorten
 from rosetta_jit.catalogue.unexpected import instead
 from rosetta_jit.diagnostics import Diagnostic, Mistake, error, warning
 from rosetta_jit.source import Span

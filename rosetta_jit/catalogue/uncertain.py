@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.catalogue.spelling import shorten
+from rosetta_jit.catalogue.suggestions import shorten
 
 
 def unknown_object(path: str, value: object) -> str:

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import habits
-from rosetta_jit.catalogue.spelling import closest, shorten
+from rosetta_jit.catalogue.suggestions import closest, shorten
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -124,7 +124,7 @@ def _misplaced(arguments: argparse.Namespace, kind: Kind) -> list[str]:
 
 def _options(arguments: argparse.Namespace) -> dict[str, Any]:
     """How tables are to look."""
-    from rosetta_jit.logs.parts import CLOCKS
+    from rosetta_jit.logs.decoded_parts import CLOCKS
 
     options: dict[str, Any] = {"flatten": arguments.flatten}
     options |= {"clocks": (*CLOCKS, "header_time")} if arguments.header_time else {}

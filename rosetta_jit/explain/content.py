@@ -18,8 +18,8 @@ from rosetta_jit.errors import ReportError
 from rosetta_jit.explain.cost import Cost, cost_of
 from rosetta_jit.explain.limits import MAX_RULES
 from rosetta_jit.explain.lines import Line, Lines
-from rosetta_jit.explain.nodes import nodes
 from rosetta_jit.explain.rows import Row, rows
+from rosetta_jit.explain.walk import nodes
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.mapping import Checked, check

@@ -15,7 +15,7 @@ from types import MappingProxyType
 from typing import assert_never
 
 from rosetta_jit.explain.counts import count_text, factored, named_counts
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.terms import END, type_of
 from rosetta_jit.kernel.walk import operands
 from rosetta_jit.startup.dataclass import dataclass
@@ -87,98 +87,98 @@ class _Counter:
 
     names: Mapping[str, str]
     routines: Mapping[str, Cost]
-    values: dict[str, ir.Expr] = field(default_factory=dict[str, "ir.Expr"])
+    values: dict[str, nodes.Expr] = field(default_factory=dict[str, "nodes.Expr"])
 
-    def block(self, block: ir.Block) -> Cost:
+    def block(self, block: nodes.Block) -> Cost:
         return _sum(map(self.statement, block))
 
-    def statement(self, stmt: ir.Stmt) -> Cost:
+    def statement(self, stmt: nodes.Stmt) -> Cost:
         match stmt:
-            case ir.Require(at, size):
+            case nodes.Require(at, size):
                 return plus(Cost(checks=1), plus(self.place(at), self.place(size)))
-            case ir.Expect(condition):
+            case nodes.Expect(condition):
                 return plus(Cost(checks=1), replace(self.value(condition), operations=0))
-            case ir.Let(name, value):
+            case nodes.Let(name, value):
                 self.values[name] = value
                 return self.value(value)
-            case ir.Var(_, value) | ir.Assign(_, value):
+            case nodes.Var(_, value) | nodes.Assign(_, value):
                 return self.value(value)
-            case ir.Store(at, value):
-                return _sum((self.place(at), self.value(value), Cost(written=ir.WIDTH[type_of(value)])))
-            case ir.SetField(place, value):
-                return _sum((self.address(place), self.value(value), Cost(written=ir.WIDTH[type_of(value)])))
-            case ir.Copy(target, source, size):
+            case nodes.Store(at, value):
+                return _sum((self.place(at), self.value(value), Cost(written=nodes.WIDTH[type_of(value)])))
+            case nodes.SetField(place, value):
+                return _sum((self.address(place), self.value(value), Cost(written=nodes.WIDTH[type_of(value)])))
+            case nodes.Copy(target, source, size):
                 return _sum((self.address(target), self.address(source), self.stretch(size, Cost(read=1, written=1))))
-            case ir.Fill(target, size):
+            case nodes.Fill(target, size):
                 return plus(self.address(target), self.stretch(size, Cost(written=1)))
-            case ir.Reserve() | ir.Advance() | ir.Return():
+            case nodes.Reserve() | nodes.Advance() | nodes.Return():
                 return FREE
-            case ir.Call(routine):
+            case nodes.Call(routine):
                 return self.routines.get(routine, FREE)
-            case ir.HostCall(_, arguments):
+            case nodes.HostCall(_, arguments):
                 return _sum((Cost(operations=1, checks=1), *map(self.value, arguments)))
-            case ir.For() | ir.While() | ir.If() | ir.Switch():
+            case nodes.For() | nodes.While() | nodes.If() | nodes.Switch():
                 return self.nest(stmt)
             case _:
                 assert_never(stmt)
 
-    def nest(self, stmt: ir.Nest) -> Cost:
+    def nest(self, stmt: nodes.Nest) -> Cost:
         match stmt:
-            case ir.For(_, count, body):
+            case nodes.For(_, count, body):
                 return self.times(count, self.block(body))
-            case ir.While(condition, body):
+            case nodes.While(condition, body):
                 rounds = count_text(_bound(condition), self.values, self.names)
                 return Cost(repeated=(Repeated(rounds, plus(self.value(condition), self.block(body))),))
-            case ir.If(condition, then, otherwise):
+            case nodes.If(condition, then, otherwise):
                 return plus(self.value(condition), _dearest((self.block(then), self.block(otherwise))))
-            case ir.Switch(value, cases, default):
+            case nodes.Switch(value, cases, default):
                 return plus(self.value(value), _dearest((*(self.block(block) for _, block in cases), self.block(default))))
             case _:
                 assert_never(stmt)
 
-    def times(self, count: ir.Expr, cost: Cost) -> Cost:
+    def times(self, count: nodes.Expr, cost: Cost) -> Cost:
         """A cost so many times; a known number of times it is multiplied."""
         count, factor = factored(count, self.values)
         cost = _scaled(cost, factor)
-        if isinstance(count, ir.Const):
+        if isinstance(count, nodes.Const):
             return _scaled(cost, int(count.value))
         return Cost(repeated=(Repeated(count_text(count, self.values, self.names), cost),)) if cost != FREE else FREE
 
-    def stretch(self, size: ir.Expr, byte: Cost) -> Cost:
+    def stretch(self, size: nodes.Expr, byte: Cost) -> Cost:
         return self.times(size, byte)
 
-    def address(self, address: ir.Address) -> Cost:
+    def address(self, address: nodes.Address) -> Cost:
         match address:
-            case ir.Wire(at):
+            case nodes.Wire(at):
                 return self.place(at)
-            case ir.Place(_, row):
+            case nodes.Place(_, row):
                 return self.place(row)
             case _:
                 assert_never(address)
 
-    def place(self, expr: ir.Expr) -> Cost:
+    def place(self, expr: nodes.Expr) -> Cost:
         """What reading a position or a size costs: its arithmetic is not counted, the bytes that it looks at are."""
         return replace(self.value(expr), operations=0)
 
-    def value(self, expr: ir.Expr) -> Cost:
+    def value(self, expr: nodes.Expr) -> Cost:
         """Bytes that an expression reads, and its operations."""
         match expr:
-            case ir.Const() | ir.Local() | ir.Used() | ir.Capacity():
+            case nodes.Const() | nodes.Local() | nodes.Used() | nodes.Capacity():
                 return FREE
-            case ir.Load(type_, at):
-                return plus(self.place(at), Cost(read=ir.WIDTH[type_]))
-            case ir.Get(type_, place):
-                return plus(self.address(place), Cost(read=ir.WIDTH[type_]))
-            case ir.IsText(address, size):
+            case nodes.Load(type_, at):
+                return plus(self.place(at), Cost(read=nodes.WIDTH[type_]))
+            case nodes.Get(type_, place):
+                return plus(self.address(place), Cost(read=nodes.WIDTH[type_]))
+            case nodes.IsText(address, size):
                 return plus(self.address(address), self.stretch(size, Cost(read=1)))
             case _:
                 return _sum((Cost(operations=1), *map(self.value, operands(expr))))
 
 
-def _bound(condition: ir.Expr) -> ir.Expr:
+def _bound(condition: nodes.Expr) -> nodes.Expr:
     """What a loop counts up to, if it counts."""
     match condition:
-        case ir.Compare("lt", ir.Local(), ir.Local(_, name) as bound) if name != END.name:
+        case nodes.Compare("lt", nodes.Local(), nodes.Local(_, name) as bound) if name != END.name:
             return bound
         case _:
             return condition

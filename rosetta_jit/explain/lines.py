@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import PurePath
 
-from rosetta_jit.explain.nodes import Key, by_span, names_of, places, span_of
 from rosetta_jit.explain.notes import Note, notes
+from rosetta_jit.explain.walk import Key, by_span, names_of, places, span_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import shown_fields
 from rosetta_jit.language.typed import Place, Rule

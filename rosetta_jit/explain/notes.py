@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rosetta_jit.explain.nodes import nodes, places
+from rosetta_jit.explain.walk import nodes, places
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe, rounded_constant
 from rosetta_jit.language.function import functions

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Literal, TypeGuard, get_args
 
-from rosetta_jit.explain.nodes import names_of, nodes, places
+from rosetta_jit.explain.walk import names_of, nodes, places
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.mapping import check

@@ -9,7 +9,8 @@ from itertools import groupby, repeat
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.errors import ReportError
-from rosetta_jit.kernel.ir import Kernel, SetField
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import SetField
 from rosetta_jit.kernel.printer import statement_text
 from rosetta_jit.kernel.proof.prove import Procedure
 from rosetta_jit.kernel.proof.record import Obligation, Record

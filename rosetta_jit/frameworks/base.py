@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import Manners
     from rosetta_jit.wire.codec import Encoding
     from rosetta_jit.wire.other_type import Partners
-    from rosetta_jit.wire.tree import Tree
+    from rosetta_jit.wire.self_describing import Tree
 
     Encoder = Callable[[Struct, Schema, str, "Choices"], Encoding]
     """From a struct to the encoding of a name: what describes its bytes."""
@@ -90,7 +90,7 @@ class Framework:
         A function that gives the file that declares a type the name that its text calls for: see `file_of`. Empty where all texts are of
         one kind.
     transcoding
-        A function that gives the `rosetta_jit.wire.tree.Tree` of two encodings. Empty where messages do not describe themselves.
+        A function that gives the `rosetta_jit.wire.self_describing.Tree` of two encodings. Empty where messages do not describe themselves.
     follows
         Older frameworks whose types this one has under the same names, and for each a function that says what became of a type's fields.
     infer

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from rosetta_jit.functions.forms import binary_of, unary_of
-from rosetta_jit.kernel.ir import Binary, Const, Expr
+from rosetta_jit.kernel.nodes import Binary, Const, Expr
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.language.affine_steps import Value, rounded, turned
 from rosetta_jit.language.conversions import FLOAT64

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from rosetta_jit.catalogue import checksums as words
-from rosetta_jit.kernel.ir import Binary, Const, Convert, Expr, Local, Lookup
+from rosetta_jit.kernel.nodes import Binary, Const, Convert, Expr, Local, Lookup
 from rosetta_jit.language import typed
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
 from rosetta_jit.language.functions.texts import argument

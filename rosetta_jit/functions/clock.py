@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import Expr, HostValue
+from rosetta_jit.kernel.nodes import Expr, HostValue
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Row
 from rosetta_jit.language.typed import INT64, Call
 from rosetta_jit.lowering.evaluation import Evaluation

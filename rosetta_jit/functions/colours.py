@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from rosetta_jit.catalogue import images as words
 from rosetta_jit.functions.images import bytes_of, makes_bytes, typed_integers
-from rosetta_jit.kernel.ir import Wire
+from rosetta_jit.kernel.nodes import Wire
 from rosetta_jit.kernel.terms import add
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal, cast
 
 from rosetta_jit.functions.forms import of_texts, row, undone_by
-from rosetta_jit.kernel.ir import Compare, Expr
+from rosetta_jit.kernel.nodes import Compare, Expr
 from rosetta_jit.language.function import SEVERAL, Texts
 from rosetta_jit.language.typed import BOOL, INT64, Call
 from rosetta_jit.lowering.evaluation import Evaluation

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import reduce
 
-from rosetta_jit.kernel.ir import Expr
+from rosetta_jit.kernel.nodes import Expr
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Row
 from rosetta_jit.language.limits import MAX_OTHERS
 from rosetta_jit.language.typed import INT64, Call

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import Expr
+from rosetta_jit.kernel.nodes import Expr
 from rosetta_jit.language.affine_steps import UNSHOWN, LostError, Value, divided_by, fraction, rounded, scaled
 from rosetta_jit.language.conversions import FLOAT64
 from rosetta_jit.language.folding import folded

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rosetta_jit.functions.forms import of_texts, row, undone_by
-from rosetta_jit.kernel.ir import Block, Const, Convert, Expr, If, Switch
+from rosetta_jit.kernel.nodes import Block, Const, Convert, Expr, If, Switch
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.affine_steps import LostError, Value

@@ -6,8 +6,8 @@ from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.kernel.ir import Arithmetic, Binary, Expr, Unary
-from rosetta_jit.kernel.ir import Function as Operation
+from rosetta_jit.kernel.nodes import Arithmetic, Binary, Expr, Unary
+from rosetta_jit.kernel.nodes import Function as Operation
 from rosetta_jit.language.affine_steps import LostError, Value
 from rosetta_jit.language.function import Function, Row, Undone
 from rosetta_jit.language.typed import Call, Const, Given

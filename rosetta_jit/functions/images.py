@@ -15,7 +15,7 @@ from typing import cast
 
 from rosetta_jit.catalogue import images as words
 from rosetta_jit.functions.forms import loses, undone_by
-from rosetta_jit.kernel.ir import Advance, Binary, Compare, Expr, Extent, HostCall, Local, Place, Reserve, Used, Wire
+from rosetta_jit.kernel.nodes import Advance, Binary, Compare, Expr, Extent, HostCall, Local, Place, Reserve, Used, Wire
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import as_int64, describe

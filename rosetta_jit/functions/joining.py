@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from rosetta_jit.functions.forms import constants_of, if_same_constants, of_texts, row, undone_by
-from rosetta_jit.kernel.ir import Binary, Expr, Local
+from rosetta_jit.kernel.nodes import Binary, Expr, Local
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.affine_steps import Value

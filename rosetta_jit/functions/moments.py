@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import partial
 
 from rosetta_jit.functions.forms import loses, row, undone_by
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Local, Select, Unary
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expr, Local, Select, Unary
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.affine_steps import Error, LostError, Value

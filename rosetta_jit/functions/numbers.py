@@ -8,7 +8,7 @@ from functools import partial, reduce
 
 from rosetta_jit.functions.forms import binary_of, unary_of
 from rosetta_jit.functions.reductions import EXTREMES, extreme_of, lower_extreme
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Expr, Unary
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, Expr, Unary
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import FLOAT64

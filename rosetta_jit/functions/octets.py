@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial, reduce
 
 from rosetta_jit.catalogue import number_bytes as words
-from rosetta_jit.kernel.ir import WIDTH, Binary, Bits, Compare, Const, Convert, Expr, Scalar, Select, Wire
+from rosetta_jit.kernel.nodes import WIDTH, Binary, Bits, Compare, Const, Convert, Expr, Scalar, Select, Wire
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import as_int64, describe

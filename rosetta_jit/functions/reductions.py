@@ -7,7 +7,7 @@ from functools import partial
 from typing import Literal
 
 from rosetta_jit.catalogue import functions as words
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Select
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expr, Select
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import FLOAT64, bounds
@@ -16,7 +16,7 @@ from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import BOOL, INT64
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.codec.fields import scalar_name
-from rosetta_jit.lowering.elements import Elements
+from rosetta_jit.lowering.reduced_elements import Elements
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Float, Int, Type

@@ -15,7 +15,7 @@ from functools import reduce
 from itertools import product
 
 from rosetta_jit.functions.images import bytes_of
-from rosetta_jit.kernel.ir import Advance, Binary, Compare, Const, Copy, Expr, Fill, For, If, Local, Place, Reserve, SetField, Used, Wire
+from rosetta_jit.kernel.nodes import Advance, Binary, Compare, Const, Copy, Expr, Fill, For, If, Local, Place, Reserve, SetField, Used, Wire
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.language import typed
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row

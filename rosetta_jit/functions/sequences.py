@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.functions.forms import constants_of, if_same_constants, undone_by
-from rosetta_jit.kernel.ir import Binary, Bits, Compare, Const, Convert, Expr, For, If, Local, Scalar, Select
+from rosetta_jit.kernel.nodes import Binary, Bits, Compare, Const, Convert, Expr, For, If, Local, Scalar, Select
 from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.function import SEVERAL, Function, Row

@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import partial, reduce
 
 from rosetta_jit.catalogue import signals as words
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Wire
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expr, Wire
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import as_int64, bare, describe

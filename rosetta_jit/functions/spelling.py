@@ -8,7 +8,7 @@ from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import texts as words
 from rosetta_jit.functions.enum_names import NAMES, lower_name, read_name
 from rosetta_jit.functions.forms import if_same_constants, loses, of_texts, row, undone_by
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Expr, Unary
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, Expr, Unary
 from rosetta_jit.language import typed
 from rosetta_jit.language.affine_steps import Value
 from rosetta_jit.language.conversions import FLOAT64, describe

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rosetta_jit.functions.forms import loses, of_texts, row, undone_by
-from rosetta_jit.kernel.ir import Binary, Compare, Const, If
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, If
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.function import SEVERAL, ByType, Texts

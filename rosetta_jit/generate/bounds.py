@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rosetta_jit.kernel.ir import Block, Const, For, Kernel, Reserve, While
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Block, Const, For, Reserve, While
 from rosetta_jit.kernel.walk import blocks_of
 from rosetta_jit.model.layout import Layout, Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Map, Optional, Schema, String, Struct, Type, Union

@@ -14,7 +14,8 @@ from rosetta_jit.generate.inner_types import with_inner_types
 from rosetta_jit.generate.languages import installed
 from rosetta_jit.generate.origins import Origin, origins_of
 from rosetta_jit.generate.unit import Role, Unit, UserFunction, wire_of
-from rosetta_jit.kernel.ir import Digits, Kernel, Nearest, Scalar, Scale, Unary
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Digits, Nearest, Scalar, Scale, Unary
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.passes.alone import alone
 from rosetta_jit.kernel.passes.postpone import postpone

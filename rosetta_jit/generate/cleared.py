@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rosetta_jit.kernel.ir import Block, Fill, Get, Kernel, Place, Return, SetField, Stmt
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Block, Fill, Get, Place, Return, SetField, Stmt
 from rosetta_jit.kernel.rewrite import with_bodies
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions

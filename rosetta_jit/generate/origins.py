@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 
-from rosetta_jit.kernel.ir import Binary, Const, Copy, Expr, Fill, Get, IsText, Nearest, Place, SetField, Site, Stmt
+from rosetta_jit.kernel.ir import Site
+from rosetta_jit.kernel.nodes import Binary, Const, Copy, Expr, Fill, Get, IsText, Nearest, Place, SetField, Stmt
 from rosetta_jit.kernel.walk import expressions_of, subexpressions
 from rosetta_jit.language import typed
 from rosetta_jit.model import rules as rule_nodes

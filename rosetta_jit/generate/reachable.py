@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import ends, locals_in, with_blocks
 from rosetta_jit.kernel.walk import expressions_of, statements
 
 
-def read_names(block: ir.Block, results: Iterable[str] = ()) -> frozenset[str]:
+def read_names(block: nodes.Block, results: Iterable[str] = ()) -> frozenset[str]:
     """The locals whose values anything needs that a block does, or its ``results``: not those that only others need which nothing does."""
     pending, values = list(results), dict[str, set[str]]()
     for stmt, _ in statements(block):
-        exprs = (stmt.condition,) if isinstance(stmt, ir.While) else expressions_of(stmt)
+        exprs = (stmt.condition,) if isinstance(stmt, nodes.While) else expressions_of(stmt)
         found = {name for expr in exprs for name in locals_in(expr)}
-        if isinstance(stmt, ir.Let | ir.Var | ir.Assign):
+        if isinstance(stmt, nodes.Let | nodes.Var | nodes.Assign):
             values.setdefault(stmt.name, set()).update(found)
         else:
             pending += found
@@ -28,22 +28,22 @@ def read_names(block: ir.Block, results: Iterable[str] = ()) -> frozenset[str]:
     return frozenset(read)
 
 
-def leaves(block: ir.Block) -> bool:
+def leaves(block: nodes.Block) -> bool:
     """Whether a compiler sees that nothing goes on behind a block."""
     match block[-1] if block else None:
-        case ir.Expect(ir.Const(_, False), _):
+        case nodes.Expect(nodes.Const(_, False), _):
             return True
-        case ir.If(_, then, otherwise):
+        case nodes.If(_, then, otherwise):
             return leaves(then) and leaves(otherwise)
-        case ir.Switch(_, cases, default):
+        case nodes.Switch(_, cases, default):
             return leaves(default) and all(leaves(inner) for _, inner in cases)
         case _:
             return ends(block)
 
 
-def reached(block: ir.Block) -> ir.Block:
+def reached(block: nodes.Block) -> nodes.Block:
     """A block without the statements that are never reached: compilers look at them, too."""
-    found: list[ir.Stmt] = []
+    found: list[nodes.Stmt] = []
     for stmt in block:
         found.append(with_blocks(stmt, reached))
         if leaves((stmt,)):

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rosetta_jit.kernel.ir import Copy, Fill, Kernel, Place, Reserve, SetField, Stmt
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Copy, Fill, Place, Reserve, SetField, Stmt
 from rosetta_jit.kernel.walk import statements
 
 Ways = frozenset[tuple[str, ...]]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rosetta_jit.kernel.ir import Block, Expect, Kernel, Site
+from rosetta_jit.kernel.ir import Kernel, Site
+from rosetta_jit.kernel.nodes import Block, Expect
 from rosetta_jit.kernel.rewrite import with_blocks, with_bodies
 
 DAMAGED = "the holder is damaged"

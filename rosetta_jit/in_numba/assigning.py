@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from numba.core.base import BaseContext
     from numba.core.typing.templates import Signature
 
-    from rosetta_jit.in_numba.taking import Taken
+    from rosetta_jit.in_numba.ownership import Taken
 
 NO_ENUMERATOR = "a closed enum has no such value"
 NO_MEMORY = "there is no memory for what an assignment makes present"

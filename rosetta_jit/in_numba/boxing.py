@@ -9,7 +9,7 @@ from numba.core import cgutils
 from numba.core.errors import NumbaTypeError
 from numba.extending import NativeValue, box, typeof_impl, unbox
 
-from rosetta_jit.in_numba.taking import give_back, take
+from rosetta_jit.in_numba.ownership import give_back, take
 from rosetta_jit.in_numba.types import MessageType
 from rosetta_jit.runtime.holder import Holder
 from rosetta_jit.runtime.holder.message import View

@@ -15,8 +15,8 @@ from rosetta_jit.backends.llvm.frame import I64, constant, state_word
 from rosetta_jit.backends.numba.function import BYTES, WORDS, body
 from rosetta_jit.in_numba import assigning, boxing, maps, sequences
 from rosetta_jit.in_numba.c_call import call_c
+from rosetta_jit.in_numba.ownership import BrokenMessage, Program, entries
 from rosetta_jit.in_numba.reading import Reader
-from rosetta_jit.in_numba.taking import BrokenMessage, Program, entries
 from rosetta_jit.in_numba.types import MessageType
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.state import CLEAN, VALID

@@ -11,7 +11,7 @@ from typing import assert_never
 
 import numpy as np
 
-from rosetta_jit.kernel.ir import WIDTH, Arithmetic, Comparison, Function, Order, Scalar
+from rosetta_jit.kernel.nodes import WIDTH, Arithmetic, Comparison, Function, Order, Scalar
 
 Value = int | bool | np.float32 | np.float64
 

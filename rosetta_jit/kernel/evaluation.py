@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import assert_never
 
-from rosetta_jit.kernel import arithmetic, decimals, ir
+from rosetta_jit.kernel import arithmetic, decimals, ir, nodes
 from rosetta_jit.kernel.arithmetic import Value, demand
 from rosetta_jit.kernel.host import Functions
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
@@ -28,7 +28,7 @@ class Machine:
     locals: dict[str, Value]
 
 
-def integer(machine: Machine, expr: ir.Expr) -> int:
+def integer(machine: Machine, expr: nodes.Expr) -> int:
     """What an expression is worth that is an integer."""
     value = value_of(machine, expr)
     if not isinstance(value, int):
@@ -36,39 +36,39 @@ def integer(machine: Machine, expr: ir.Expr) -> int:
     return value
 
 
-def value_of(machine: Machine, expr: ir.Expr) -> Value:
+def value_of(machine: Machine, expr: nodes.Expr) -> Value:
     """What an expression is worth."""
     match expr:
-        case ir.Const(type_, value):
+        case nodes.Const(type_, value):
             return arithmetic.constant(type_, value)
-        case ir.Local(_, name):
+        case nodes.Local(_, name):
             return machine.locals[name]
-        case ir.Load(type_, at, order):
-            return arithmetic.from_bytes(type_, bytes(bytes_at(machine, ir.Wire(at), ir.WIDTH[type_])), order)
-        case ir.Get(type_, place):
-            return arithmetic.from_bytes(type_, bytes(field(machine, place, ir.WIDTH[type_])))
-        case ir.Used() | ir.Capacity() | ir.HostValue() | ir.Register():
+        case nodes.Load(type_, at, order):
+            return arithmetic.from_bytes(type_, bytes(bytes_at(machine, nodes.Wire(at), nodes.WIDTH[type_])), order)
+        case nodes.Get(type_, place):
+            return arithmetic.from_bytes(type_, bytes(field(machine, place, nodes.WIDTH[type_])))
+        case nodes.Used() | nodes.Capacity() | nodes.HostValue() | nodes.Register():
             return _known(machine, expr)
-        case ir.Unary(function, operand):
+        case nodes.Unary(function, operand):
             return arithmetic.unary(type_of(operand), function, value_of(machine, operand))
-        case ir.Binary(op, left, right):
+        case nodes.Binary(op, left, right):
             return arithmetic.binary(type_of(left), op, value_of(machine, left), value_of(machine, right))
-        case ir.Compare(op, left, right):
+        case nodes.Compare(op, left, right):
             return arithmetic.compare(op, value_of(machine, left), value_of(machine, right))
-        case ir.Fits(op, left, right):
+        case nodes.Fits(op, left, right):
             return arithmetic.fits(op, integer(machine, left), integer(machine, right))
-        case ir.Convert(type_, operand) | ir.Bits(type_, operand):
+        case nodes.Convert(type_, operand) | nodes.Bits(type_, operand):
             value = value_of(machine, operand)
-            is_bits = isinstance(expr, ir.Bits)
+            is_bits = isinstance(expr, nodes.Bits)
             return arithmetic.same_bits(type_, type_of(operand), value) if is_bits else arithmetic.convert(type_, value)
-        case ir.Select(condition, then, otherwise):
+        case nodes.Select(condition, then, otherwise):
             chosen, other = value_of(machine, then), value_of(machine, otherwise)
             return chosen if value_of(machine, condition) else other
-        case ir.IsText(address, size):
+        case nodes.IsText(address, size):
             return _is_text(bytes(bytes_at(machine, address, integer(machine, size))))
-        case ir.Nearest() | ir.Digits() | ir.Scale():
+        case nodes.Nearest() | nodes.Digits() | nodes.Scale():
             return _decimal(machine, expr)
-        case ir.Lookup(_, values, index):
+        case nodes.Lookup(_, values, index):
             number = integer(machine, index)
             demand(0 <= number < len(values), f"no value {number} among {len(values)}")
             return values[number]
@@ -76,27 +76,27 @@ def value_of(machine: Machine, expr: ir.Expr) -> Value:
             assert_never(expr)
 
 
-def _known(machine: Machine, expr: ir.Known) -> int:
+def _known(machine: Machine, expr: nodes.Known) -> int:
     match expr:
-        case ir.Used(lane):
+        case nodes.Used(lane):
             return machine.used[lane]
-        case ir.Capacity(lane):
+        case nodes.Capacity(lane):
             return machine.capacities[lane]
-        case ir.HostValue(what):
+        case nodes.HostValue(what):
             return machine.host_values[what]
-        case ir.Register(number):
+        case nodes.Register(number):
             return machine.registers[number]
         case _:
             assert_never(expr)
 
 
-def _decimal(machine: Machine, expr: ir.Nearest | ir.Digits | ir.Scale) -> Value:
+def _decimal(machine: Machine, expr: nodes.Nearest | nodes.Digits | nodes.Scale) -> Value:
     match expr:
-        case ir.Nearest(address, size, exponent):
+        case nodes.Nearest(address, size, exponent):
             return decimals.nearest(bytes(bytes_at(machine, address, integer(machine, size))), integer(machine, exponent))
-        case ir.Digits(value, places):
+        case nodes.Digits(value, places):
             return decimals.digits(type_of(value), float(value_of(machine, value)), places)
-        case ir.Scale(value):
+        case nodes.Scale(value):
             return decimals.scale(type_of(value), float(value_of(machine, value)))
         case _:
             assert_never(expr)
@@ -110,16 +110,16 @@ def _is_text(data: bytes) -> bool:
     return True
 
 
-def bytes_at(machine: Machine, address: ir.Address, size: int) -> memoryview:
+def bytes_at(machine: Machine, address: nodes.Address, size: int) -> memoryview:
     """``size`` bytes of the message or of a lane, which must lie inside."""
     demand(size >= 0, "a negative size")
     match address:
-        case ir.Wire(at):
+        case nodes.Wire(at):
             start = integer(machine, at)
             low, high = integer(machine, BEGIN), integer(machine, END)
             demand(low <= start <= high - size, f"[{start}, {start + size}) is outside the message")
             return machine.message[start : start + size]
-        case ir.Place(lane, row, offset):
+        case nodes.Place(lane, row, offset):
             stride, index = machine.strides[lane], integer(machine, row)
             start = index * stride + offset
             demand(index >= 0 <= offset, "a negative place")
@@ -129,7 +129,7 @@ def bytes_at(machine: Machine, address: ir.Address, size: int) -> memoryview:
             assert_never(address)
 
 
-def field(machine: Machine, place: ir.Place, width: int) -> memoryview:
+def field(machine: Machine, place: nodes.Place, width: int) -> memoryview:
     """One field of one row."""
     demand(place.offset + width <= machine.strides[place.lane], "a field outside its row")
     return bytes_at(machine, place, width)

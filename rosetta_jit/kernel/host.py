@@ -11,7 +11,7 @@ from types import MappingProxyType
 import numpy as np
 
 from rosetta_jit.kernel.arithmetic import FLOATS, Value, constant, limits
-from rosetta_jit.kernel.ir import Scalar
+from rosetta_jit.kernel.nodes import Scalar
 from rosetta_jit.startup.dataclass import dataclass
 
 Functions = Mapping[str, Callable[..., Value]]

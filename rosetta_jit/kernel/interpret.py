@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from rosetta_jit.kernel import arithmetic, ir
+from rosetta_jit.kernel import arithmetic, ir, nodes
 from rosetta_jit.kernel.arithmetic import demand
 from rosetta_jit.kernel.evaluation import Machine, bytes_at, field, integer, value_of
 from rosetta_jit.kernel.host import NO_FUNCTIONS, Functions, RefusedError
@@ -161,7 +161,7 @@ def _report(state: State, failed: _Failed) -> int:
     return -1 - failed.site
 
 
-def _block(machine: Machine, block: ir.Block) -> _Outcome:
+def _block(machine: Machine, block: nodes.Block) -> _Outcome:
     for stmt in block:
         outcome = _statement(machine, stmt)
         if outcome is not None:
@@ -169,43 +169,43 @@ def _block(machine: Machine, block: ir.Block) -> _Outcome:
     return None
 
 
-def _statement(machine: Machine, stmt: ir.Stmt) -> _Outcome:
+def _statement(machine: Machine, stmt: nodes.Stmt) -> _Outcome:
     match stmt:
-        case ir.Require(at, size, failure):
+        case nodes.Require(at, size, failure):
             start, length = integer(machine, at), integer(machine, size)
             inside = start >= 0 and length >= 0 and start + length <= integer(machine, END)
             return None if inside else _failed(machine, failure)
-        case ir.Expect(condition, failure):
+        case nodes.Expect(condition, failure):
             return None if value_of(machine, condition) else _failed(machine, failure)
-        case ir.Let(name, value) | ir.Var(name, value) | ir.Assign(name, value):
+        case nodes.Let(name, value) | nodes.Var(name, value) | nodes.Assign(name, value):
             machine.locals[name] = value_of(machine, value)
             return None
-        case ir.Return(position, registers):
+        case nodes.Return(position, registers):
             changed = tuple((number, integer(machine, value)) for number, value in registers)
             return _Done(integer(machine, position), changed)
-        case ir.Reserve(lane, count):
+        case nodes.Reserve(lane, count):
             rows = integer(machine, count)
             demand(rows >= 0, "a negative count of rows")
             room = machine.capacities[lane] - machine.used[lane]
             return None if rows <= room else _Full(lane, rows - room)
-        case ir.Advance(lane, count):
+        case nodes.Advance(lane, count):
             rows = integer(machine, count)
             demand(0 <= rows <= machine.capacities[lane] - machine.used[lane], "rows that were not reserved")
             machine.used[lane] += rows
             return None
-        case ir.Store() | ir.SetField() | ir.Copy() | ir.Fill():
+        case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             return _effect(machine, stmt)
-        case ir.For() | ir.While() | ir.If() | ir.Switch():
+        case nodes.For() | nodes.While() | nodes.If() | nodes.Switch():
             return _nested(machine, stmt)
-        case ir.Call():
+        case nodes.Call():
             return _call(machine, stmt)
-        case ir.HostCall():
+        case nodes.HostCall():
             return _host_call(machine, stmt)
         case _:
             assert_never(stmt)
 
 
-def _call(machine: Machine, call: ir.Call) -> _Outcome:
+def _call(machine: Machine, call: nodes.Call) -> _Outcome:
     routine = machine.routines[call.routine]
     names = BEGIN.name, END.name, *(parameter.name for parameter in routine.parameters)
     values = (value_of(machine, expr) for expr in (BEGIN, END, *call.arguments))
@@ -220,7 +220,7 @@ def _call(machine: Machine, call: ir.Call) -> _Outcome:
     return outcome
 
 
-def _host_call(machine: Machine, call: ir.HostCall) -> _Failed | None:
+def _host_call(machine: Machine, call: nodes.HostCall) -> _Failed | None:
     arguments = [value_of(machine, argument) for argument in call.arguments]
     extents = [bytes_at(machine, each.address, integer(machine, each.size)) for each in extents_of(call)]
     read = extents[: len(call.inputs)]
@@ -232,44 +232,44 @@ def _host_call(machine: Machine, call: ir.HostCall) -> _Failed | None:
     return None
 
 
-def _effect(machine: Machine, stmt: ir.Store | ir.SetField | ir.Copy | ir.Fill) -> None:
+def _effect(machine: Machine, stmt: nodes.Store | nodes.SetField | nodes.Copy | nodes.Fill) -> None:
     match stmt:
-        case ir.Store(at, value, order):
+        case nodes.Store(at, value, order):
             type_ = type_of(value)
-            bytes_at(machine, ir.Wire(at), ir.WIDTH[type_])[:] = arithmetic.to_bytes(type_, value_of(machine, value), order)
-        case ir.SetField(place, value):
+            bytes_at(machine, nodes.Wire(at), nodes.WIDTH[type_])[:] = arithmetic.to_bytes(type_, value_of(machine, value), order)
+        case nodes.SetField(place, value):
             type_ = type_of(value)
-            field(machine, place, ir.WIDTH[type_])[:] = arithmetic.to_bytes(type_, value_of(machine, value))
-        case ir.Copy(target, source, size):
+            field(machine, place, nodes.WIDTH[type_])[:] = arithmetic.to_bytes(type_, value_of(machine, value))
+        case nodes.Copy(target, source, size):
             length = integer(machine, size)
             bytes_at(machine, target, length)[:] = bytes(bytes_at(machine, source, length))
-        case ir.Fill(target, size, byte):
+        case nodes.Fill(target, size, byte):
             length = integer(machine, size)
             bytes_at(machine, target, length)[:] = bytes([byte]) * length
         case _:
             assert_never(stmt)
 
 
-def _nested(machine: Machine, stmt: ir.For | ir.While | ir.If | ir.Switch) -> _Outcome:
+def _nested(machine: Machine, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> _Outcome:
     match stmt:
-        case ir.For(variable, count, body):
+        case nodes.For(variable, count, body):
             for index in range(integer(machine, count)):
                 machine.locals[variable] = index
                 outcome = _block(machine, body)
                 if outcome is not None:
                     return outcome
             return None
-        case ir.While():
+        case nodes.While():
             return _while(machine, stmt)
-        case ir.If(condition, then, otherwise):
+        case nodes.If(condition, then, otherwise):
             return _block(machine, then if value_of(machine, condition) else otherwise)
-        case ir.Switch(value, cases, default):
+        case nodes.Switch(value, cases, default):
             return _block(machine, dict(cases).get(integer(machine, value), default))
         case _:
             assert_never(stmt)
 
 
-def _while(machine: Machine, loop: ir.While) -> _Outcome:
+def _while(machine: Machine, loop: nodes.While) -> _Outcome:
     while True:
         demand(all(value_of(machine, kept) for kept in loop.invariant), "an invariant does not hold")
         if not value_of(machine, loop.condition):
@@ -281,5 +281,5 @@ def _while(machine: Machine, loop: ir.While) -> _Outcome:
         demand(integer(machine, loop.measure) > before, "a round made no progress")
 
 
-def _failed(machine: Machine, failure: ir.Failure) -> _Failed:
+def _failed(machine: Machine, failure: nodes.Failure) -> _Failed:
     return _Failed(integer(machine, failure.at), failure.site, tuple(integer(machine, i) for i in failure.indices))

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import assert_never
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 
 SYMBOL = {
     "add": "+",
@@ -62,131 +62,131 @@ def to_text(kernel: ir.Kernel) -> str:
     return "\n".join(lines) + "\n"
 
 
-def statement_text(stmt: ir.Stmt) -> str:
+def statement_text(stmt: nodes.Stmt) -> str:
     """First line of a statement."""
     return next(_statement(stmt, 0))
 
 
-def expression_text(expr: ir.Expr) -> str:
+def expression_text(expr: nodes.Expr) -> str:
     """Text of an expression, on one line."""
     match expr:
-        case ir.Const("i64", value):
+        case nodes.Const("i64", value):
             return str(value)
-        case ir.Const(type_, value):
+        case nodes.Const(type_, value):
             return f"{value!r}:{type_}"
-        case ir.Local(type_, name):
+        case nodes.Local(type_, name):
             return _name(name) if type_ == "i64" else f"{_name(name)}:{type_}"
-        case ir.Load(type_, at, order):
+        case nodes.Load(type_, at, order):
             return f"load {type_}{order} [{expression_text(at)}]"
-        case ir.Get(type_, place):
+        case nodes.Get(type_, place):
             return f"get {type_} {_address(place)}"
-        case ir.Used() | ir.Capacity() | ir.HostValue() | ir.Register():
+        case nodes.Used() | nodes.Capacity() | nodes.HostValue() | nodes.Register():
             return _known(expr)
-        case ir.Unary(function, operand):
+        case nodes.Unary(function, operand):
             return f"{function}({expression_text(operand)})"
-        case ir.Binary(op, left, right) | ir.Compare(op, left, right):
+        case nodes.Binary(op, left, right) | nodes.Compare(op, left, right):
             return f"({expression_text(left)} {SYMBOL[op]} {expression_text(right)})"
-        case ir.Fits(op, left, right):
+        case nodes.Fits(op, left, right):
             return f"fits({expression_text(left)} {SYMBOL[op]} {expression_text(right)})"
-        case ir.Convert(type_, operand) | ir.Bits(type_, operand):
-            return f"{'bits ' * isinstance(expr, ir.Bits)}{type_}({expression_text(operand)})"
-        case ir.Select(condition, then, otherwise):
+        case nodes.Convert(type_, operand) | nodes.Bits(type_, operand):
+            return f"{'bits ' * isinstance(expr, nodes.Bits)}{type_}({expression_text(operand)})"
+        case nodes.Select(condition, then, otherwise):
             return f"({expression_text(then)} if {expression_text(condition)} else {expression_text(otherwise)})"
-        case ir.IsText(address, size):
+        case nodes.IsText(address, size):
             return f"is_text({_address(address)}, {expression_text(size)})"
-        case ir.Nearest() | ir.Digits() | ir.Scale():
+        case nodes.Nearest() | nodes.Digits() | nodes.Scale():
             return _decimal(expr)
-        case ir.Lookup(type_, values, index):
+        case nodes.Lookup(type_, values, index):
             return f"{type_}({', '.join(map(str, values))})[{expression_text(index)}]"
         case _:
             assert_never(expr)
 
 
-def _known(expr: ir.Known) -> str:
+def _known(expr: nodes.Known) -> str:
     match expr:
-        case ir.Used(lane):
+        case nodes.Used(lane):
             return f"used({lane})"
-        case ir.Capacity(lane):
+        case nodes.Capacity(lane):
             return f"capacity({lane})"
-        case ir.HostValue(what):
+        case nodes.HostValue(what):
             return what
-        case ir.Register(number):
+        case nodes.Register(number):
             return f"register({number})"
         case _:
             assert_never(expr)
 
 
-def _decimal(expr: ir.Nearest | ir.Digits | ir.Scale) -> str:
+def _decimal(expr: nodes.Nearest | nodes.Digits | nodes.Scale) -> str:
     match expr:
-        case ir.Nearest(address, size, exponent):
+        case nodes.Nearest(address, size, exponent):
             return f"nearest({_address(address)}, {expression_text(size)}, {expression_text(exponent)})"
-        case ir.Digits(value, places):
+        case nodes.Digits(value, places):
             return f"digits({expression_text(value)}{'' if places is None else f', {places}'})"
-        case ir.Scale(value):
+        case nodes.Scale(value):
             return f"scale({expression_text(value)})"
         case _:
             assert_never(expr)
 
 
-def _statement(stmt: ir.Stmt, depth: int) -> Iterator[str]:
+def _statement(stmt: nodes.Stmt, depth: int) -> Iterator[str]:
     match stmt:
-        case ir.Require(at, size, failure):
+        case nodes.Require(at, size, failure):
             yield f"require [{expression_text(at)}] {expression_text(size)}{_failure(failure)}"
-        case ir.Expect(condition, failure):
+        case nodes.Expect(condition, failure):
             yield f"expect {expression_text(condition)}{_failure(failure)}"
-        case ir.Let(name, value):
+        case nodes.Let(name, value):
             yield f"let {_name(name)} = {expression_text(value)}"
-        case ir.Var(name, value):
+        case nodes.Var(name, value):
             yield f"var {_name(name)} = {expression_text(value)}"
-        case ir.Assign(name, value):
+        case nodes.Assign(name, value):
             yield f"{_name(name)} = {expression_text(value)}"
-        case ir.Store(at, value, order):
+        case nodes.Store(at, value, order):
             yield f"store{order} [{expression_text(at)}] = {expression_text(value)}"
-        case ir.SetField(place, value):
+        case nodes.SetField(place, value):
             yield f"set {_address(place)} = {expression_text(value)}"
-        case ir.Reserve(lane, count):
+        case nodes.Reserve(lane, count):
             yield f"reserve {lane}, {expression_text(count)}"
-        case ir.Advance(lane, count):
+        case nodes.Advance(lane, count):
             yield f"advance {lane}, {expression_text(count)}"
-        case ir.Copy(target, source, size):
+        case nodes.Copy(target, source, size):
             yield f"copy {_address(target)} = {_address(source)}, {expression_text(size)}"
-        case ir.Fill(target, size, byte):
+        case nodes.Fill(target, size, byte):
             yield f"fill {_address(target)}, {expression_text(size)}, {byte}"
-        case ir.Return(position, registers):
+        case nodes.Return(position, registers):
             changed = ", ".join(f"register({number}) = {expression_text(value)}" for number, value in registers)
             yield f"return {expression_text(position)}{' with ' * bool(changed)}{changed}"
-        case ir.Call(routine, arguments, results, sites, indices):
+        case nodes.Call(routine, arguments, results, sites, indices):
             bound = ", ".join(map(expression_text, results))
             texts = ", ".join(map(expression_text, arguments))
             within = "".join(f"[{expression_text(i)}]" for i in indices)
             yield f"let {bound} = call {_name(routine)}({texts}) else {list(sites)}{within}"
-        case ir.HostCall(function, arguments, result, failure, inputs, target):
+        case nodes.HostCall(function, arguments, result, failure, inputs, target):
             texts = ", ".join((*map(expression_text, arguments), *map(_extent, inputs)))
             filled = "" if target is None else f" into {_extent(target)}"
             yield f"let {expression_text(result)} = host {_name(function)}({texts}){filled}{_failure(failure)}"
-        case ir.For() | ir.While() | ir.If() | ir.Switch():
+        case nodes.For() | nodes.While() | nodes.If() | nodes.Switch():
             yield from _nested(stmt, depth)
         case _:
             assert_never(stmt)
 
 
-def _nested(stmt: ir.For | ir.While | ir.If | ir.Switch, depth: int) -> Iterator[str]:
+def _nested(stmt: nodes.For | nodes.While | nodes.If | nodes.Switch, depth: int) -> Iterator[str]:
     indent = "  " * depth
     match stmt:
-        case ir.For(variable, count, body):
+        case nodes.For(variable, count, body):
             yield f"for {_name(variable)} < {expression_text(count)}:"
             yield from _block(body, depth + 1)
-        case ir.While(condition, body, invariant, measure):
+        case nodes.While(condition, body, invariant, measure):
             kept = "; ".join(map(expression_text, invariant))
             yield f"while {expression_text(condition)} (keeps {kept}) (grows {expression_text(measure)}):"
             yield from _block(body, depth + 1)
-        case ir.If(condition, then, otherwise):
+        case nodes.If(condition, then, otherwise):
             yield f"if {expression_text(condition)}:"
             yield from _block(then, depth + 1)
             if otherwise:
                 yield f"{indent}else:"
                 yield from _block(otherwise, depth + 1)
-        case ir.Switch(value, cases, default):
+        case nodes.Switch(value, cases, default):
             yield f"switch {expression_text(value)}:"
             for number, block in cases:
                 yield f"{indent}case {number}:"
@@ -206,7 +206,7 @@ def _routine(routine: ir.Routine) -> Iterator[str]:
         yield from (f"  {line}" for line in _site(number, site))
 
 
-def _block(block: ir.Block, depth: int) -> Iterator[str]:
+def _block(block: nodes.Block, depth: int) -> Iterator[str]:
     indent = "  " * depth
     for stmt in block:
         lines = _statement(stmt, depth)
@@ -214,22 +214,22 @@ def _block(block: ir.Block, depth: int) -> Iterator[str]:
         yield from lines
 
 
-def _failure(failure: ir.Failure) -> str:
+def _failure(failure: nodes.Failure) -> str:
     indices = "".join(f"[{expression_text(i)}]" for i in failure.indices)
     return f" else {failure.site} @ {expression_text(failure.at)}{indices}"
 
 
-def _address(address: ir.Address) -> str:
+def _address(address: nodes.Address) -> str:
     match address:
-        case ir.Place(lane, row, offset):
+        case nodes.Place(lane, row, offset):
             return f"lane {lane}[{expression_text(row)}].{offset}"
-        case ir.Wire(at):
+        case nodes.Wire(at):
             return f"[{expression_text(at)}]"
         case _:
             assert_never(address)
 
 
-def _extent(extent: ir.Extent) -> str:
+def _extent(extent: nodes.Extent) -> str:
     return f"{_address(extent.address)} {expression_text(extent.size)}"
 
 

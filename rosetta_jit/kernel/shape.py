@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from itertools import chain, pairwise
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.limits import MAX_BLOCKS, MAX_EXPRESSION
 from rosetta_jit.kernel.state import INDEX_WORDS
 from rosetta_jit.kernel.terms import BEGIN, END, ROW
@@ -33,9 +33,9 @@ def shape_error(kernel: ir.Kernel) -> str | None:
     return _statements_error(inner, (BEGIN.name, END.name, ROW.name), len(kernel.sites), kernel.routines)
 
 
-def _registers_error(count: int, every: list[ir.Stmt]) -> str | None:
-    changed = [[number for number, _ in stmt.registers] for stmt in every if isinstance(stmt, ir.Return)]
-    named = {part.number for part in parts_of(every) if isinstance(part, ir.Register)} | {
+def _registers_error(count: int, every: list[nodes.Stmt]) -> str | None:
+    changed = [[number for number, _ in stmt.registers] for stmt in every if isinstance(stmt, nodes.Return)]
+    named = {part.number for part in parts_of(every) if isinstance(part, nodes.Register)} | {
         number for numbers in changed for number in numbers
     }
     unknown = [number for number in named if not 0 <= number < count]
@@ -51,7 +51,7 @@ def _routine_error(routine: ir.Routine, before: tuple[ir.Routine, ...]) -> str |
         return "a result that is no integer of 64 bits"
     inside = list(statements(routine.body))
     if any(
-        isinstance(stmt, ir.Return | ir.Reserve | ir.Advance | ir.HostCall) or any(map(_of_a_body, expressions_of(stmt)))
+        isinstance(stmt, nodes.Return | nodes.Reserve | nodes.Advance | nodes.HostCall) or any(map(_of_a_body, expressions_of(stmt)))
         for stmt, _ in inside
     ):
         return "something that only a body can do"
@@ -61,13 +61,13 @@ def _routine_error(routine: ir.Routine, before: tuple[ir.Routine, ...]) -> str |
     return _statements_error(inside, names, len(routine.sites), before)
 
 
-def _of_a_body(expr: ir.Expr) -> bool:
+def _of_a_body(expr: nodes.Expr) -> bool:
     """Whether an expression asks for a used length, for what the host tells, or for a register."""
-    return any(isinstance(part, ir.Used | ir.HostValue | ir.Register) for part in subexpressions(expr))
+    return any(isinstance(part, nodes.Used | nodes.HostValue | nodes.Register) for part in subexpressions(expr))
 
 
 def _statements_error(
-    inside: Iterable[tuple[ir.Stmt, int]], names: tuple[str, ...], sites: int, routines: tuple[ir.Routine, ...]
+    inside: Iterable[tuple[nodes.Stmt, int]], names: tuple[str, ...], sites: int, routines: tuple[ir.Routine, ...]
 ) -> str | None:
     bound = set(names)
     known = {routine.name: routine for routine in routines}
@@ -82,15 +82,15 @@ def _statements_error(
     return None
 
 
-def _statement_error(stmt: ir.Stmt, depth: int, sites: int, routines: Mapping[str, ir.Routine]) -> str | None:
+def _statement_error(stmt: nodes.Stmt, depth: int, sites: int, routines: Mapping[str, ir.Routine]) -> str | None:
     if depth > MAX_BLOCKS:
         return "blocks are nested too deep"
     if len(parts_of((stmt,))) > MAX_EXPRESSION and any(map(_too_deep, expressions_of(stmt))):
         return "an expression is nested too deep"
     match stmt:
-        case ir.Require(_, _, failure) | ir.Expect(_, failure) | ir.HostCall(_, _, _, failure):
+        case nodes.Require(_, _, failure) | nodes.Expect(_, failure) | nodes.HostCall(_, _, _, failure):
             return _failing_error((failure.site,), failure.indices, sites)
-        case ir.Call(name, arguments, results, named, indices):
+        case nodes.Call(name, arguments, results, named, indices):
             routine = routines.get(name)
             if routine is None:
                 return f"no routine {name} before"
@@ -102,14 +102,14 @@ def _statement_error(stmt: ir.Stmt, depth: int, sites: int, routines: Mapping[st
             return None
 
 
-def _failing_error(named: tuple[int, ...], indices: tuple[ir.Expr, ...], sites: int) -> str | None:
+def _failing_error(named: tuple[int, ...], indices: tuple[nodes.Expr, ...], sites: int) -> str | None:
     missing = [site for site in named if not 1 <= site < sites]
     if missing:
         return f"no site {missing[0]}"
     return "too many indices" if len(indices) > INDEX_WORDS else None
 
 
-def _too_deep(expr: ir.Expr) -> bool:
+def _too_deep(expr: nodes.Expr) -> bool:
     level = operands(expr)
     for _ in range(MAX_EXPRESSION):
         if not level:

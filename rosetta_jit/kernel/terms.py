@@ -2,83 +2,83 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 
-BEGIN, END, ROW = ir.Local("i64", "begin"), ir.Local("i64", "end"), ir.Local("i64", "row")
+BEGIN, END, ROW = nodes.Local("i64", "begin"), nodes.Local("i64", "end"), nodes.Local("i64", "row")
 
 
-def index(value: int) -> ir.Const:
+def index(value: int) -> nodes.Const:
     """An int64 constant."""
-    return ir.Const("i64", value)
+    return nodes.Const("i64", value)
 
 
-def add(left: ir.Expr, right: ir.Expr | int) -> ir.Expr:
+def add(left: nodes.Expr, right: nodes.Expr | int) -> nodes.Expr:
     """``left + right`` in i64, with constants folded to the right: the normal form of a position."""
-    if isinstance(right, ir.Const) and right.type == "i64":
+    if isinstance(right, nodes.Const) and right.type == "i64":
         right = int(right.value)
     if not isinstance(right, int):
-        return right if left == index(0) else ir.Binary("add", left, right)
+        return right if left == index(0) else nodes.Binary("add", left, right)
     match left:
-        case ir.Const("i64", value):
+        case nodes.Const("i64", value):
             return index(int(value) + right)
-        case ir.Binary("add", base, ir.Const("i64", value)):
+        case nodes.Binary("add", base, nodes.Const("i64", value)):
             total = int(value) + right
-            return ir.Binary("add", base, index(total)) if total else base
+            return nodes.Binary("add", base, index(total)) if total else base
         case _:
-            return ir.Binary("add", left, index(right)) if right else left
+            return nodes.Binary("add", left, index(right)) if right else left
 
 
-def split(expr: ir.Expr) -> tuple[ir.Expr, int]:
+def split(expr: nodes.Expr) -> tuple[nodes.Expr, int]:
     """An int64 expression without the constant that `add` has put behind it, and that constant."""
     match expr:
-        case ir.Binary("add", base, ir.Const("i64", value)):
+        case nodes.Binary("add", base, nodes.Const("i64", value)):
             return base, int(value)
         case _:
             return expr, 0
 
 
-def mul(left: ir.Expr, right: ir.Expr | int) -> ir.Expr:
+def mul(left: nodes.Expr, right: nodes.Expr | int) -> nodes.Expr:
     """``left * right`` in i64, with constants folded."""
     if isinstance(right, int):
         right = index(right)
     match left, right:
-        case ir.Const("i64", a), ir.Const("i64", b):
+        case nodes.Const("i64", a), nodes.Const("i64", b):
             return index(int(a) * int(b))
-        case _, ir.Const("i64", 1):
+        case _, nodes.Const("i64", 1):
             return left
-        case ir.Const("i64", 1), _:
+        case nodes.Const("i64", 1), _:
             return right
-        case ir.Const(), _:
-            return ir.Binary("mul", right, left)
+        case nodes.Const(), _:
+            return nodes.Binary("mul", right, left)
         case _:
-            return ir.Binary("mul", left, right)
+            return nodes.Binary("mul", left, right)
 
 
-def type_of(expr: ir.Expr) -> ir.Scalar:
+def type_of(expr: nodes.Expr) -> nodes.Scalar:
     """The type of an expression."""
     match expr:
-        case ir.Const() | ir.Local() | ir.Load() | ir.Get() | ir.Convert() | ir.Bits() | ir.Lookup():
+        case nodes.Const() | nodes.Local() | nodes.Load() | nodes.Get() | nodes.Convert() | nodes.Bits() | nodes.Lookup():
             return expr.type
-        case ir.Used() | ir.Capacity() | ir.HostValue() | ir.Register():
+        case nodes.Used() | nodes.Capacity() | nodes.HostValue() | nodes.Register():
             return "i64"
-        case ir.Unary(_, operand):
+        case nodes.Unary(_, operand):
             return type_of(operand)
-        case ir.Binary(_, left, _):
+        case nodes.Binary(_, left, _):
             return type_of(left)
-        case ir.Compare() | ir.Fits() | ir.IsText():
+        case nodes.Compare() | nodes.Fits() | nodes.IsText():
             return "bool"
-        case ir.Select(_, then, _):
+        case nodes.Select(_, then, _):
             return type_of(then)
-        case ir.Nearest():
+        case nodes.Nearest():
             return "f64"
-        case ir.Digits():
+        case nodes.Digits():
             return "u64"
-        case ir.Scale():
+        case nodes.Scale():
             return "i64"
 
 
-def is_wider(target: ir.Scalar, source: ir.Scalar) -> bool:
+def is_wider(target: nodes.Scalar, source: nodes.Scalar) -> bool:
     """Whether all values of an integer type are ones of another."""
     if target[0] == source[0]:
-        return ir.WIDTH[target] >= ir.WIDTH[source]
-    return target[0] == "i" and ir.WIDTH[target] > ir.WIDTH[source]
+        return nodes.WIDTH[target] >= nodes.WIDTH[source]
+    return target[0] == "i" and nodes.WIDTH[target] > nodes.WIDTH[source]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.walk import every_statement, parts_of, statements
 
 SHORT = 32
@@ -40,16 +40,16 @@ def are_vast(kernels: Iterable[ir.Kernel]) -> bool:
 def are_straight_and_compute(kernels: Iterable[ir.Kernel]) -> bool:
     """Whether kernels, in the first of their bodies, compute with floats, without loops and without what stands for loops."""
     every = [each for kernel in kernels for each in _usual_statements(kernel)]
-    if any(isinstance(each, ir.For | ir.While) for each in every):
+    if any(isinstance(each, nodes.For | nodes.While) for each in every):
         return False
     parts = parts_of(every)
-    has_floats = any(isinstance(part, ir.Const | ir.Convert) and part.type in ("f32", "f64") for part in parts)
-    return has_floats and not any(isinstance(part, ir.IsText | ir.Nearest | ir.Digits | ir.Scale) for part in parts)
+    has_floats = any(isinstance(part, nodes.Const | nodes.Convert) and part.type in ("f32", "f64") for part in parts)
+    return has_floats and not any(isinstance(part, nodes.IsText | nodes.Nearest | nodes.Digits | nodes.Scale) for part in parts)
 
 
 def has_loops_for_vectors(kernel: ir.Kernel) -> bool:
     """Whether a kernel has, in the first of its bodies, loops over elements that do nothing but compute, and store or add integers."""
-    return any(isinstance(each, ir.For) and _only_stores(each.body) for each in _usual_statements(kernel))
+    return any(isinstance(each, nodes.For) and _only_stores(each.body) for each in _usual_statements(kernel))
 
 
 def is_moderate(kernel: ir.Kernel) -> bool:
@@ -57,20 +57,20 @@ def is_moderate(kernel: ir.Kernel) -> bool:
     return sum(1 for _ in _usual_statements(kernel)) <= MODERATE
 
 
-def _only_stores(block: ir.Block) -> bool:
-    return all(isinstance(each, ir.Let | ir.Store | ir.SetField) or _gathers_integers(each) for each in block)
+def _only_stores(block: nodes.Block) -> bool:
+    return all(isinstance(each, nodes.Let | nodes.Store | nodes.SetField) or _gathers_integers(each) for each in block)
 
 
-def _gathers_integers(stmt: ir.Stmt) -> bool:
+def _gathers_integers(stmt: nodes.Stmt) -> bool:
     """Whether a round of a loop adds an integer to what the rounds before have, or likewise, in an order that does not matter."""
     match stmt:
-        case ir.Assign(name, ir.Binary("add" | "xor" | "or" | "and", ir.Local(type_, variable))) if name == variable:
+        case nodes.Assign(name, nodes.Binary("add" | "xor" | "or" | "and", nodes.Local(type_, variable))) if name == variable:
             return type_ not in ("f32", "f64")
         case _:
             return False
 
 
-def _usual_statements(kernel: ir.Kernel) -> Iterator[ir.Stmt]:
+def _usual_statements(kernel: ir.Kernel) -> Iterator[nodes.Stmt]:
     """What runs for the usual message: all but the later bodies."""
     for block in (kernel.bodies[0], *(routine.body for routine in kernel.routines)):
         yield from (each for each, _ in statements(block))
@@ -81,7 +81,7 @@ def is_short_and_straight(kernel: ir.Kernel) -> bool:
     every = [each for each, _ in statements(kernel.bodies[0])]
     if len(every) > SHORT and not (len(every) <= SHORT_IN_VECTORS and are_straight_and_compute((kernel,))):
         return False
-    return not any(isinstance(each, ir.For | ir.While) for each in every)
+    return not any(isinstance(each, nodes.For | nodes.While) for each in every)
 
 
 def is_short(kernel: ir.Kernel) -> bool:
@@ -89,9 +89,9 @@ def is_short(kernel: ir.Kernel) -> bool:
     return sum(1 for _ in statements(kernel.bodies[0])) <= SHORT_IN_VECTORS
 
 
-def calls_to_host(kernels: Iterable[ir.Kernel]) -> list[ir.HostCall]:
+def calls_to_host(kernels: Iterable[ir.Kernel]) -> list[nodes.HostCall]:
     """What kernels ask functions of the host."""
-    return [stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, ir.HostCall)]
+    return [stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, nodes.HostCall)]
 
 
 def leaves_something(kernel: ir.Kernel) -> bool:
@@ -99,13 +99,13 @@ def leaves_something(kernel: ir.Kernel) -> bool:
     return any(_writes(stmt) for block in (*kernel.bodies, *(each.body for each in kernel.routines)) for stmt, _ in statements(block))
 
 
-def _writes(stmt: ir.Stmt) -> bool:
+def _writes(stmt: nodes.Stmt) -> bool:
     match stmt:
-        case ir.SetField() | ir.Advance():
+        case nodes.SetField() | nodes.Advance():
             return True
-        case ir.Copy(target=target) | ir.Fill(target=target):
-            return isinstance(target, ir.Place)
-        case ir.HostCall():
+        case nodes.Copy(target=target) | nodes.Fill(target=target):
+            return isinstance(target, nodes.Place)
+        case nodes.HostCall():
             return stmt.target is not None
         case _:
             return False
@@ -118,9 +118,9 @@ def our_functions(kernels: Iterable[ir.Kernel]) -> list[str]:
 
 def asks_host(kernels: Iterable[ir.Kernel]) -> bool:
     """Whether kernels ask the host for the time, or for the number of a message."""
-    return any(ir.HostValue in set(map(type, parts_of(every_statement(kernel)))) for kernel in kernels)
+    return any(nodes.HostValue in set(map(type, parts_of(every_statement(kernel)))) for kernel in kernels)
 
 
 def registers_read(kernel: ir.Kernel) -> set[int]:
     """The registers whose values a kernel asks for."""
-    return {part.number for part in parts_of(every_statement(kernel)) if isinstance(part, ir.Register)} if kernel.registers else set()
+    return {part.number for part in parts_of(every_statement(kernel)) if isinstance(part, nodes.Register)} if kernel.registers else set()

@@ -128,7 +128,7 @@ class Reduction:
     signature
         The type that every value becomes; it is that of the result, too, unless ``gives`` is another. None of conditions.
     lower
-        What it becomes in a kernel. It takes the elements (`rosetta_jit.lowering.elements`) and gives a kernel expression.
+        What it becomes in a kernel. It takes the elements (`rosetta_jit.lowering.reduced_elements`) and gives a kernel expression.
     of_nothing
         What is wrong with no value at all: the text of an error of kind ``range``. Empty where the function has a result for it.
     unchosen

@@ -12,8 +12,8 @@ import numpy as np
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import DecodeError, LogError, SchemaError
 from rosetta_jit.logs.base import Block, Connection, Wanted
+from rosetta_jit.logs.decoded_parts import CLOCKS, Collector, OnError, Part, nothing
 from rosetta_jit.logs.moments import nanoseconds, shown
-from rosetta_jit.logs.parts import CLOCKS, Collector, OnError, Part, nothing
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:

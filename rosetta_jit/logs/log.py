@@ -14,10 +14,10 @@ from rosetta_jit.diagnostics import Diagnostic, render
 from rosetta_jit.errors import LogError, LogWarning, MappingError
 from rosetta_jit.logs.base import Block, Connection, Format, Wanted
 from rosetta_jit.logs.channel import Channel
+from rosetta_jit.logs.decoded_parts import OnError
 from rosetta_jit.logs.file import LogFile
 from rosetta_jit.logs.installed import formats
 from rosetta_jit.logs.moments import Moment, nanoseconds, shown
-from rosetta_jit.logs.parts import OnError
 from rosetta_jit.logs.reading.storage import Storage, open_storage
 
 if TYPE_CHECKING:

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, Literal
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Piece, Wanted
 from rosetta_jit.logs.channel import Channel
+from rosetta_jit.logs.decoded_parts import CLOCKS
 from rosetta_jit.logs.log import open_log
 from rosetta_jit.logs.moments import nanoseconds
-from rosetta_jit.logs.parts import CLOCKS
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from rosetta_jit.runtime.batch import Batch, hand_over
 if TYPE_CHECKING:
     import pyarrow as pa
 
-    from rosetta_jit.logs.parts import Part
+    from rosetta_jit.logs.decoded_parts import Part
 
 STAMPS = (("secs", "nsecs"), ("sec", "nanosec"), ("sec", "nsec"))
 """What the seconds and nanoseconds of a ``header.stamp`` are called: ROS 1, ROS 2, OpenRTM."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import Arithmetic, Binary, Bits, Compare, Comparison, Const, Expr, Fits, Select
+from rosetta_jit.kernel.nodes import Arithmetic, Binary, Bits, Compare, Comparison, Const, Expr, Fits, Select
 from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.lowering.writer import Where, Writer
 from rosetta_jit.model.expr import Operator

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.nodes import (
     Advance,
     Arithmetic,
     Binary,

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from typing import Protocol
 
-from rosetta_jit.kernel.ir import Address, Expr, Local, Scalar, Stmt
+from rosetta_jit.kernel.nodes import Address, Expr, Local, Scalar, Stmt
 from rosetta_jit.language import typed
 from rosetta_jit.language.function import functions
 from rosetta_jit.lowering.writer import Where, Writer

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rosetta_jit.kernel.ir import Expr
+from rosetta_jit.kernel.nodes import Expr
 from rosetta_jit.language.groups import group_functions
 from rosetta_jit.language.resolve.definitions import arguments_in, definitions_of
 from rosetta_jit.language.typed import Call

@@ -11,8 +11,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Block, Capacity, Compare, Direction, Fill, Kernel, Return
-from rosetta_jit.kernel.ir import Place as KernelPlace
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Block, Capacity, Compare, Direction, Fill, Return
+from rosetta_jit.kernel.nodes import Place as KernelPlace
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index
 from rosetta_jit.language.check.discriminators import Discriminator, discriminators_of
 from rosetta_jit.language.check.wire_shares import Share

@@ -6,7 +6,7 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from typing import Protocol
 
-from rosetta_jit.kernel.ir import Expr, For, Local
+from rosetta_jit.kernel.nodes import Expr, For, Local
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import inside
 from rosetta_jit.lowering.evaluation import Evaluation

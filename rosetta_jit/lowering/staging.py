@@ -6,7 +6,7 @@ are then encoded. Bytes move once more than in place, and every wire can be mapp
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import Advance, Fill, Place, Reserve, Used
+from rosetta_jit.kernel.nodes import Advance, Fill, Place, Reserve, Used
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields
 from rosetta_jit.lowering.writer import Writer

@@ -6,7 +6,7 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import field, replace
 
-from rosetta_jit.kernel import ir, state
+from rosetta_jit.kernel import ir, nodes, state
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, type_of
 from rosetta_jit.kernel.walk import subexpressions
 from rosetta_jit.lowering.limits import MAX_SIZE, MAX_STATEMENTS
@@ -51,7 +51,7 @@ class Where:
     """The field that is being read or written: its path with a ``{}`` for each index, and the indices."""
 
     path: str = ""
-    indices: tuple[ir.Expr, ...] = ()
+    indices: tuple[nodes.Expr, ...] = ()
 
     def member(self, name: str) -> Where:
         """A field of it."""
@@ -64,7 +64,7 @@ class Where:
             where = where.member(name)
         return where
 
-    def element(self, at: ir.Expr) -> Where:
+    def element(self, at: nodes.Expr) -> Where:
         """An element of it. Only so many indices are reported; deeper ones show as ``[]``."""
         if len(self.indices) == state.INDEX_WORDS:
             return replace(self, path=f"{self.path}[]")
@@ -79,10 +79,10 @@ MESSAGE = Where()
 class Contract:
     """What a routine is given and gives, and what holds of it: see `kernel.ir.Routine`."""
 
-    parameters: tuple[ir.Local, ...]
-    results: tuple[ir.Local, ...]
-    requires: tuple[ir.Expr, ...]
-    ensures: tuple[ir.Expr, ...]
+    parameters: tuple[nodes.Local, ...]
+    results: tuple[nodes.Local, ...]
+    requires: tuple[nodes.Expr, ...]
+    ensures: tuple[nodes.Expr, ...]
 
 
 @dataclass(slots=True)
@@ -94,13 +94,13 @@ class Writer:
     which are not asked, and checks that cannot fail for the same reason.
     """
 
-    direction: ir.Direction
+    direction: nodes.Direction
     strides: list[int] = field(default_factory=list[int])
     hidden: dict[str, int] = field(default_factory=dict[str, int])
-    block: list[ir.Stmt] = field(default_factory=list[ir.Stmt])
-    around: list[list[ir.Stmt]] = field(default_factory=list["list[ir.Stmt]"])
-    position: ir.Expr = BEGIN
-    origin: ir.Expr = BEGIN
+    block: list[nodes.Stmt] = field(default_factory=list[nodes.Stmt])
+    around: list[list[nodes.Stmt]] = field(default_factory=list["list[nodes.Stmt]"])
+    position: nodes.Expr = BEGIN
+    origin: nodes.Expr = BEGIN
     sites: dict[ir.Site, int] = field(default_factory=lambda: {ir.Site("grow", "", "a lane is too small"): 0})
     names: set[str] = field(default_factory=lambda: {BEGIN.name, END.name, ROW.name})
     stems: dict[str, int] = field(default_factory=dict[str, int])
@@ -108,15 +108,15 @@ class Writer:
     routines: dict[str, ir.Routine] = field(default_factory=dict[str, ir.Routine])
     tally: Tally = field(default_factory=Tally)
     references: References | None = None
-    registers: dict[int, ir.Local] = field(default_factory=dict[int, ir.Local])
-    certain: set[ir.Expr | ir.Stmt] = field(default_factory=set["ir.Expr | ir.Stmt"])
+    registers: dict[int, nodes.Local] = field(default_factory=dict[int, nodes.Local])
+    certain: set[nodes.Expr | nodes.Stmt] = field(default_factory=set["nodes.Expr | nodes.Stmt"])
 
-    def left_in_message(self, lane: int, size: ir.Expr) -> ir.Expr | None:
+    def left_in_message(self, lane: int, size: nodes.Expr) -> nodes.Expr | None:
         """The count of a span whose bytes stay in the message; None if they are to be copied. Its sign says whose bytes they are, unless
         the whole lane becomes the message.
         """
         if self.references is None:
-            return ir.Binary("sub", index(-1), size)
+            return nodes.Binary("sub", index(-1), size)
         if lane in self.references.copied:
             return None
         self.references.found.add(lane)
@@ -145,7 +145,7 @@ class Writer:
         yield
         self.origin = outer
 
-    def emit(self, *statements: ir.Stmt) -> None:
+    def emit(self, *statements: nodes.Stmt) -> None:
         self.tally.add(len(statements))
         self.block.extend(statements)
 
@@ -158,21 +158,21 @@ class Writer:
         self.names.add(name)
         return name
 
-    def let(self, stem: str, value: ir.Expr) -> ir.Local:
-        local = ir.Local(type_of(value), self.fresh(stem))
-        self.emit(ir.Let(local.name, value))
+    def let(self, stem: str, value: nodes.Expr) -> nodes.Local:
+        local = nodes.Local(type_of(value), self.fresh(stem))
+        self.emit(nodes.Let(local.name, value))
         return local
 
-    def var(self, stem: str, value: ir.Expr) -> ir.Local:
-        local = ir.Local(type_of(value), self.fresh(stem))
-        self.emit(ir.Var(local.name, value))
+    def var(self, stem: str, value: nodes.Expr) -> nodes.Local:
+        local = nodes.Local(type_of(value), self.fresh(stem))
+        self.emit(nodes.Var(local.name, value))
         return local
 
-    def assign(self, variable: ir.Local, value: ir.Expr) -> None:
-        self.emit(ir.Assign(variable.name, value))
+    def assign(self, variable: nodes.Local, value: nodes.Expr) -> None:
+        self.emit(nodes.Assign(variable.name, value))
 
     @contextmanager
-    def nested(self) -> Generator[list[ir.Stmt]]:
+    def nested(self) -> Generator[list[nodes.Stmt]]:
         """A block of its own; the position within it starts where it is now and is put back afterwards."""
         outer, position = self.block, self.position
         self.block = inner = []
@@ -183,43 +183,45 @@ class Writer:
             self.block, self.position = outer, position
             self.around.pop()
 
-    def is_around(self, block: list[ir.Stmt]) -> bool:
+    def is_around(self, block: list[nodes.Stmt]) -> bool:
         """Whether a block is the one that is being written, or around it: what it has computed is known."""
         return any(each is block for each in (self.block, *self.around))
 
     # --- failing -----------------------------------------------------------------------------------------------------
 
-    def failure(self, kind: str, where: Where, detail: str, *, at: ir.Expr | None = None, line: str = "") -> ir.Failure:
+    def failure(self, kind: str, where: Where, detail: str, *, at: nodes.Expr | None = None, line: str = "") -> nodes.Failure:
         site = ir.Site(kind, where.path, detail, line)
-        return ir.Failure(self.sites.setdefault(site, len(self.sites)), self.position if at is None else at, where.indices)
+        return nodes.Failure(self.sites.setdefault(site, len(self.sites)), self.position if at is None else at, where.indices)
 
-    def expect(self, condition: ir.Expr, kind: str, where: Where, detail: str, *, at: ir.Expr | None = None, line: str = "") -> None:
+    def expect(self, condition: nodes.Expr, kind: str, where: Where, detail: str, *, at: nodes.Expr | None = None, line: str = "") -> None:
         if condition not in self.certain:
-            self.emit(ir.Expect(condition, self.failure(kind, where, detail, at=at, line=line)))
+            self.emit(nodes.Expect(condition, self.failure(kind, where, detail, at=at, line=line)))
 
-    def require(self, size: ir.Expr | int, where: Where, detail: str = "the message ends here", *, at: ir.Expr | None = None) -> None:
+    def require(self, size: nodes.Expr | int, where: Where, detail: str = "the message ends here", *, at: nodes.Expr | None = None) -> None:
         """The next bytes, or those at a place, are there."""
         size = index(size) if isinstance(size, int) else size
         place = self.position if at is None else at
         kind = "truncated" if self.direction == "decode" else "length"
         if self.direction != "size":
-            self.emit(ir.Require(place, size, self.failure(kind, where, detail, at=place)))
+            self.emit(nodes.Require(place, size, self.failure(kind, where, detail, at=place)))
 
     # --- routines ----------------------------------------------------------------------------------------------------
 
-    def parameter(self, name: str, type_: ir.Scalar) -> ir.Local:
+    def parameter(self, name: str, type_: nodes.Scalar) -> nodes.Local:
         """A parameter of the routine that is being written."""
-        return ir.Local(type_, self.fresh(name))
+        return nodes.Local(type_, self.fresh(name))
 
-    def within(self, at: ir.Expr) -> tuple[ir.Expr, ir.Expr]:
+    def within(self, at: nodes.Expr) -> tuple[nodes.Expr, nodes.Expr]:
         """The claim that a place lies in the message."""
-        return ir.Compare("ge", at, BEGIN), ir.Compare("le", at, END)
+        return nodes.Compare("ge", at, BEGIN), nodes.Compare("le", at, END)
 
-    def behind(self, at: ir.Expr, after: ir.Expr) -> tuple[ir.Expr, ...]:
+    def behind(self, at: nodes.Expr, after: nodes.Expr) -> tuple[nodes.Expr, ...]:
         """The claim that one place of the message lies behind another."""
-        return *self.within(after), ir.Compare("gt", after, at)
+        return *self.within(after), nodes.Compare("gt", after, at)
 
-    def call(self, name: str, make: Callable[[Writer], Contract], arguments: tuple[ir.Expr, ...], where: Where) -> tuple[ir.Local, ...]:
+    def call(
+        self, name: str, make: Callable[[Writer], Contract], arguments: tuple[nodes.Expr, ...], where: Where
+    ) -> tuple[nodes.Local, ...]:
         """The results of a routine, which is made, with a writer of its own, where it is first called."""
         if name not in self.routines:
             inner = Writer(self.direction, self.strides, self.hidden, routines=self.routines, tally=self.tally)
@@ -229,16 +231,16 @@ class Writer:
             )
         routine = self.routines[name]
         sites = tuple(self.failure(site.kind, where, site.detail).site for site in routine.sites[1:])
-        results = tuple(ir.Local(each.type, self.fresh(each.name)) for each in routine.results)
-        self.emit(ir.Call(name, arguments, results, sites, where.indices))
+        results = tuple(nodes.Local(each.type, self.fresh(each.name)) for each in routine.results)
+        self.emit(nodes.Call(name, arguments, results, sites, where.indices))
         return results
 
     # --- moving on ---------------------------------------------------------------------------------------------------
 
-    def advance(self, size: ir.Expr | int) -> None:
+    def advance(self, size: nodes.Expr | int) -> None:
         """Move on by bytes that were required before; a size that is not constant gets a local of its own."""
         moved = add(self.position, size)
-        if isinstance(size, int | ir.Const):
+        if isinstance(size, int | nodes.Const):
             self.position = moved
             return
         self.position = self.let("at", moved)
@@ -247,73 +249,74 @@ class Writer:
 
     def settle(self) -> None:
         """Where positions are sums of sizes: check the sum so far, so that a loop may add to it."""
-        if self.direction == "size" and not isinstance(self.position, ir.Const):
+        if self.direction == "size" and not isinstance(self.position, nodes.Const):
             self.position = self.let("at", self.position)
             self.bound_size()
 
-    def cursor(self, stem: str = "next") -> ir.Local:
+    def cursor(self, stem: str = "next") -> nodes.Local:
         """A variable that starts at the current position."""
         self.settle()
         return self.var(stem, self.position)
 
-    def position_invariant(self, at: ir.Local) -> tuple[ir.Expr, ...]:
+    def position_invariant(self, at: nodes.Local) -> tuple[nodes.Expr, ...]:
         """The invariant of a position: it lies between the begin and the end, or is small enough to add to."""
         if self.direction == "size":
-            return ir.Compare("ge", at, index(0)), ir.Compare("le", at, index(MAX_SIZE))
-        return ir.Compare("ge", at, BEGIN), ir.Compare("le", at, END)
+            return nodes.Compare("ge", at, index(0)), nodes.Compare("le", at, index(MAX_SIZE))
+        return nodes.Compare("ge", at, BEGIN), nodes.Compare("le", at, END)
 
     def bound_size(self) -> None:
         """Keep a sum of sizes far from wrapping."""
-        self.expect(ir.Compare("le", self.position, index(MAX_SIZE)), "length", Where(), "the message would be larger than any memory")
+        self.expect(nodes.Compare("le", self.position, index(MAX_SIZE)), "length", Where(), "the message would be larger than any memory")
 
-    def load(self, scalar: ir.Scalar, where: Where, order: str = "<") -> ir.Expr:
+    def load(self, scalar: nodes.Scalar, where: Where, order: str = "<") -> nodes.Expr:
         """The next scalar of the message."""
-        self.require(ir.WIDTH[scalar], where)
-        value = ir.Load(scalar, self.position, ">" if order == ">" else "<")
-        self.advance(ir.WIDTH[scalar])
+        self.require(nodes.WIDTH[scalar], where)
+        value = nodes.Load(scalar, self.position, ">" if order == ">" else "<")
+        self.advance(nodes.WIDTH[scalar])
         return value
 
-    def store(self, value: ir.Expr, where: Where, order: str = "<") -> None:
+    def store(self, value: nodes.Expr, where: Where, order: str = "<") -> None:
         """Write the next scalar of the message, or count its bytes."""
-        width = ir.WIDTH[type_of(value)]
+        width = nodes.WIDTH[type_of(value)]
         if self.direction == "encode":
             self.require(width, where, "no room for the message")
-            self.emit(ir.Store(self.position, value, ">" if order == ">" else "<"))
+            self.emit(nodes.Store(self.position, value, ">" if order == ">" else "<"))
         self.advance(width)
 
-    def once(self, value: ir.Expr) -> ir.Expr:
+    def once(self, value: nodes.Expr) -> nodes.Expr:
         """A value that is used more than once."""
         return self.let("value", value) if is_new_each_time(value) else value
 
-    def checked(self, op: str, left: ir.Expr, right: ir.Expr, where: Where, *, line: str = "") -> ir.Expr:
+    def checked(self, op: str, left: nodes.Expr, right: nodes.Expr, where: Where, *, line: str = "") -> nodes.Expr:
         """An i64 operation that must not wrap."""
         match op:
             case "add" | "sub" | "mul":
                 left, right = self.once(left), self.once(right)
-                self.expect(ir.Fits(op, left, right), "range", where, "a number grows beyond 64 bits", line=line)
-                return self.let("sum" if op != "mul" else "product", ir.Binary(op, left, right))
+                self.expect(nodes.Fits(op, left, right), "range", where, "a number grows beyond 64 bits", line=line)
+                return self.let("sum" if op != "mul" else "product", nodes.Binary(op, left, right))
             case _:
                 raise AssertionError(op)
 
 
-def is_new_each_time(expr: ir.Expr) -> bool:
+def is_new_each_time(expr: nodes.Expr) -> bool:
     """Whether the proof takes an expression for another number wherever it stands: it looks at memory, or rests on a float or a bool."""
     return any(
-        isinstance(part, ir.Load | ir.Get | ir.Select) or (isinstance(part, ir.Convert) and type_of(part.operand) in ("bool", "f32", "f64"))
+        isinstance(part, nodes.Load | nodes.Get | nodes.Select)
+        or (isinstance(part, nodes.Convert) and type_of(part.operand) in ("bool", "f32", "f64"))
         for part in subexpressions(expr)
     )
 
 
-def integer(value: ir.Expr) -> ir.Expr:
+def integer(value: nodes.Expr) -> nodes.Expr:
     """A number as an i64."""
     match value:
-        case ir.Const(_, number):
+        case nodes.Const(_, number):
             return index(int(number))
         case _:
-            return value if type_of(value) == "i64" else ir.Convert("i64", value)
+            return value if type_of(value) == "i64" else nodes.Convert("i64", value)
 
 
-def block(statements: list[ir.Stmt]) -> ir.Block:
+def block(statements: list[nodes.Stmt]) -> nodes.Block:
     """Statements as a block."""
     return tuple(statements)
 

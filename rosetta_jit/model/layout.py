@@ -34,7 +34,7 @@ WIDTH = {"bool": 1, "i8": 1, "u8": 1, "i16": 2, "u16": 2, "i32": 4, "u32": 4, "i
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """A scalar; ``scalar`` is a name of `kernel.ir.Scalar`."""
+    """A scalar; ``scalar`` is a name of `kernel.nodes.Scalar`."""
 
     offset: int
     scalar: str

@@ -15,7 +15,8 @@ from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.catalogue.wires import not_here
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.host import UserFunction
-from rosetta_jit.kernel.ir import Kernel, Reserve
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Reserve
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.rewrite import with_registers_behind
 from rosetta_jit.kernel.traits import asks_host, our_functions
@@ -26,7 +27,7 @@ from rosetta_jit.model.layout import Layout, Members, Number, Row, Slot, Span, V
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref, same_name
 from rosetta_jit.pipeline.build import Build, plain_site
-from rosetta_jit.pipeline.kept import kept_of
+from rosetta_jit.pipeline.kept_state import kept_of
 from rosetta_jit.pipeline.request import BridgeRequest, GivenFunction, Request
 from rosetta_jit.pipeline.successors import SuccessorBuild, joined
 from rosetta_jit.pipeline.user_functions import check_compiled

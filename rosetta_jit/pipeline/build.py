@@ -38,7 +38,7 @@ from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct
 from rosetta_jit.pipeline.checked_mapping import CheckedMapping
 from rosetta_jit.pipeline.declared import declared_types, files_of, of_a_size, readers_of, report
-from rosetta_jit.pipeline.kept import kept_of
+from rosetta_jit.pipeline.kept_state import kept_of
 from rosetta_jit.pipeline.recent import recently
 from rosetta_jit.pipeline.request import ByteOrder, GivenFunction, Request
 from rosetta_jit.pipeline.stages import Made, shown

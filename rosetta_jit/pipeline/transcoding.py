@@ -12,7 +12,8 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.installed import GROUP as FRAMEWORKS
 from rosetta_jit.frameworks.installed import installed
 from rosetta_jit.kernel.host import UserFunction
-from rosetta_jit.kernel.ir import Direction, Kernel
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Direction
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.lowering.codec.transcoding import MESSAGES, transcoding_kernel
@@ -21,7 +22,7 @@ from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref
 from rosetta_jit.pipeline.build import plain_site
-from rosetta_jit.pipeline.kept import kept_of
+from rosetta_jit.pipeline.kept_state import kept_of
 from rosetta_jit.pipeline.request import BridgeRequest, GivenFunction
 from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.runtime.run import GRACE_BYTES
@@ -30,7 +31,7 @@ from rosetta_jit.startup.entry_points import files_of_offered
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
-    from rosetta_jit.wire.tree import Tree
+    from rosetta_jit.wire.self_describing import Tree
 
 DIRECTIONS: tuple[Direction, ...] = ("decode", "size", "encode")
 

@@ -10,7 +10,8 @@ from rosetta_jit.catalogue import functions as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.host import UserFunction
-from rosetta_jit.kernel.ir import Kernel, Scalar
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Scalar
 from rosetta_jit.kernel.traits import calls_to_host
 from rosetta_jit.language.uses import Signature
 from rosetta_jit.lowering.rules.scalars import scalar_type

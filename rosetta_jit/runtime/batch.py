@@ -9,6 +9,7 @@ import numpy as np
 
 from rosetta_jit.errors import DecodeError, InUse
 from rosetta_jit.kernel.state import EPOCH, VALID
+from rosetta_jit.runtime.batch_parts import contents, errors_of_part, errors_together, joined, revived
 from rosetta_jit.runtime.columns import Origin, column, of_batch, presence_mask
 from rosetta_jit.runtime.holder import Holder, Manners
 from rosetta_jit.runtime.holder.classes import HolderFamily
@@ -16,8 +17,7 @@ from rosetta_jit.runtime.holder.family import family_of
 from rosetta_jit.runtime.holder.paths import entries_to
 from rosetta_jit.runtime.lanes import Lanes, in_use
 from rosetta_jit.runtime.memory_for_arrow import Handed
-from rosetta_jit.runtime.parts import contents, errors_of_part, errors_together, joined, revived
-from rosetta_jit.runtime.plan import plan
+from rosetta_jit.runtime.memory_plan import plan
 
 if TYPE_CHECKING:
     import pyarrow as pa

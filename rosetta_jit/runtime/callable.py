@@ -1,6 +1,6 @@
 """Types that compiled entries know: callables whose vectorcall slot is an entry, holders with their state's address in a fixed place.
 
-Such types cannot be written in Python (`runtime.specs`). Their objects lie in memory so:
+Such types cannot be written in Python (`runtime.type_specs`). Their objects lie in memory so:
 
     a callable    0 the instance of its Python base class    64 vectorcall    72 context
     a message     0 object header    16 … 72 words of ours
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rosetta_jit.runtime import specs
+from rosetta_jit.runtime import type_specs
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -100,21 +100,29 @@ def callable_class(base: type, *, native: bool | None = None) -> type:
     """
     if not _chosen(native) or base.__basicsize__ > VECTORCALL:
         return type(base.__name__, (base,), {"__call__": _call_slow, "_is_native": False, **_names(base)})
-    members = (specs.Member * 2)(specs.Member(b"__vectorcalloffset__", specs.SSIZE_T, VECTORCALL, specs.READONLY, None))
-    slots = ((specs.TP_MEMBERS, ctypes.addressof(members)), (specs.TP_CALL, specs.address_of("PyVectorcall_Call")))
-    created = specs.from_spec(base.__name__, base, CALLABLE_BYTES, specs.DEFAULT | specs.VECTORCALL | specs.BASETYPE, slots)
-    return specs.with_attributes(created, {"_is_native": True, "_members": members, **_names(base)})
+    members = (type_specs.Member * 2)(type_specs.Member(b"__vectorcalloffset__", type_specs.SSIZE_T, VECTORCALL, type_specs.READONLY, None))
+    slots = ((type_specs.TP_MEMBERS, ctypes.addressof(members)), (type_specs.TP_CALL, type_specs.address_of("PyVectorcall_Call")))
+    created = type_specs.from_spec(
+        base.__name__, base, CALLABLE_BYTES, type_specs.DEFAULT | type_specs.VECTORCALL | type_specs.BASETYPE, slots
+    )
+    return type_specs.with_attributes(created, {"_is_native": True, "_members": members, **_names(base)})
 
 
 def message_base(*, native: bool | None = None) -> type:
     """A class to derive messages from, with room for what compiled code must know of them (`bind_message`); ``index_`` is a part of it."""
     if not _chosen(native):
         return type("MessageBase", (), {"_is_native": False, "__module__": __name__, "__slots__": ("index_",)})
-    members = (specs.Member * 2)(specs.Member(b"index_", specs.SSIZE_T, INDEX, 0, None))
-    created = specs.from_spec(
-        "MessageBase", object, MESSAGE_BYTES, specs.DEFAULT | specs.BASETYPE, ((specs.TP_MEMBERS, ctypes.addressof(members)),)
+    members = (type_specs.Member * 2)(type_specs.Member(b"index_", type_specs.SSIZE_T, INDEX, 0, None))
+    created = type_specs.from_spec(
+        "MessageBase",
+        object,
+        MESSAGE_BYTES,
+        type_specs.DEFAULT | type_specs.BASETYPE,
+        ((type_specs.TP_MEMBERS, ctypes.addressof(members)),),
     )
-    return specs.with_attributes(created, {"_is_native": True, "__module__": __name__, "__qualname__": "MessageBase", "_members": members})
+    return type_specs.with_attributes(
+        created, {"_is_native": True, "__module__": __name__, "__qualname__": "MessageBase", "_members": members}
+    )
 
 
 def bind_call(target: Any, entry: int | None, context: Context) -> None:
@@ -130,8 +138,8 @@ def bind_call(target: Any, entry: int | None, context: Context) -> None:
     if entry is None:
         target.__class__ = _without_entry(target.__class__)
     else:
-        specs.write_word(id(target) + CONTEXT, words.ctypes.data)
-        specs.write_word(id(target) + VECTORCALL, entry)
+        type_specs.write_word(id(target) + CONTEXT, words.ctypes.data)
+        type_specs.write_word(id(target) + VECTORCALL, entry)
 
 
 def builtin_of(target: Any, name: str, doc: str) -> Callable[..., Any]:
@@ -139,10 +147,10 @@ def builtin_of(target: Any, name: str, doc: str) -> Callable[..., Any]:
 
     Its ``__self__`` is the target, which it keeps alive.
     """
-    entry = specs.read_word(id(target) + VECTORCALL) if target._is_native else 0  # noqa: SLF001 - the class is ours
+    entry = type_specs.read_word(id(target) + VECTORCALL) if target._is_native else 0  # noqa: SLF001 - the class is ours
     if not entry:
         return target._context[0].slow  # noqa: SLF001 - as above
-    method = specs.Method(name.encode(), entry, specs.FASTCALL | specs.KEYWORDS, doc.encode())
+    method = type_specs.Method(name.encode(), entry, type_specs.FASTCALL | type_specs.KEYWORDS, doc.encode())
     create = ctypes.pythonapi.PyCFunction_NewEx
     create.restype, create.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.py_object, ctypes.py_object]
     return create(ctypes.addressof(method), target, _Module.of(method))
@@ -152,10 +160,10 @@ class _Module(str):
     """The name of the module of a built-in function. CPython lets it live as long as the function, and so the function's definition."""
 
     __slots__ = ("method",)
-    method: specs.Method
+    method: type_specs.Method
 
     @classmethod
-    def of(cls, method: specs.Method) -> _Module:
+    def of(cls, method: type_specs.Method) -> _Module:
         module = cls(__name__)
         module.method = method
         return module
@@ -169,9 +177,12 @@ def sealed(owner: Any) -> dict[str, Callable[[Any, Any], None]]:
     slots: dict[str, Any] = {name: vars(owner)[name] for name in owner.__slots__}
     setters = {name: each.__set__ for name, each in slots.items()}
     if is_native():
-        members = [specs.Member(name.encode(), specs.OBJECT, specs.slot_offset(each), specs.READONLY) for name, each in slots.items()]
-        readable = {name: specs.member_of(owner, member) for name, member in zip(slots, members, strict=True)}
-        specs.with_attributes(owner, {**readable, "_readable": members})
+        members = [
+            type_specs.Member(name.encode(), type_specs.OBJECT, type_specs.slot_offset(each), type_specs.READONLY)
+            for name, each in slots.items()
+        ]
+        readable = {name: type_specs.member_of(owner, member) for name, member in zip(slots, members, strict=True)}
+        type_specs.with_attributes(owner, {**readable, "_readable": members})
     return setters
 
 
@@ -189,7 +200,7 @@ def putting(owner: Any) -> Callable[..., None]:
 def bind_state(holder: Any, address: int) -> None:
     """Tell the entries where the state of a holder, an instance of a subclass of a `message_base`, lies. The holder must keep it alive."""
     if holder._is_native:  # noqa: SLF001 - the class is ours
-        specs.write_word(id(holder) + STATE, address)
+        type_specs.write_word(id(holder) + STATE, address)
 
 
 @cache

@@ -13,6 +13,7 @@ import numpy as np
 
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import String
+from rosetta_jit.runtime.batch_parts import chosen_rows
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder import coerce
 from rosetta_jit.runtime.holder.message import Message, place
@@ -20,7 +21,6 @@ from rosetta_jit.runtime.holder.paths import entries_to
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Cell, Child, Items, Node, Numbers, Pairs, Presence, Record, Scalar, Text
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_TEXT_ITEMS
-from rosetta_jit.runtime.parts import chosen_rows
 from rosetta_jit.runtime.rows import elements
 from rosetta_jit.startup.dataclass import dataclass
 

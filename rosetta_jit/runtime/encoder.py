@@ -165,7 +165,7 @@ class EncoderBase(Program):
         if not lanes.words[VALID]:
             raise lanes.invalid()
         if lanes.words[VALID] != CLEAN or lanes.source[0] is not None:
-            from rosetta_jit.runtime.parts import settled
+            from rosetta_jit.runtime.batch_parts import settled
 
             lanes.adopt(settled(lanes))
 
@@ -287,7 +287,7 @@ class EncoderBase(Program):
             place(message)
             if lanes.words[VALID] == CLEAN and lanes.source[0] is None:
                 return self._written_row(lanes, row, target)
-        from rosetta_jit.runtime.parts import joined
+        from rosetta_jit.runtime.batch_parts import joined
 
         with joined([(lanes, slice(row, row + 1))]) as alone:
             return self._written_row(alone, 0, target)

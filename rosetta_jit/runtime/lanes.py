@@ -41,7 +41,7 @@ from rosetta_jit.runtime.first_memory import address_of_bytes, begin
 from rosetta_jit.runtime.limits import MAX_READINGS
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.memory import ALIGNMENT, Hidden, address_of, aligned, aligned_bytes
-from rosetta_jit.runtime.plan import Plan, plan
+from rosetta_jit.runtime.memory_plan import Plan, plan
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

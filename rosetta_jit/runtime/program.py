@@ -22,7 +22,7 @@ from rosetta_jit.runtime.holder import Holder
 from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_SPARES
-from rosetta_jit.runtime.plan import Plan
+from rosetta_jit.runtime.memory_plan import Plan
 from rosetta_jit.runtime.registers import NOTHING_KEPT, Kept, Registers, address_of
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass

@@ -1,7 +1,7 @@
 """Registers: what a program keeps from one message to the next, where its mapping declares state.
 
 They belong to the program and not to a holder, so that all its calls share them, and one call has them at a time. A kernel changes them
-when its message is done (`kernel.ir.Return`), so that a message that fails leaves them as they were.
+when its message is done (`kernel.nodes.Return`), so that a message that fails leaves them as they were.
 """
 
 from __future__ import annotations

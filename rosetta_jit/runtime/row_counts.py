@@ -8,7 +8,7 @@ import numpy as np
 
 from rosetta_jit.kernel.state import ADDRESS, CLEAN, EPOCH, VALID, lane_word
 from rosetta_jit.runtime.lanes import MOST_AT_ONCE, Lanes
-from rosetta_jit.runtime.plan import Plan, begun, plan
+from rosetta_jit.runtime.memory_plan import Plan, begun, plan
 
 
 def initialised(first: Plan) -> Plan:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.ir import Kernel, Site
+from rosetta_jit.kernel.nodes import (
     Advance,
     Assign,
     Binary,
@@ -23,7 +24,6 @@ from rosetta_jit.kernel.ir import (
     Get,
     If,
     IsText,
-    Kernel,
     Let,
     Load,
     Local,
@@ -32,7 +32,6 @@ from rosetta_jit.kernel.ir import (
     Reserve,
     Return,
     SetField,
-    Site,
     Store,
     Switch,
     Used,

@@ -7,7 +7,7 @@ import struct
 import numpy as np
 import pytest
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.nodes import (
     Binary,
     Compare,
     Const,

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from rosetta_jit.kernel import decimals
-from rosetta_jit.kernel.ir import Binary, Digits, Load, Nearest, Place, Require, Return, Scale, SetField, Wire
+from rosetta_jit.kernel.nodes import Binary, Digits, Load, Nearest, Place, Require, Return, Scale, SetField, Wire
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index
 from tests.backends import kernels
 from tests.backends.engines import ENGINES, outcome

@@ -11,7 +11,7 @@ import pytest
 
 from rosetta_jit.backends.entry.link import assembly, compile_program, llvm_text, object_file
 from rosetta_jit.kernel.entries import SYMBOLS
-from rosetta_jit.kernel.ir import Binary, Const, Convert, Let, Load, Local, Place, SetField
+from rosetta_jit.kernel.nodes import Binary, Const, Convert, Let, Load, Local, Place, SetField
 from rosetta_jit.kernel.terms import BEGIN, ROW, add
 from rosetta_jit.kernel.traits import are_straight_and_compute, has_loops_for_vectors, leaves_something
 from rosetta_jit.pipeline.build import Build

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from rosetta_jit.backends.entry.link import llvm_text
-from rosetta_jit.kernel.ir import Compare, Const, Expect, For, Load, Local, Require, Return
+from rosetta_jit.kernel.nodes import Compare, Const, Expect, For, Load, Local, Require, Return
 from rosetta_jit.kernel.proof.verify import verify
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from tests.backends.engines import outcome

@@ -6,8 +6,8 @@ import pytest
 
 from rosetta_jit.backends.entry.link import compile_program
 from rosetta_jit.backends.python.function import compile_python
-from rosetta_jit.kernel.ir import Binary as Operation
-from rosetta_jit.kernel.ir import Compare, Const, Expr, For, If, Load, Require, Return
+from rosetta_jit.kernel.nodes import Binary as Operation
+from rosetta_jit.kernel.nodes import Compare, Const, Expr, For, If, Load, Require, Return
 from rosetta_jit.kernel.terms import BEGIN, index
 from tests.backends import kernels
 from tests.backends.engines import ENGINES, outcome

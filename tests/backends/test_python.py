@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import pytest
 
-from rosetta_jit.backends.base import Namespace
+from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.backends.python.function import compile_python, python_text
-from rosetta_jit.kernel.ir import Let, Local, Require, Return, Site
+from rosetta_jit.kernel.ir import Site
+from rosetta_jit.kernel.nodes import Let, Local, Require, Return
 from rosetta_jit.kernel.terms import BEGIN, index
 from tests.backends import kernels
 from tests.backends.engines import outcome

@@ -6,7 +6,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.backends.llvm.alike import Series, found
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.nodes import (
     Advance,
     Capacity,
     Compare,

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from rosetta_jit.explain.cost import Cost, Repeated, cost_of, plus
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.ir import Kernel, Site
+from rosetta_jit.kernel.nodes import (
     Binary,
     Const,
     Convert,
@@ -16,7 +17,6 @@ from rosetta_jit.kernel.ir import (
     For,
     Get,
     If,
-    Kernel,
     Let,
     Load,
     Local,
@@ -24,7 +24,6 @@ from rosetta_jit.kernel.ir import (
     Require,
     Return,
     SetField,
-    Site,
     Store,
     Switch,
     Wire,

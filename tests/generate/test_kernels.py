@@ -6,7 +6,7 @@ from random import Random
 
 import pytest
 
-from rosetta_jit.kernel.ir import Advance
+from rosetta_jit.kernel.nodes import Advance
 from rosetta_jit.kernel.passes.alone import alone
 from rosetta_jit.kernel.walk import statements
 from tests.backends import engines, kernels, test_agreement

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rosetta_jit.kernel import interpret, ir
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel import interpret, nodes
+from rosetta_jit.kernel.ir import Kernel, Site
+from rosetta_jit.kernel.nodes import (
     Advance,
     Assign,
     Binary,
@@ -23,7 +24,6 @@ from rosetta_jit.kernel.ir import (
     Get,
     If,
     IsText,
-    Kernel,
     Let,
     Load,
     Local,
@@ -32,7 +32,6 @@ from rosetta_jit.kernel.ir import (
     Reserve,
     Return,
     SetField,
-    Site,
     Store,
     Switch,
     Used,
@@ -89,7 +88,7 @@ def kernel(
 
 def tagged_doubles(count: int) -> Kernel:
     """``count`` doubles, each after its tag, into the fields of row 0."""
-    body: list[ir.Stmt] = [ROW_EXISTS]
+    body: list[nodes.Stmt] = [ROW_EXISTS]
     at: Expr = BEGIN
     for k in range(count):
         tag = Local("i32", f"tag_{k}")

@@ -128,7 +128,7 @@ def mutants(module: str, share: int = 1) -> Iterator[Mutant]:
 
 def _number_of(text: str) -> int:
     """A number that a text has whether it calls the nodes of kernels by their module or not."""
-    return crc32(text.replace("ir.", "").encode())
+    return crc32(text.replace("nodes.", "").replace("ir.", "").encode())
 
 
 def _line(node: ast.AST) -> int:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosetta_jit.kernel.ir import If, Return
+from rosetta_jit.kernel.nodes import If, Return
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.passes.drop import drop, without
 from rosetta_jit.kernel.printer import to_text

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from random import Random
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.ir import Routine
+from rosetta_jit.kernel.nodes import (
     Advance,
     Assign,
     Binary,
@@ -30,7 +31,6 @@ from rosetta_jit.kernel.ir import (
     Require,
     Reserve,
     Return,
-    Routine,
     Select,
     SetField,
     Store,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rosetta_jit.kernel import interpret
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.nodes import (
     Assign,
     Binary,
     Capacity,

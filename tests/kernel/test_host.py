@@ -8,7 +8,8 @@ import pytest
 from rosetta_jit.backends.python.function import compile_python
 from rosetta_jit.kernel import interpret
 from rosetta_jit.kernel.host import RefusedError
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.ir import Kernel, Site
+from rosetta_jit.kernel.nodes import (
     Advance,
     Binary,
     Capacity,
@@ -18,14 +19,12 @@ from rosetta_jit.kernel.ir import (
     Failure,
     HostCall,
     HostValue,
-    Kernel,
     Let,
     Local,
     Place,
     Reserve,
     Return,
     SetField,
-    Site,
     Used,
     Wire,
 )

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosetta_jit.kernel import arithmetic, interpret
-from rosetta_jit.kernel.ir import Binary, Const, Convert, Let, Load, Local, Place, Require, Return, SetField
+from rosetta_jit.kernel.nodes import Binary, Const, Convert, Let, Load, Local, Place, Require, Return, SetField
 from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, GROW, GROW_LANE, GROW_ROWS, USED, lane_word
 from rosetta_jit.kernel.terms import BEGIN, ROW, add, index
 from tests.kernel import kernels

@@ -7,7 +7,7 @@ from contextlib import suppress
 import pytest
 import z3
 
-from rosetta_jit.kernel.ir import Binary, Const, Convert, Let, Load, Local, Return
+from rosetta_jit.kernel.nodes import Binary, Const, Convert, Let, Load, Local, Return
 from rosetta_jit.kernel.proof import claims, integers, meanings, paths, prove
 from rosetta_jit.kernel.proof.linear import minus, shifted
 from rosetta_jit.kernel.proof.opinion import opinions

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.ir import Routine
+from rosetta_jit.kernel.nodes import (
     Advance,
     Copy,
     Expect,
@@ -25,7 +26,6 @@ from rosetta_jit.kernel.ir import (
     Require,
     Reserve,
     Return,
-    Routine,
     SetField,
     Store,
     Used,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rosetta_jit.kernel.ir import Const, Let, Return
+from rosetta_jit.kernel.nodes import Const, Let, Return
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.terms import index
 from tests.golden import GOLDEN, check_golden

@@ -7,7 +7,7 @@ import z3
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Load, Local, Select
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Load, Local, Select
 from rosetta_jit.kernel.proof import integers
 from rosetta_jit.kernel.proof.formula import All, Any, equal, negated
 from rosetta_jit.kernel.proof.linear import Linear, contradict, minus, plus, shifted, times

@@ -12,7 +12,8 @@ from rosetta_jit.backends.entry.link import compile_program
 from rosetta_jit.backends.python.function import compile_python
 from rosetta_jit.kernel import interpret
 from rosetta_jit.kernel.entries import SYMBOLS
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.ir import Kernel, Routine, Site
+from rosetta_jit.kernel.nodes import (
     Binary,
     Capacity,
     Compare,
@@ -21,7 +22,6 @@ from rosetta_jit.kernel.ir import (
     Expect,
     Failure,
     If,
-    Kernel,
     Let,
     Load,
     Local,
@@ -29,9 +29,7 @@ from rosetta_jit.kernel.ir import (
     Register,
     Require,
     Return,
-    Routine,
     SetField,
-    Site,
 )
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text

@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.nodes import (
     Advance,
     Binary,
     Const,

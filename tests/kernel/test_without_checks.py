@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from rosetta_jit.kernel.ir import Expect, For, If, Let, Load, Place, Require, Return, Routine, SetField
+from rosetta_jit.kernel.ir import Routine
+from rosetta_jit.kernel.nodes import Expect, For, If, Let, Load, Place, Require, Return, SetField
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.passes.drop import drop, without
 from rosetta_jit.kernel.passes.hoist import hoist

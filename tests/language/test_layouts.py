@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.kernel.ir import Copy, For, SetField
+from rosetta_jit.kernel.nodes import Copy, For, SetField
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request

@@ -67,7 +67,7 @@ def test_a_folder_by_topic_and_time(mcap, tmp_path):
 def test_groups_of_rows_that_readers_can_skip(mcap, tmp_path, monkeypatch):
     monkeypatch.setattr(files, "ROWS", 50)
     out = tmp_path / "out"
-    monkeypatch.setattr("rosetta_jit.logs.parts.MESSAGES", 50)
+    monkeypatch.setattr("rosetta_jit.logs.decoded_parts.MESSAGES", 50)
     log = rj.open(mcap)
     FolderConversion(log, [log["/a"]], out).run()
     (path,) = out.glob("a/*/*.parquet")
@@ -96,7 +96,7 @@ def test_few_files_of_a_topic_are_open(tmp_path, monkeypatch):
         add(unfinished, *arguments)
         assert len(unfinished._open) <= parts.STRETCHES_OPEN == 4
 
-    monkeypatch.setattr("rosetta_jit.logs.parts.MESSAGES", 5)
+    monkeypatch.setattr("rosetta_jit.logs.decoded_parts.MESSAGES", 5)
     monkeypatch.setattr(parts.Parts, "add", adding)
     log = rj.open(path)
     FolderConversion(log, [log["/x"]], out, every_ns=10**9).run()

@@ -54,7 +54,7 @@ def lane_of(part, name: str):
 
 @pytest.fixture
 def small_parts(monkeypatch):
-    monkeypatch.setattr("rosetta_jit.logs.parts.MESSAGES", IN_A_PART)
+    monkeypatch.setattr("rosetta_jit.logs.decoded_parts.MESSAGES", IN_A_PART)
 
 
 @pytest.mark.usefixtures("small_parts")

@@ -74,7 +74,7 @@ def test_large_messages(tmp_path, monkeypatch):
     """Those of several chunks become one part, as long as it has room for them; small ones between them are no hindrance."""
     from mcap.writer import CompressionType, Writer
 
-    monkeypatch.setattr("rosetta_jit.logs.parts.LARGE_BYTES", 1 << 20)
+    monkeypatch.setattr("rosetta_jit.logs.decoded_parts.LARGE_BYTES", 1 << 20)
     path, sizes = tmp_path / "large.mcap", [300_000] * 5 + [10] * 3 + [2_000_000, 300_000]
     with path.open("wb") as file:
         writer = Writer(file, chunk_size=400_000, compression=CompressionType.NONE)

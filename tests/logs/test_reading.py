@@ -190,7 +190,7 @@ def test_bytes_that_are_lent(folder):
 
 def test_counters_go_on_from_part_to_part(folder, monkeypatch):
     """A mapping that counts messages counts those of all blocks and parts."""
-    monkeypatch.setattr("rosetta_jit.logs.parts.MESSAGES", 60)
+    monkeypatch.setattr("rosetta_jit.logs.decoded_parts.MESSAGES", 60)
     files = {
         "n.proto": 'syntax = "proto3"; package n; message Counted { int64 number = 1; double x = 2; }',
         "t/msg/Point.msg": POINT,

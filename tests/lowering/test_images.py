@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rosetta_jit.kernel.ir import Copy, For, Let, SetField, Store
+from rosetta_jit.kernel.nodes import Copy, For, Let, SetField, Store
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request

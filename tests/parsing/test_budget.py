@@ -11,7 +11,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.catalogue.limits import MAX_CANDIDATES, MAX_COMPARED
-from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.suggestions import closest
 from rosetta_jit.language.imports import search
 from rosetta_jit.lowering.limits import MAX_STATEMENTS
 from rosetta_jit.model.expansion import excess

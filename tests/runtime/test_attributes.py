@@ -22,7 +22,7 @@ from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.holder.sequence import Sequence
 from rosetta_jit.runtime.lanes import Lanes
-from rosetta_jit.runtime.specs import slot_offset
+from rosetta_jit.runtime.type_specs import slot_offset
 
 sys.path.insert(0, str(Path(__file__).parent))
 from schemas import flat, whole

@@ -15,7 +15,7 @@ from rosetta_jit.runtime.attributes.code import OFFSETS as IN_CODE
 from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_ENDED
-from rosetta_jit.runtime.specs import slot_offset
+from rosetta_jit.runtime.type_specs import slot_offset
 
 pytestmark = pytest.mark.skipif(library() is None, reason="this Python is none that compiled code knows")
 

@@ -1,4 +1,4 @@
-; The kernels keep values from one message to the next, in the registers of their program (`kernel.ir.Register`). Word 7 of the context is their
+; The kernels keep values from one message to the next, in the registers of their program (`kernel.nodes.Register`). Word 7 of the context is their
 ; address (`runtime.callable.REGISTERS`): COUNT words, and as many behind them for what they were before a message. The word in front of them is
 ; not 0 while a call uses them that does not have the interpreter lock all the time: then entries leave a message to the slow path, which refuses.
 

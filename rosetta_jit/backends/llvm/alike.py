@@ -13,7 +13,8 @@ from typing import Any
 
 from rosetta_jit.backends.llvm.alike_names import Carried, carried_names, stay_inside
 from rosetta_jit.backends.llvm.outline import Outline, Slot, is_number
-from rosetta_jit.kernel.ir import Block, Call, Const, Copy, Expr, Fill, For, If, Kernel, Local, Reserve, Scalar, Stmt, Switch, While
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Block, Call, Const, Copy, Expr, Fill, For, If, Local, Reserve, Scalar, Stmt, Switch, While
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import dataclass

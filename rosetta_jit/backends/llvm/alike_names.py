@@ -10,7 +10,7 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.backends.llvm.outline import Slot
-    from rosetta_jit.kernel.ir import Scalar
+    from rosetta_jit.kernel.nodes import Scalar
 
     Rows = Sequence[Sequence[Slot]]
 

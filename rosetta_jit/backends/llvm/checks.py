@@ -20,7 +20,7 @@ from rosetta_jit.backends.llvm import stmt as llvm_stmt
 from rosetta_jit.backends.llvm.alike import Series
 from rosetta_jit.backends.llvm.frame import F32, F64, I32, I64, Frame, Variable, forgotten
 from rosetta_jit.backends.llvm.outline import FIXED
-from rosetta_jit.kernel.ir import Block, Expect, Fill, If, Let, Load, Require, Return, SetField, Stmt, Store
+from rosetta_jit.kernel.nodes import Block, Expect, Fill, If, Let, Load, Require, Return, SetField, Stmt, Store
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.walk import expressions_of
 

@@ -14,7 +14,7 @@ from llvmlite import ir
 
 from rosetta_jit.backends.llvm.frame import F32, I1, I8, I64, LLVM_TYPES, POINTER, Frame, Variable, constant, intrinsic, is_float, is_signed
 from rosetta_jit.backends.llvm.support import declared
-from rosetta_jit.kernel import ir as kernel
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import BEGIN, type_of
 from rosetta_jit.startup.sha import sha256
 
@@ -26,77 +26,77 @@ ANGULAR = frozenset(("sin", "cos", "tan", "asin", "acos", "atan"))
 BITWISE = {"and": "and_", "or": "or_", "xor": "xor", "shl": "shl"}
 
 
-def expression(frame: Frame, expr: kernel.Expr) -> ir.Value:
+def expression(frame: Frame, expr: nodes.Expr) -> ir.Value:
     """The value of an expression, computed where the frame's builder stands."""
     match expr:
-        case kernel.Const(type_, value):
+        case nodes.Const(type_, value):
             return _constant(type_, value)
-        case kernel.Local(_, name):
+        case nodes.Local(_, name):
             return _local(frame, name)
-        case kernel.Load(type_, at, order):
+        case nodes.Load(type_, at, order):
             return load(frame, wire_pointer(frame, at), type_, alignment=1, order=order)
-        case kernel.Get(type_, place):
+        case nodes.Get(type_, place):
             return load(frame, place_pointer(frame, place), type_, alignment=place_alignment(frame, place, type_))
-        case kernel.Used() | kernel.Capacity() | kernel.HostValue() | kernel.Register():
+        case nodes.Used() | nodes.Capacity() | nodes.HostValue() | nodes.Register():
             return _known(frame, expr)
-        case kernel.Unary(function, operand):
+        case nodes.Unary(function, operand):
             return _unary(frame, function, expression(frame, operand), type_of(operand))
-        case kernel.Binary(op, left, right):
+        case nodes.Binary(op, left, right):
             return _binary(frame, op, expression(frame, left), expression(frame, right), type_of(left))
-        case kernel.Compare(op, left, right):
+        case nodes.Compare(op, left, right):
             return _compare(frame, op, expression(frame, left), expression(frame, right), type_of(left))
-        case kernel.Fits(op, left, right):
+        case nodes.Fits(op, left, right):
             return _fits(frame, op, expression(frame, left), expression(frame, right))
-        case kernel.Convert(type_, operand) | kernel.Bits(type_, operand):
+        case nodes.Convert(type_, operand) | nodes.Bits(type_, operand):
             value = expression(frame, operand)
-            is_bits = isinstance(expr, kernel.Bits)
+            is_bits = isinstance(expr, nodes.Bits)
             return frame.builder.bitcast(value, LLVM_TYPES[type_]) if is_bits else _convert(frame, value, type_of(operand), type_)
-        case kernel.Select(condition, then, otherwise):
+        case nodes.Select(condition, then, otherwise):
             values = expression(frame, then), expression(frame, otherwise)
             return frame.builder.select(expression(frame, condition), *values)
-        case kernel.IsText(address, size):
+        case nodes.IsText(address, size):
             return frame.builder.call(declared(frame.module, "rosetta_is_text"), [pointer(frame, address), expression(frame, size)])
-        case kernel.Nearest() | kernel.Digits() | kernel.Scale():
+        case nodes.Nearest() | nodes.Digits() | nodes.Scale():
             return _decimal(frame, expr)
-        case kernel.Lookup(type_, values, index):
+        case nodes.Lookup(type_, values, index):
             return _looked_up(frame, type_, values, expression(frame, index))
         case _:
             assert_never(expr)
 
 
-def _known(frame: Frame, expr: kernel.Known) -> ir.Value:
+def _known(frame: Frame, expr: nodes.Known) -> ir.Value:
     match expr:
-        case kernel.Used(lane):
+        case nodes.Used(lane):
             return frame.builder.load(frame.used_slot(lane), typ=I64)
-        case kernel.Capacity(lane):
+        case nodes.Capacity(lane):
             return frame.capacity(lane)
-        case kernel.HostValue(what):
+        case nodes.HostValue(what):
             return frame.host_value(what)
-        case kernel.Register(number):
+        case nodes.Register(number):
             return frame.register(number)
         case _:
             assert_never(expr)
 
 
-def _decimal(frame: Frame, expr: kernel.Nearest | kernel.Digits | kernel.Scale) -> ir.Value:
+def _decimal(frame: Frame, expr: nodes.Nearest | nodes.Digits | nodes.Scale) -> ir.Value:
     from rosetta_jit.backends.llvm import decimals as llvm_decimals
 
     match expr:
-        case kernel.Nearest(address, size, exponent):
+        case nodes.Nearest(address, size, exponent):
             text, length, power = pointer(frame, address), expression(frame, size), expression(frame, exponent)
             return llvm_decimals.nearest(frame.module, frame.builder, text, length, power)
-        case kernel.Digits(value, places):
+        case nodes.Digits(value, places):
             number = expression(frame, value)
             if places is None:
                 return llvm_decimals.shortest(frame.module, frame.builder, number, 0)
             return llvm_decimals.fixed(frame.module, frame.builder, number, places)
-        case kernel.Scale(value):
+        case nodes.Scale(value):
             return llvm_decimals.shortest(frame.module, frame.builder, expression(frame, value), 1)
         case _:
             assert_never(expr)
 
 
-def _looked_up(frame: Frame, type_: kernel.Scalar, values: tuple[int, ...], index: ir.Value) -> ir.Value:
+def _looked_up(frame: Frame, type_: nodes.Scalar, values: tuple[int, ...], index: ir.Value) -> ir.Value:
     """A value of a constant of the module; equal tables are one."""
     kind = LLVM_TYPES[type_]
     name = f"rosetta_table_{type_}_{sha256(repr(values).encode()).hexdigest()[:16]}"
@@ -106,15 +106,15 @@ def _looked_up(frame: Frame, type_: kernel.Scalar, values: tuple[int, ...], inde
         table = ir.GlobalVariable(frame.module, array, name)
         table.linkage, table.global_constant, table.initializer = "internal", True, ir.Constant(array, list(values))
     builder = frame.builder
-    return builder.load(builder.gep(table, [index], inbounds=True, source_etype=kind), typ=kind, align=kernel.WIDTH[type_])
+    return builder.load(builder.gep(table, [index], inbounds=True, source_etype=kind), typ=kind, align=nodes.WIDTH[type_])
 
 
-def pointer(frame: Frame, address: kernel.Address) -> ir.Value:
+def pointer(frame: Frame, address: nodes.Address) -> ir.Value:
     """The machine address of a place or of a byte of the message."""
-    return wire_pointer(frame, address.at) if isinstance(address, kernel.Wire) else place_pointer(frame, address)
+    return wire_pointer(frame, address.at) if isinstance(address, nodes.Wire) else place_pointer(frame, address)
 
 
-def wire_pointer(frame: Frame, at: kernel.Expr) -> ir.Value:
+def wire_pointer(frame: Frame, at: nodes.Expr) -> ir.Value:
     """The machine address of a byte of the message."""
     base, offset = _parts(at)
     if base == BEGIN:
@@ -127,7 +127,7 @@ def wire_pointer(frame: Frame, at: kernel.Expr) -> ir.Value:
     return _moved(frame, frame.based(("message", place), start), offset)
 
 
-def place_pointer(frame: Frame, place: kernel.Place) -> ir.Value:
+def place_pointer(frame: Frame, place: nodes.Place) -> ir.Value:
     """The machine address of a field of a row."""
     builder, stride = frame.builder, frame.strides[place.lane]
     base, rows = _parts(place.row)
@@ -144,10 +144,10 @@ def place_pointer(frame: Frame, place: kernel.Place) -> ir.Value:
     return builder.gep(_moved(frame, address, rows * stride), [offset], source_etype=I8)
 
 
-def _parts(index: kernel.Expr) -> tuple[kernel.Expr, int]:
+def _parts(index: nodes.Expr) -> tuple[nodes.Expr, int]:
     """What is computed of an index, and the constant behind it: LLVM would find it with more effort."""
     match index:
-        case kernel.Binary("add", base, kernel.Const("i64", offset)):
+        case nodes.Binary("add", base, nodes.Const("i64", offset)):
             return base, int(offset)
         case _:
             return index, 0
@@ -157,35 +157,35 @@ def _moved(frame: Frame, address: ir.Value, offset: int) -> ir.Value:
     return frame.builder.gep(address, [constant(offset)], source_etype=I8) if offset else address
 
 
-def place_alignment(frame: Frame, place: kernel.Place, type_: kernel.Scalar) -> int:
+def place_alignment(frame: Frame, place: nodes.Place, type_: nodes.Scalar) -> int:
     """What rows and offsets guarantee, at most the width of the scalar."""
-    return gcd(kernel.WIDTH[type_], frame.strides[place.lane], place.offset)
+    return gcd(nodes.WIDTH[type_], frame.strides[place.lane], place.offset)
 
 
-def load(frame: Frame, address: ir.Value, type_: kernel.Scalar, *, alignment: int, order: kernel.Order = "<") -> ir.Value:
+def load(frame: Frame, address: ir.Value, type_: nodes.Scalar, *, alignment: int, order: nodes.Order = "<") -> ir.Value:
     """A scalar from memory; a bool is any byte but 0."""
     builder = frame.builder
     if type_ == "bool":
         return builder.icmp_unsigned("!=", builder.load(address, typ=I8, align=1), ir.Constant(I8, 0))
-    if order == "<" or kernel.WIDTH[type_] == 1:
+    if order == "<" or nodes.WIDTH[type_] == 1:
         return builder.load(address, typ=LLVM_TYPES[type_], align=alignment)
-    bits = ir.IntType(8 * kernel.WIDTH[type_])
+    bits = ir.IntType(8 * nodes.WIDTH[type_])
     value = builder.bswap(builder.load(address, typ=bits, align=alignment))
     return builder.bitcast(value, LLVM_TYPES[type_]) if is_float(type_) else value
 
 
-def store(frame: Frame, address: ir.Value, value: ir.Value, type_: kernel.Scalar, *, alignment: int, order: kernel.Order = "<") -> None:
+def store(frame: Frame, address: ir.Value, value: ir.Value, type_: nodes.Scalar, *, alignment: int, order: nodes.Order = "<") -> None:
     """A scalar to memory; a bool is the byte 0 or 1."""
     builder = frame.builder
     if type_ == "bool":
         value = builder.zext(value, I8)
-    elif order == ">" and kernel.WIDTH[type_] > 1:
-        bits = ir.IntType(8 * kernel.WIDTH[type_])
+    elif order == ">" and nodes.WIDTH[type_] > 1:
+        bits = ir.IntType(8 * nodes.WIDTH[type_])
         value = builder.bswap(builder.bitcast(value, bits) if is_float(type_) else value)
     builder.store(value, address, align=alignment)
 
 
-def _constant(type_: kernel.Scalar, value: float) -> ir.Value:
+def _constant(type_: nodes.Scalar, value: float) -> ir.Value:
     if type_ == "i64":
         return constant(int(value))
     if not is_float(type_):
@@ -207,7 +207,7 @@ def _local(frame: Frame, name: str) -> ir.Value:
     return frame.builder.load(value.slot, typ=value.type) if isinstance(value, Variable) else value
 
 
-def _unary(frame: Frame, function: str, value: ir.Value, type_: kernel.Scalar) -> ir.Value:
+def _unary(frame: Frame, function: str, value: ir.Value, type_: nodes.Scalar) -> ir.Value:
     builder, kind = frame.builder, LLVM_TYPES[type_]
     if function == "not":
         return builder.not_(value)
@@ -229,7 +229,7 @@ def _unary(frame: Frame, function: str, value: ir.Value, type_: kernel.Scalar) -
             return value  # an integer is its own floor; an unsigned one its own absolute value
 
 
-def _binary(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: kernel.Scalar) -> ir.Value:
+def _binary(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: nodes.Scalar) -> ir.Value:
     builder = frame.builder
     if op in ("min", "max"):
         return _extremum(frame, op, left, right, type_)
@@ -252,13 +252,13 @@ def _binary(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: kerne
             raise AssertionError(op)
 
 
-def _extremum(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: kernel.Scalar) -> ir.Value:
+def _extremum(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: nodes.Scalar) -> ir.Value:
     """The left operand where it compares as the smaller (greater) one, else the right one: also if either is NaN."""
     beyond = _compare(frame, "lt" if op == "min" else "gt", left, right, type_)
     return frame.builder.select(beyond, left, right)
 
 
-def _compare(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: kernel.Scalar) -> ir.Value:
+def _compare(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: nodes.Scalar) -> ir.Value:
     builder, predicate = frame.builder, PREDICATES[op]
     if is_float(type_):  # IEEE 754, 5.11: of all comparisons NaN satisfies `ne` alone
         return builder.fcmp_unordered(predicate, left, right) if op == "ne" else builder.fcmp_ordered(predicate, left, right)
@@ -271,7 +271,7 @@ def _fits(frame: Frame, op: str, left: ir.Value, right: ir.Value) -> ir.Value:
     return builder.not_(builder.extract_value(both, 1))
 
 
-def _convert(frame: Frame, value: ir.Value, source: kernel.Scalar, target: kernel.Scalar) -> ir.Value:
+def _convert(frame: Frame, value: ir.Value, source: nodes.Scalar, target: nodes.Scalar) -> ir.Value:
     builder, kind = frame.builder, LLVM_TYPES[target]
     if target == "bool":
         return _compare(frame, "ne", value, _constant(source, 0), source)
@@ -289,11 +289,11 @@ def _convert(frame: Frame, value: ir.Value, source: kernel.Scalar, target: kerne
             return _resize(frame, value, source, target)
 
 
-def _resize(frame: Frame, value: ir.Value, source: kernel.Scalar, target: kernel.Scalar) -> ir.Value:
+def _resize(frame: Frame, value: ir.Value, source: nodes.Scalar, target: nodes.Scalar) -> ir.Value:
     builder, kind = frame.builder, LLVM_TYPES[target]
     if value.type == kind:
         return value
-    if kernel.WIDTH[source] > kernel.WIDTH[target]:
+    if nodes.WIDTH[source] > nodes.WIDTH[target]:
         return builder.trunc(value, kind)
     return builder.sext(value, kind) if is_signed(source) else builder.zext(value, kind)
 

@@ -14,7 +14,8 @@ from functools import lru_cache
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm.alike import NOTHING, Found
-from rosetta_jit.kernel.ir import Call, Routine, Scalar
+from rosetta_jit.kernel.ir import Routine
+from rosetta_jit.kernel.nodes import Call, Scalar
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANE_WORDS, LANES, NOW, NUMBER, REGISTERS, USED, lane_word
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -13,7 +13,6 @@ from collections.abc import Mapping, Sequence
 
 from llvmlite import ir
 
-from rosetta_jit.backends.base import counted_lanes, emptied_lanes, statements
 from rosetta_jit.backends.llvm import checks as llvm_checks
 from rosetta_jit.backends.llvm import definitions
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
@@ -22,7 +21,9 @@ from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, StoredExit, constant, state_word
 from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.series import begin_rows, end_rows
-from rosetta_jit.kernel.ir import Block, Call, Expect, Expr, For, HostCall, Kernel, Require, Routine, Stmt, While
+from rosetta_jit.backends.printing import counted_lanes, emptied_lanes, statements
+from rosetta_jit.kernel.ir import Kernel, Routine
+from rosetta_jit.kernel.nodes import Block, Call, Expect, Expr, For, HostCall, Require, Stmt, While
 from rosetta_jit.kernel.state import (
     ERROR_INDICES,
     ERROR_OFFSET,

@@ -11,7 +11,7 @@ from llvmlite import ir
 
 from rosetta_jit.backends.llvm.expr import expression, pointer
 from rosetta_jit.backends.llvm.frame import I8, I64, LLVM_TYPES, POINTER, Frame, intrinsic
-from rosetta_jit.kernel.ir import HostCall, Scalar
+from rosetta_jit.kernel.nodes import HostCall, Scalar
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.kernel.walk import extents_of
 

@@ -10,7 +10,7 @@ from math import gcd
 from operator import attrgetter
 from typing import Any, Literal, NamedTuple
 
-from rosetta_jit.kernel import ir as kernel
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import BEGIN, END, ROW
 from rosetta_jit.kernel.walk import blocks_of, expressions_of, operands
 
@@ -31,7 +31,7 @@ class Slot(NamedTuple):
     number: int = 0
     lane: int = 0
     distances: tuple[int, ...] = (0,)
-    type: kernel.Scalar = "i64"
+    type: nodes.Scalar = "i64"
 
     @property
     def is_use(self) -> bool:
@@ -41,7 +41,7 @@ class Slot(NamedTuple):
 class Outline:
     """The shape of a statement and its slots: those of its expressions from left to right, then those of its blocks."""
 
-    def __init__(self, stmt: kernel.Stmt, strides: Sequence[int], own_lanes: int) -> None:
+    def __init__(self, stmt: nodes.Stmt, strides: Sequence[int], own_lanes: int) -> None:
         self.strides, self.own_lanes = strides, own_lanes
         self._shape = list["Hashable"]()
         self.slots = list[Slot]()
@@ -50,7 +50,7 @@ class Outline:
 
     # --- statements ------------------------------------------------------------------------------------------------------
 
-    def _statement(self, stmt: kernel.Stmt) -> None:
+    def _statement(self, stmt: nodes.Stmt) -> None:
         self._shape.append(type(stmt))
         self._own(stmt)
         for expr in expressions_of(stmt):
@@ -60,41 +60,41 @@ class Outline:
             for each in block:
                 self._statement(each)
 
-    def _own(self, stmt: kernel.Stmt) -> None:
+    def _own(self, stmt: nodes.Stmt) -> None:
         """What is a statement's own, besides its expressions and blocks."""
         match stmt:
-            case kernel.Require(_, _, failure) | kernel.Expect(_, failure):
+            case nodes.Require(_, _, failure) | nodes.Expect(_, failure):
                 self._shape.append(len(failure.indices))
                 self._sites((failure.site,))
-            case kernel.Let(name, _) | kernel.Var(name, _) | kernel.For(name, _, _):
+            case nodes.Let(name, _) | nodes.Var(name, _) | nodes.For(name, _, _):
                 self.slots.append(Slot("bound", name))
-            case kernel.Assign(name, _):
+            case nodes.Assign(name, _):
                 self.slots.append(Slot("assigned", name))
-            case kernel.Reserve(lane, _) | kernel.Advance(lane, _):
+            case nodes.Reserve(lane, _) | nodes.Advance(lane, _):
                 self._lane(lane)
-            case kernel.Switch(_, cases, _):
+            case nodes.Switch(_, cases, _):
                 self._shape.append(tuple(number for number, _ in cases))
-            case kernel.Call(routine, _, results, sites, indices):
+            case nodes.Call(routine, _, results, sites, indices):
                 self._shape += [routine, len(indices)]
                 self.slots += [Slot("bound", each.name) for each in results]
                 self._sites(sites)
-            case kernel.HostCall() | kernel.Return():
+            case nodes.HostCall() | nodes.Return():
                 self._shape.append(object())  # which is like no other
-            case kernel.Store() | kernel.SetField() | kernel.Copy() | kernel.Fill():
+            case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
                 self._effect(stmt)
             case _:
                 pass
 
-    def _effect(self, stmt: kernel.Store | kernel.SetField | kernel.Copy | kernel.Fill) -> None:
+    def _effect(self, stmt: nodes.Store | nodes.SetField | nodes.Copy | nodes.Fill) -> None:
         match stmt:
-            case kernel.Store(_, _, order):
+            case nodes.Store(_, _, order):
                 self._shape.append(order)
-            case kernel.SetField(place, _):
+            case nodes.SetField(place, _):
                 self._place(place)
-            case kernel.Copy(target, source, _):
+            case nodes.Copy(target, source, _):
                 self._address(target)
                 self._address(source)
-            case kernel.Fill(target, _, byte):
+            case nodes.Fill(target, _, byte):
                 self._address(target)
                 self._shape.append(byte)
 
@@ -106,12 +106,12 @@ class Outline:
 
     # --- places ----------------------------------------------------------------------------------------------------------
 
-    def _address(self, address: kernel.Address) -> None:
+    def _address(self, address: nodes.Address) -> None:
         self._shape.append(type(address))
-        if isinstance(address, kernel.Place):
+        if isinstance(address, nodes.Place):
             self._place(address)
 
-    def _place(self, place: kernel.Place) -> None:
+    def _place(self, place: nodes.Place) -> None:
         lane, offset = place.lane, place.offset
         self._lane(lane)
         self._shape.append(gcd(WIDEST, self.strides[lane], offset))  # how far it is aligned
@@ -125,28 +125,28 @@ class Outline:
 
     # --- expressions -----------------------------------------------------------------------------------------------------
 
-    def _expression(self, expr: kernel.Expr) -> None:
+    def _expression(self, expr: nodes.Expr) -> None:
         self._shape.append(type(expr))
         match expr:
-            case kernel.Local(type_, name):
+            case nodes.Local(type_, name):
                 self._shape += [type_, name if name in FIXED else ""]
                 if name not in FIXED:
                     self.slots.append(Slot("read", name, type=type_))
-            case kernel.Const(type_, value):
+            case nodes.Const(type_, value):
                 is_integer = is_number(expr)
                 self._shape += [type_, "" if is_integer else repr(value)]
                 if is_integer:
                     self.slots.append(Slot("number", number=int(value)))
-            case kernel.Used(lane) | kernel.Capacity(lane):
+            case nodes.Used(lane) | nodes.Capacity(lane):
                 self._lane(lane)
             case _:
                 self._parts(expr)
 
-    def _parts(self, expr: kernel.Expr) -> None:
+    def _parts(self, expr: nodes.Expr) -> None:
         match expr:
-            case kernel.Get(_, place):
+            case nodes.Get(_, place):
                 self._place(place)
-            case kernel.IsText(address, _) | kernel.Nearest(address, _, _):
+            case nodes.IsText(address, _) | nodes.Nearest(address, _, _):
                 self._address(address)
             case _:
                 pass
@@ -157,19 +157,19 @@ class Outline:
             self._expression(each)
 
 
-_LITERALS: dict[type[kernel.Expr], Callable[[Any], Hashable]] = {
-    **dict.fromkeys((kernel.Binary, kernel.Compare, kernel.Fits), attrgetter("op")),
-    **dict.fromkeys((kernel.Convert, kernel.Bits, kernel.Get), attrgetter("type")),
-    kernel.Load: attrgetter("type", "order"),
-    kernel.Unary: attrgetter("function"),
-    kernel.Digits: attrgetter("places"),
-    kernel.Lookup: attrgetter("type", "values"),
-    kernel.HostValue: attrgetter("what"),
-    kernel.Register: attrgetter("number"),
+_LITERALS: dict[type[nodes.Expr], Callable[[Any], Hashable]] = {
+    **dict.fromkeys((nodes.Binary, nodes.Compare, nodes.Fits), attrgetter("op")),
+    **dict.fromkeys((nodes.Convert, nodes.Bits, nodes.Get), attrgetter("type")),
+    nodes.Load: attrgetter("type", "order"),
+    nodes.Unary: attrgetter("function"),
+    nodes.Digits: attrgetter("places"),
+    nodes.Lookup: attrgetter("type", "values"),
+    nodes.HostValue: attrgetter("what"),
+    nodes.Register: attrgetter("number"),
 }
 """What is an expression's own, besides its operands."""
 
 
-def is_number(expr: kernel.Const) -> bool:
+def is_number(expr: nodes.Const) -> bool:
     """Whether a constant is an integer."""
     return expr.type not in ("bool", "f32", "f64")

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
-from rosetta_jit.backends.base import statements
 from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.frame import I64, Frame, Variable, forgotten
 from rosetta_jit.backends.llvm.series import print_cases
-from rosetta_jit.kernel.ir import Assign, Block, Const, Expect, If, Local, Switch, Var, While
+from rosetta_jit.backends.printing import statements
+from rosetta_jit.kernel.nodes import Assign, Block, Const, Expect, If, Local, Switch, Var, While
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from llvmlite import ir
 from rosetta_jit.backends.llvm.alike import NOTHING, Number, Series
 from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.frame import I64, LLVM_TYPES, Frame, Stretch, constant, forgotten, state_word
-from rosetta_jit.kernel.ir import Block, Direction, Local, Switch
+from rosetta_jit.kernel.nodes import Block, Direction, Local, Switch
 from rosetta_jit.kernel.state import LANE_WORDS, USED, lane_word
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.startup.dataclass import dataclass

@@ -30,6 +30,7 @@ from rosetta_jit.backends.llvm.host import host_called
 from rosetta_jit.backends.llvm.rounds import print_switch, rounds_of
 from rosetta_jit.backends.llvm.series import print_cases, print_series
 from rosetta_jit.kernel import ir as kernel
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
@@ -41,18 +42,18 @@ GOLDEN = 0x9E3779B1
 """2**32 over the golden ratio: its multiples leave the numbers below 2**32 in an order without a pattern."""
 
 
-def block(frame: Frame, statements: kernel.Block) -> None:
+def block(frame: Frame, statements: nodes.Block) -> None:
     """Print statements until one ends the block; what follows a Return is never reached."""
     for part in parts(frame, statements):
         print_part(frame, part)
 
 
-def parts(frame: Frame, statements: kernel.Block) -> Sequence[kernel.Stmt | Series]:
+def parts(frame: Frame, statements: nodes.Block) -> Sequence[nodes.Stmt | Series]:
     """What a block is printed as."""
     return frame.alike.parts(statements)
 
 
-def print_part(frame: Frame, part: kernel.Stmt | Series) -> None:
+def print_part(frame: Frame, part: nodes.Stmt | Series) -> None:
     """Print a part of a block, unless one before it has ended it."""
     if frame.builder.block.is_terminated:
         return
@@ -62,49 +63,49 @@ def print_part(frame: Frame, part: kernel.Stmt | Series) -> None:
         _statement(frame, part)
 
 
-def _statement(frame: Frame, statement: kernel.Stmt) -> None:
+def _statement(frame: Frame, statement: nodes.Stmt) -> None:
     match statement:
-        case kernel.Require(at, size, failure):
+        case nodes.Require(at, size, failure):
             _require(frame, at, size, failure)
-        case kernel.Expect(condition, failure):
+        case nodes.Expect(condition, failure):
             _check(frame, expression(frame, condition), failure)
-        case kernel.Let(name, value):
+        case nodes.Let(name, value):
             frame.locals[name] = _value(frame, name, value)
-        case kernel.Var(name, value):
+        case nodes.Var(name, value):
             start = expression(frame, value)
             frame.builder.store(start, frame.variable(name, LLVM_TYPES[type_of(value)]).slot)
-        case kernel.Assign(name, value):
+        case nodes.Assign(name, value):
             _assign(frame, name, value)
-        case kernel.Store(at, value, order):
+        case nodes.Store(at, value, order):
             store(frame, wire_pointer(frame, at), expression(frame, value), type_of(value), alignment=1, order=order)
-        case kernel.SetField(place, value):
+        case nodes.SetField(place, value):
             alignment = place_alignment(frame, place, type_of(value))
             store(frame, place_pointer(frame, place), expression(frame, value), type_of(value), alignment=alignment)
-        case kernel.Reserve(lane, count):
+        case nodes.Reserve(lane, count):
             _reserve(frame, lane, expression(frame, count))
-        case kernel.Advance(lane, count):
+        case nodes.Advance(lane, count):
             slot = frame.used_slot(lane)
             rows = frame.builder.add(frame.builder.load(slot, typ=I64), expression(frame, count), flags=("nsw",))
             # One text behind another: what LLVM works out for a sum of sums takes exponential time.
             frame.builder.store(forgotten(frame.builder, rows) if frame.is_hidden(lane) else rows, slot)
-        case kernel.Copy(target, source, size):
+        case nodes.Copy(target, source, size):
             copy_memory(frame, pointer(frame, target), pointer(frame, source), expression(frame, size))
-        case kernel.Fill(target, size, byte):
+        case nodes.Fill(target, size, byte):
             fill_memory(frame, pointer(frame, target), byte, expression(frame, size))
-        case kernel.For() | kernel.While() | kernel.If() | kernel.Switch():
+        case nodes.For() | nodes.While() | nodes.If() | nodes.Switch():
             _nested(frame, statement)
-        case kernel.Return(position, registers):
+        case nodes.Return(position, registers):
             _keep(frame, registers)
             frame.done.enter(frame.builder, [expression(frame, position)])
-        case kernel.Call():
+        case nodes.Call():
             _call(frame, statement)
-        case kernel.HostCall():
+        case nodes.HostCall():
             _host_call(frame, statement)
         case _:
             assert_never(statement)
 
 
-def _value(frame: Frame, name: str, value: kernel.Expr) -> ir.Value:
+def _value(frame: Frame, name: str, value: nodes.Expr) -> ir.Value:
     """The value of a local: of a place in the message LLVM does not know how it was found.
 
     A place is a sum of the sizes of all that stands before it. What LLVM tries with the summands, for the addresses in each loop, takes
@@ -116,60 +117,60 @@ def _value(frame: Frame, name: str, value: kernel.Expr) -> ir.Value:
         frame.indices.add(name)
         return number
     match value:
-        case kernel.Binary("add", left, right) if (
-            not isinstance(left, kernel.Const) and not isinstance(right, kernel.Const) and type_of(left) == "i64"
+        case nodes.Binary("add", left, right) if (
+            not isinstance(left, nodes.Const) and not isinstance(right, nodes.Const) and type_of(left) == "i64"
         ):
             return forgotten(frame.builder, number)
         case _:
             return number
 
 
-def _keep(frame: Frame, registers: tuple[tuple[int, kernel.Expr], ...]) -> None:
+def _keep(frame: Frame, registers: tuple[tuple[int, nodes.Expr], ...]) -> None:
     """Let registers hold other values from now on, all of which are computed from the old ones."""
     values = [expression(frame, value) for _, value in registers]
     for (number, _), value in zip(registers, values, strict=True):
         frame.builder.store(value, frame.register_word(frame.builder, number), align=8)
 
 
-def _nested(frame: Frame, statement: kernel.For | kernel.While | kernel.If | kernel.Switch) -> None:
+def _nested(frame: Frame, statement: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
     match statement:
-        case kernel.For(variable, count, body):
+        case nodes.For(variable, count, body):
             _for(frame, variable, expression(frame, count), body)
-        case kernel.While():
+        case nodes.While():
             _while(frame, statement)
-        case kernel.If(condition, then, otherwise):
+        case nodes.If(condition, then, otherwise):
             _if(frame, expression(frame, condition), then, otherwise)
-        case kernel.Switch():
+        case nodes.Switch():
             _switch(frame, statement)
 
 
-def _require(frame: Frame, at: kernel.Expr, size: kernel.Expr, failure: kernel.Failure) -> None:
+def _require(frame: Frame, at: nodes.Expr, size: nodes.Expr, failure: nodes.Failure) -> None:
     """Check ``at >= 0``, ``size >= 0`` and ``size <= end - at``: a difference that cannot wrap where the first holds.
 
     Of a size that is known that is one comparison without signs.
     """
     builder = frame.builder
     start = expression(frame, at)
-    if isinstance(size, kernel.Const) and not _is_behind_begin(at):
+    if isinstance(size, nodes.Const) and not _is_behind_begin(at):
         _check(frame, builder.icmp_unsigned("<", start, frame.limit(int(size.value))), failure)
         return
     length = expression(frame, size)
     holds = builder.icmp_signed("<=", length, builder.sub(frame.parameters.end, start))
-    for value, is_positive in ((start, _is_behind_begin(at)), (length, isinstance(size, kernel.Const))):
+    for value, is_positive in ((start, _is_behind_begin(at)), (length, isinstance(size, nodes.Const))):
         if not is_positive:
             holds = builder.and_(holds, builder.icmp_signed(">=", value, constant(0)))
     _check(frame, holds, failure)
 
 
-def _is_behind_begin(at: kernel.Expr) -> bool:
+def _is_behind_begin(at: nodes.Expr) -> bool:
     match at:
-        case kernel.Binary("add", base, kernel.Const(_, offset)):
+        case nodes.Binary("add", base, nodes.Const(_, offset)):
             return base == BEGIN and offset >= 0
         case _:
-            return at == BEGIN or isinstance(at, kernel.Const)
+            return at == BEGIN or isinstance(at, nodes.Const)
 
 
-def _check(frame: Frame, holds: ir.Value, failure: kernel.Failure) -> None:
+def _check(frame: Frame, holds: ir.Value, failure: nodes.Failure) -> None:
     """Go on where the condition holds. In a body of very many checks, those that report the same lead to one block."""
     shared = frame.failed.shared if isinstance(frame.failed, StoredExit) else {}
     told = _told(frame, failure.site, failure.at, *failure.indices) if isinstance(frame.failed, StoredExit) else None
@@ -191,7 +192,7 @@ def _cold(frame: Frame, holds: ir.Value, known: ir.Block | None = None) -> ir.Bl
     return good
 
 
-def _told(frame: Frame, site: int, *numbers: kernel.Expr) -> tuple[object, ...] | None:
+def _told(frame: Frame, site: int, *numbers: nodes.Expr) -> tuple[object, ...] | None:
     """What a failure reports, and what that is computed from; None where it is another site or another index for each caller or stretch."""
     if frame.caller is not None or frame.stretch is not None:
         return None
@@ -199,7 +200,7 @@ def _told(frame: Frame, site: int, *numbers: kernel.Expr) -> tuple[object, ...] 
     return (site, numbers, *(frame.locals[each] for each in names))
 
 
-def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Value, indices: tuple[kernel.Expr, ...]) -> None:
+def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Value, indices: tuple[nodes.Expr, ...]) -> None:
     """Leave the body at the site of a number, counted from 1; what a routine's sites and indices are, its caller says."""
     while frame.caller is not None:
         frame, call = frame.caller
@@ -211,7 +212,7 @@ def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Val
         frame.failed.enter(frame.builder, [*found, *(expression(frame, each) for each in indices)])
 
 
-def _stores_indices(frame: Frame, failed: StoredExit, indices: tuple[kernel.Expr, ...], told: tuple[object, ...]) -> ir.Block:
+def _stores_indices(frame: Frame, failed: StoredExit, indices: tuple[nodes.Expr, ...], told: tuple[object, ...]) -> ir.Block:
     """The block that stores indices on the way out: one for all failures in a round of a loop, whose indices are the same."""
     if told not in failed.shared:
         here, shared = frame.builder.block, frame.block("indices")
@@ -222,7 +223,7 @@ def _stores_indices(frame: Frame, failed: StoredExit, indices: tuple[kernel.Expr
     return failed.shared[told]
 
 
-def _call(frame: Frame, call: kernel.Call) -> None:
+def _call(frame: Frame, call: nodes.Call) -> None:
     routine = frame.routines[call.routine]
     if isinstance(routine, kernel.Routine):
         _inline(frame, call, routine)
@@ -238,7 +239,7 @@ def _call(frame: Frame, call: kernel.Call) -> None:
         frame.locals[result.name] = builder.extract_value(outcome, position)
 
 
-def _inline(frame: Frame, call: kernel.Call, routine: kernel.Routine) -> None:
+def _inline(frame: Frame, call: nodes.Call, routine: kernel.Routine) -> None:
     """The routine's statements instead of a call."""
     names = {name: frame.locals[name] for name in (BEGIN.name, END.name)}
     arguments = {each.name: expression(frame, value) for each, value in zip(routine.parameters, call.arguments, strict=True)}
@@ -248,7 +249,7 @@ def _inline(frame: Frame, call: kernel.Call, routine: kernel.Routine) -> None:
         frame.locals[here.name] = expression(inside, there)
 
 
-def _host_call(frame: Frame, call: kernel.HostCall) -> None:
+def _host_call(frame: Frame, call: nodes.HostCall) -> None:
     status, result = host_called(frame, call)
     good = _cold(frame, frame.builder.icmp_signed("==", status, ir.Constant(status.type, 0)))
     _fail(frame, (call.failure.site,), constant(1), expression(frame, call.failure.at), call.failure.indices)
@@ -270,7 +271,7 @@ def _site(frame: Frame, number: ir.Value, sites: tuple[int, ...]) -> ir.Value:
     return builder.add(first, builder.add(number, further))
 
 
-def _assign(frame: Frame, name: str, value: kernel.Expr) -> None:
+def _assign(frame: Frame, name: str, value: nodes.Expr) -> None:
     variable = frame.locals[name]
     if not isinstance(variable, Variable):
         raise AssertionError(f"{name} is no Var")  # noqa: TRY004 - our bug, not a caller's
@@ -295,7 +296,7 @@ def _reserve(frame: Frame, lane: int, count: ir.Value) -> None:
     builder.position_at_end(enough)
 
 
-def _for(frame: Frame, variable: str, count: ir.Value, body: kernel.Block) -> None:
+def _for(frame: Frame, variable: str, count: ir.Value, body: nodes.Block) -> None:
     builder = frame.builder
     before, head, inside, behind = builder.block, frame.block("for"), frame.block("each"), frame.block("after")
     builder.branch(head)
@@ -312,7 +313,7 @@ def _for(frame: Frame, variable: str, count: ir.Value, body: kernel.Block) -> No
     builder.position_at_end(behind)
 
 
-def _while(frame: Frame, loop: kernel.While) -> None:
+def _while(frame: Frame, loop: nodes.While) -> None:
     builder = frame.builder
     head, inside, behind = frame.block("while"), frame.block("round"), frame.block("after")
     builder.branch(head)
@@ -330,7 +331,7 @@ def _while(frame: Frame, loop: kernel.While) -> None:
     builder.position_at_end(behind)
 
 
-def _if(frame: Frame, condition: ir.Value, then: kernel.Block, otherwise: kernel.Block) -> None:
+def _if(frame: Frame, condition: ir.Value, then: nodes.Block, otherwise: nodes.Block) -> None:
     builder = frame.builder
     yes, behind = frame.block("then"), frame.block("after")
     no = frame.block("else") if otherwise else behind
@@ -343,7 +344,7 @@ def _if(frame: Frame, condition: ir.Value, then: kernel.Block, otherwise: kernel
     builder.position_at_end(behind)
 
 
-def _switch(frame: Frame, statement: kernel.Switch) -> None:
+def _switch(frame: Frame, statement: nodes.Switch) -> None:
     builder, value = frame.builder, expression(frame, statement.value)
     other, behind = frame.block("default"), frame.block("after")
     switch = builder.switch(value, other)
@@ -358,7 +359,7 @@ def _switch(frame: Frame, statement: kernel.Switch) -> None:
     builder.position_at_end(behind)
 
 
-def _shuffled(cases: tuple[tuple[int, kernel.Block], ...]) -> list[tuple[int, kernel.Block]]:
+def _shuffled(cases: tuple[tuple[int, nodes.Block], ...]) -> list[tuple[int, nodes.Block]]:
     """The cases, if they are many in no order that means anything: so they will lie in memory.
 
     A processor foretells where a switch jumps to by the addresses that it jumped to before. Of a hundred cases of one size, taken in the
@@ -369,7 +370,7 @@ def _shuffled(cases: tuple[tuple[int, kernel.Block], ...]) -> list[tuple[int, ke
     return [case for _, case in sorted(enumerate(cases), key=lambda each: each[0] * GOLDEN % 2**32)]
 
 
-def _branch(frame: Frame, body: kernel.Block, behind: ir.Block) -> None:
+def _branch(frame: Frame, body: nodes.Block, behind: ir.Block) -> None:
     block(frame, body)
     if not frame.builder.block.is_terminated:
         frame.builder.branch(behind)

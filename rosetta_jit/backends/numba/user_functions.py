@@ -11,7 +11,7 @@ from numba.core.registry import CPUDispatcher
 
 from rosetta_jit.backends.llvm.host import symbol
 from rosetta_jit.backends.numba.function import library
-from rosetta_jit.kernel.ir import WIDTH
+from rosetta_jit.kernel.nodes import WIDTH
 
 if TYPE_CHECKING:
     from numba.core.dispatcher import Dispatcher

@@ -12,9 +12,9 @@ import keyword
 from collections.abc import Callable, Iterable
 from typing import Any, assert_never
 
-from rosetta_jit.backends.base import Namespace, Writer, counted_lanes, emptied_lanes, statements
+from rosetta_jit.backends.printing import Namespace, Writer, counted_lanes, emptied_lanes, statements
 from rosetta_jit.backends.python.expr import FLOATS, FORMATS, Names, expression, location, part
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.host import NO_FUNCTIONS, Functions
 from rosetta_jit.kernel.interpret import runnable as interpreted
 from rosetta_jit.kernel.state import CAPACITY, USED, lane_word
@@ -64,7 +64,7 @@ def python_text(kernel: ir.Kernel) -> str:
     """The kernel as the source of a Python module, the same for the same kernel."""
     writer = Writer()
     writer.line(f"# Made by rosetta_jit from the kernel {kernel.name!a}, which is to {kernel.direction}. Changes will be lost.")
-    calls_host = any(isinstance(stmt, ir.HostCall) for body in kernel.bodies for stmt in statements(body))
+    calls_host = any(isinstance(stmt, nodes.HostCall) for body in kernel.bodies for stmt in statements(body))
     for line in (*IMPORTS, *(HOST_IMPORTS if calls_host else ()), *([OF_DECIMALS] if _has_decimals(kernel) else [])):
         writer.line(line)
     for routine in kernel.routines:
@@ -91,7 +91,7 @@ def _has_decimals(kernel: ir.Kernel) -> bool:
     """Whether a kernel reads or writes floats in decimal."""
     blocks = (*kernel.bodies, *(routine.body for routine in kernel.routines))
     expressions = (expr for block in blocks for stmt in statements(block) for expr in expressions_of(stmt))
-    return any(isinstance(part, ir.Nearest | ir.Digits | ir.Scale) for expr in expressions for part in subexpressions(expr))
+    return any(isinstance(part, nodes.Nearest | nodes.Digits | nodes.Scale) for expr in expressions for part in subexpressions(expr))
 
 
 def _reserved(kernel: ir.Kernel) -> frozenset[str]:
@@ -106,7 +106,7 @@ def _reserved(kernel: ir.Kernel) -> frozenset[str]:
 class _Attempt:
     """Prints one body."""
 
-    def __init__(self, kernel: ir.Kernel, body: ir.Block, writer: Writer) -> None:
+    def __init__(self, kernel: ir.Kernel, body: nodes.Block, writer: Writer) -> None:
         parameters = {name: name for name in ("begin", "end", "row")}
         self.kernel, self.body, self.writer = kernel, body, writer
         self.names = Names(Namespace(_reserved(kernel), parameters), kernel.strides)
@@ -132,51 +132,51 @@ class _Attempt:
         outer.lines += self.writer.lines
         self.writer = outer
 
-    def _block(self, block: ir.Block) -> None:
+    def _block(self, block: nodes.Block) -> None:
         for statement in block:
             self._statement(statement)
         if not block:
             self.writer.line("pass")
 
-    def _statement(self, statement: ir.Stmt) -> None:
+    def _statement(self, statement: nodes.Stmt) -> None:
         match statement:
-            case ir.Require(at, size, failure):
+            case nodes.Require(at, size, failure):
                 self._fail_unless(f"has_room({self._text(at)}, {self._text(size)}, end)", failure)
-            case ir.Expect(condition, failure):
+            case nodes.Expect(condition, failure):
                 self._fail_unless(self._text(condition), failure)
-            case ir.Let(name, value) | ir.Var(name, value) | ir.Assign(name, value):
+            case nodes.Let(name, value) | nodes.Var(name, value) | nodes.Assign(name, value):
                 self.writer.line(f"{self.names.locals.identifier(name)} = {self._text(value)}")
-            case ir.Store(at, value, order):
-                self._set(ir.Wire(at), value, order)
-            case ir.SetField(place, value):
+            case nodes.Store(at, value, order):
+                self._set(nodes.Wire(at), value, order)
+            case nodes.SetField(place, value):
                 self._set(place, value, "<")
-            case ir.Reserve(lane, count):
+            case nodes.Reserve(lane, count):
                 free = f"{self.names.capacity_name(lane)} - {self.names.used_name(lane)}"
                 self.writer.line(f"reserve({lane}, {self._text(count)}, {free})")
-            case ir.Advance(lane, count):
+            case nodes.Advance(lane, count):
                 self.writer.line(f"{self.names.used_name(lane)} += {self._text(count)}")
-            case ir.Copy(target, source, size):
+            case nodes.Copy(target, source, size):
                 length = self._text(size)
                 self.writer.line(f"{part(self.names, target, length)} = {part(self.names, source, length)}")
-            case ir.Fill(target, size, byte):
+            case nodes.Fill(target, size, byte):
                 length = self._text(size)
                 self.writer.line(f"{part(self.names, target, length)} = bytes([{byte}]) * {length}")
-            case ir.Return(position, registers):
+            case nodes.Return(position, registers):
                 for lane in self.counted:
                     self.writer.line(f"state[{lane_word(lane, USED)}] = used_{lane}")
                 for number, value in registers:
                     self.writer.line(f"registers[{number}] = {self._text(value)}")
                 self.writer.line(f"return {self._text(position)}")
-            case ir.For() | ir.While() | ir.If() | ir.Switch():
+            case nodes.For() | nodes.While() | nodes.If() | nodes.Switch():
                 self._nested(statement)
-            case ir.Call():
+            case nodes.Call():
                 self._call(statement)
-            case ir.HostCall():
+            case nodes.HostCall():
                 self._host_call(statement)
             case _:
                 assert_never(statement)
 
-    def _call(self, call: ir.Call) -> None:
+    def _call(self, call: nodes.Call) -> None:
         """Results are a tuple; what a failure reports goes in."""
         bound = _items(self.names.locals.identifier(each.name) for each in call.results)
         given = "".join(f", {self._text(each)}" for each in call.arguments)
@@ -184,7 +184,7 @@ class _Attempt:
         reported = f"({sites}), {self._indices(call.indices)}"
         self.writer.line(f"{bound} = {_function(call.routine)}(buffer, begin, end, state, lanes, {reported}{given})")
 
-    def _host_call(self, call: ir.HostCall) -> None:
+    def _host_call(self, call: nodes.HostCall) -> None:
         spans = (part(self.names, extent.address, self._text(extent.size)) for extent in extents_of(call))
         given = ", ".join((*map(self._text, call.arguments), *spans))
         bound = self.names.locals.identifier(call.result.name)
@@ -193,17 +193,17 @@ class _Attempt:
         with self.writer.indented("except RefusedError:"):
             self._fail(call.failure, " from None")
 
-    def _nested(self, statement: ir.For | ir.While | ir.If | ir.Switch) -> None:
+    def _nested(self, statement: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
         match statement:
-            case ir.For(variable, count, body):
+            case nodes.For(variable, count, body):
                 self._governed(f"for {self.names.locals.identifier(variable)} in range({self._text(count)}):", body)
-            case ir.While(condition, body, _, _):
+            case nodes.While(condition, body, _, _):
                 self._governed(f"while {self._text(condition)}:", body)
-            case ir.If(condition, then, otherwise):
+            case nodes.If(condition, then, otherwise):
                 self._governed(f"if {self._text(condition)}:", then)
                 if otherwise:
                     self._governed("else:", otherwise)
-            case ir.Switch(value, cases, default):
+            case nodes.Switch(value, cases, default):
                 with self.writer.indented(f"match {self._text(value)}:"):
                     for number, body in cases:
                         self._governed(f"case {number}:", body)
@@ -211,38 +211,38 @@ class _Attempt:
             case _:
                 assert_never(statement)
 
-    def _governed(self, head: str, body: ir.Block) -> None:
+    def _governed(self, head: str, body: nodes.Block) -> None:
         with self.writer.indented(head):
             self._block(body)
 
-    def _fail_unless(self, condition: str, failure: ir.Failure) -> None:
+    def _fail_unless(self, condition: str, failure: nodes.Failure) -> None:
         with self.writer.indented(f"if not {condition}:"):
             self._fail(failure)
 
-    def _fail(self, failure: ir.Failure, cause: str = "") -> None:
+    def _fail(self, failure: nodes.Failure, cause: str = "") -> None:
         reported = f"{self._site(failure.site)}, {self._text(failure.at)}, {self._indices(failure.indices)}"
         self.writer.line(f"raise Failed({reported}){cause}  # {ascii(self._about(failure.site))[1:-1]}")
 
     def _site(self, number: int) -> str:
         return str(number)
 
-    def _indices(self, indices: tuple[ir.Expr, ...]) -> str:
+    def _indices(self, indices: tuple[nodes.Expr, ...]) -> str:
         return f"({_items(map(self._text, indices))})"
 
     def _about(self, number: int) -> str:
         site = self.kernel.sites[number]
         return f"{site.kind} {site.path}"
 
-    def _set(self, address: ir.Address, value: ir.Expr, order: ir.Order) -> None:
+    def _set(self, address: nodes.Address, value: nodes.Expr, order: nodes.Order) -> None:
         type_ = type_of(value)
         if type_ in FLOATS:
-            target = part(self.names, address, str(ir.WIDTH[type_]))
+            target = part(self.names, address, str(nodes.WIDTH[type_]))
             self.writer.line(f'{target} = to_bytes("{type_}", {self._text(value)}, "{order}")')
         else:
             memory, start = location(self.names, address)
             self.writer.line(f'pack_into("{order}{FORMATS[type_]}", {memory}, {start}, {self._text(value)})')
 
-    def _text(self, expr: ir.Expr) -> str:
+    def _text(self, expr: nodes.Expr) -> str:
         return expression(self.names, expr)
 
 
@@ -264,7 +264,7 @@ class _RoutineBody(_Attempt):
     def _site(self, number: int) -> str:
         return f"sites[{number - 1}]"
 
-    def _indices(self, indices: tuple[ir.Expr, ...]) -> str:  # noqa: ARG002 - a routine has the indices of its call
+    def _indices(self, indices: tuple[nodes.Expr, ...]) -> str:  # noqa: ARG002 - a routine has the indices of its call
         return "indices"
 
     def _about(self, number: int) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.suggestions import closest
 from rosetta_jit.diagnostics import Diagnostic, Mistake, error
 from rosetta_jit.source import Span
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.suggestions import closest
 from rosetta_jit.diagnostics import Diagnostic, Mistake, error
 from rosetta_jit.frameworks.yarp.limits import MAX_SHOWN
 

@@ -7,7 +7,7 @@ that a bottle takes as many bytes in either. Images are bottles, too, and differ
 from __future__ import annotations
 
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, DICT, FIXED_FORMATS, LIST, Dialect, vocab
-from rosetta_jit.wire.tree import Header, Scalar, Tree
+from rosetta_jit.wire.self_describing import Header, Scalar, Tree
 
 SIZES = {"b": 1, "h": 2, "i": 4, "q": 8, "f": 4, "d": 8}
 """Bytes of the letters of the `struct` module."""

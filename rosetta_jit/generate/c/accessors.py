@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.base import Namespace
+from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.bounds import reserved
 from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.unit import Unit, wire_of

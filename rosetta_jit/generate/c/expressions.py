@@ -13,7 +13,7 @@ import numpy as np
 
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS, SIGNED, to_bytes
 from rosetta_jit.kernel.terms import END, type_of
 
@@ -28,60 +28,60 @@ OF_FLOATS = {"abs": "fabs", "sqrt": "sqrt", "floor": "floor", "ceil": "ceil", "t
 FMOD = {"rem": "fmod"}
 
 
-def expression(scope: Scope, expr: ir.Expr) -> str:
+def expression(scope: Scope, expr: nodes.Expr) -> str:
     """The text of an expression; one with an operator stands in parentheses."""
     match expr:
-        case ir.Const(type_, value):
+        case nodes.Const(type_, value):
             return constant(scope, type_, value)
-        case ir.Local(_, name):
+        case nodes.Local(_, name):
             return scope.takes("end") if name == END.name else scope.locals.identifier(name)
-        case ir.Load(type_, at, order):
+        case nodes.Load(type_, at, order):
             return _loaded(scope, type_, expression(scope, at), order)
-        case ir.Get(type_, place):
+        case nodes.Get(type_, place):
             return read(scope, type_, place)
-        case ir.Used() | ir.Capacity() | ir.HostValue() | ir.Register():
+        case nodes.Used() | nodes.Capacity() | nodes.HostValue() | nodes.Register():
             return _about_the_holder(scope, expr)
-        case ir.Unary(function, operand):
+        case nodes.Unary(function, operand):
             return _unary(scope, function, type_of(operand), _wide(scope, operand))
-        case ir.Binary(op, left, right):
+        case nodes.Binary(op, left, right):
             return _binary(scope, op, left, right)
-        case ir.Compare(op, left, right):
+        case nodes.Compare(op, left, right):
             return f"({' '.join(_operands(scope, left, COMPARISONS[op], right))})"
-        case ir.Fits(op, left, right):
+        case nodes.Fits(op, left, right):
             return f"{scope.calls(f'fits_{op}')}({expression(scope, left)}, {expression(scope, right)})"
-        case ir.Convert(type_, operand):
+        case nodes.Convert(type_, operand):
             return _convert(scope, type_, operand)
-        case ir.Bits(type_, operand):
+        case nodes.Bits(type_, operand):
             return _bits(scope, type_, operand)
-        case ir.Select(condition, then, otherwise):
+        case nodes.Select(condition, then, otherwise):
             chosen = f"({expression(scope, condition)} ? {expression(scope, then)} : {expression(scope, otherwise)})"
-            return f"({C_TYPES[type_of(then)]}){chosen}" if ir.WIDTH[type_of(then)] < 4 else chosen
-        case ir.IsText(address, size):
+            return f"({C_TYPES[type_of(then)]}){chosen}" if nodes.WIDTH[type_of(then)] < 4 else chosen
+        case nodes.IsText(address, size):
             memory, start = location(scope, address)
             return f"{scope.calls('is_text')}({memory}, {start}, {expression(scope, size)})"
-        case ir.Nearest() | ir.Digits() | ir.Scale():
+        case nodes.Nearest() | nodes.Digits() | nodes.Scale():
             return _decimal(scope, expr)
-        case ir.Lookup(type_, values, index):
+        case nodes.Lookup(type_, values, index):
             return f"{scope.table(type_, values)}[{bare(expression(scope, index))}]"
         case _:
             assert_never(expr)
 
 
-def _about_the_holder(scope: Scope, expr: ir.Known) -> str:
+def _about_the_holder(scope: Scope, expr: nodes.Known) -> str:
     match expr:
-        case ir.Used(lane):
+        case nodes.Used(lane):
             return scope.used(lane)
-        case ir.Capacity(lane):
+        case nodes.Capacity(lane):
             return scope.capacity(lane)
-        case ir.HostValue(what):
+        case nodes.HostValue(what):
             return f"{scope.takes('holder')}->{what}"
-        case ir.Register(number):
+        case nodes.Register(number):
             return scope.register(number)
         case _:
             assert_never(expr)
 
 
-def constant(scope: Scope, type_: ir.Scalar, value: float, *, wide: bool = False) -> str:
+def constant(scope: Scope, type_: nodes.Scalar, value: float, *, wide: bool = False) -> str:
     """A literal; ``wide`` where C would take it for an int and nothing around it says otherwise."""
     if type_ == "bool":
         return "true" if value else "false"
@@ -98,11 +98,11 @@ def constant(scope: Scope, type_: ir.Scalar, value: float, *, wide: bool = False
     return f"{number}{suffix}" if number >= 0 else f"({number})"
 
 
-def _float(scope: Scope, type_: ir.Scalar, value: float) -> str:
+def _float(scope: Scope, type_: nodes.Scalar, value: float) -> str:
     with np.errstate(over="ignore"):
         number = np.float32(value) if type_ == "f32" else np.float64(value)
     if not math.isfinite(number):
-        width = 8 * ir.WIDTH[type_]
+        width = 8 * nodes.WIDTH[type_]
         bits = int.from_bytes(to_bytes(type_, number), "little")
         return f"{scope.calls(f'float{width}_of')}(UINT{width}_C(0x{bits:x}))"
     text = str(number)
@@ -111,25 +111,25 @@ def _float(scope: Scope, type_: ir.Scalar, value: float) -> str:
     return f"({text})" if text.startswith("-") else text
 
 
-def _is_wide(expr: ir.Expr) -> bool:
+def _is_wide(expr: nodes.Expr) -> bool:
     """Whether C takes what is printed for more than an int."""
     match expr:
-        case ir.Const(type_, value):
+        case nodes.Const(type_, value):
             return type_ in ("i64", "u64") and not -(2**31) < value < 2**31
-        case ir.Binary(op, left, right):
+        case nodes.Binary(op, left, right):
             return _is_wide(left) or (op != "shr" and _is_wide(right))
-        case ir.Select(_, then, otherwise):
+        case nodes.Select(_, then, otherwise):
             return _is_wide(then) or _is_wide(otherwise)
         case _:
             return True
 
 
-def _operands(scope: Scope, left: ir.Expr, operator: str, right: ir.Expr) -> tuple[str, str, str]:
+def _operands(scope: Scope, left: nodes.Expr, operator: str, right: nodes.Expr) -> tuple[str, str, str]:
     """Both sides of an operator, of which one has the type of both."""
     return expression(scope, left) if _is_wide(right) else _wide(scope, left), operator, expression(scope, right)
 
 
-def _binary(scope: Scope, op: str, left: ir.Expr, right: ir.Expr) -> str:
+def _binary(scope: Scope, op: str, left: nodes.Expr, right: nodes.Expr) -> str:
     type_ = type_of(left)
     if type_ == "bool" and op in LOGICAL:
         return f"({expression(scope, left)} {LOGICAL[op]} {expression(scope, right)})"
@@ -143,29 +143,29 @@ def _binary(scope: Scope, op: str, left: ir.Expr, right: ir.Expr) -> str:
     return _narrowed(type_, f"({' '.join(_operands(scope, left, OPERATORS[op], right))})")
 
 
-def _wide(scope: Scope, expr: ir.Expr) -> str:
+def _wide(scope: Scope, expr: nodes.Expr) -> str:
     """An expression that C takes for what it is."""
-    if isinstance(expr, ir.Const):
+    if isinstance(expr, nodes.Const):
         return constant(scope, expr.type, expr.value, wide=True)
     text = expression(scope, expr)
     return text if _is_wide(expr) or type_of(expr) not in ("i64", "u64") else f"({C_TYPES[type_of(expr)]}){text}"
 
 
-def _shifted(op: str, type_: ir.Scalar, left: str, right: str) -> str:
+def _shifted(op: str, type_: nodes.Scalar, left: str, right: str) -> str:
     """High bits that leave are those of an unsigned number: of a signed one C does not say what becomes of it."""
     if op == "shr":
         return _narrowed(type_, f"({left} >> {right})")
-    unsigned = "uint64_t" if ir.WIDTH[type_] == 8 else "uint32_t"
+    unsigned = "uint64_t" if nodes.WIDTH[type_] == 8 else "uint32_t"
     shifted = f"(({unsigned}){left} << {right})"
     return shifted if C_TYPES[type_] == unsigned else f"({C_TYPES[type_]}){shifted}"
 
 
-def _narrowed(type_: ir.Scalar, text: str) -> str:
+def _narrowed(type_: nodes.Scalar, text: str) -> str:
     """C computes what is narrower than an int as an int."""
-    return f"({C_TYPES[type_]}){text}" if ir.WIDTH[type_] < 4 and type_ != "bool" else text
+    return f"({C_TYPES[type_]}){text}" if nodes.WIDTH[type_] < 4 and type_ != "bool" else text
 
 
-def _unary(scope: Scope, function: str, type_: ir.Scalar, value: str) -> str:
+def _unary(scope: Scope, function: str, type_: nodes.Scalar, value: str) -> str:
     match function:
         case "not" if type_ == "bool":
             return f"(!{value})"
@@ -182,7 +182,7 @@ def _unary(scope: Scope, function: str, type_: ir.Scalar, value: str) -> str:
             return f"{OF_FLOATS.get(function, function)}{'f' if type_ == 'f32' else ''}({value})"
 
 
-def _convert(scope: Scope, target: ir.Scalar, operand: ir.Expr) -> str:
+def _convert(scope: Scope, target: nodes.Scalar, operand: nodes.Expr) -> str:
     source, value = type_of(operand), expression(scope, operand)
     if target == source:
         return value
@@ -193,11 +193,11 @@ def _convert(scope: Scope, target: ir.Scalar, operand: ir.Expr) -> str:
     return f"({C_TYPES[target]}){value}"
 
 
-def _bits(scope: Scope, target: ir.Scalar, operand: ir.Expr) -> str:
+def _bits(scope: Scope, target: nodes.Scalar, operand: nodes.Expr) -> str:
     source, value = type_of(operand), expression(scope, operand)
     if source == target:
         return value
-    width = 8 * ir.WIDTH[source]
+    width = 8 * nodes.WIDTH[source]
     if source in FLOATS:
         value = f"{scope.calls(f'bits_of_f{width}')}({value})"
         return value if target == f"u{width}" else f"({C_TYPES[target]}){value}"
@@ -206,46 +206,46 @@ def _bits(scope: Scope, target: ir.Scalar, operand: ir.Expr) -> str:
     return f"({C_TYPES[target]}){value}"
 
 
-def _decimal(scope: Scope, expr: ir.Nearest | ir.Digits | ir.Scale) -> str:
+def _decimal(scope: Scope, expr: nodes.Nearest | nodes.Digits | nodes.Scale) -> str:
     scope.calls("decimals")
     match expr:
-        case ir.Nearest(address, size, exponent):
+        case nodes.Nearest(address, size, exponent):
             memory, start = location(scope, address)
             return f"nearest({memory}, {start}, {expression(scope, size)}, {expression(scope, exponent)})"
-        case ir.Digits(value, None):
+        case nodes.Digits(value, None):
             return f"shortest_digits({expression(scope, value)}, {_is_single(value)})"
-        case ir.Digits(value, places):
+        case nodes.Digits(value, places):
             return f"fixed_digits({expression(scope, value)}, {places})"
-        case ir.Scale(value):
+        case nodes.Scale(value):
             return f"shortest_scale({expression(scope, value)}, {_is_single(value)})"
         case _:
             assert_never(expr)
 
 
-def _is_single(value: ir.Expr) -> str:
+def _is_single(value: nodes.Expr) -> str:
     return "true" if type_of(value) == "f32" else "false"
 
 
 # --- memory ------------------------------------------------------------------------------------------------------------
 
 
-def _loaded(scope: Scope, type_: ir.Scalar, at: str, order: str) -> str:
+def _loaded(scope: Scope, type_: nodes.Scalar, at: str, order: str) -> str:
     return f"{scope.calls(f'load_{type_}{_suffix(type_, order)}')}({scope.takes('bytes')}, {at})"
 
 
-def _suffix(type_: ir.Scalar, order: str) -> str:
+def _suffix(type_: nodes.Scalar, order: str) -> str:
     """The byte order in the name of a function; single bytes have none."""
-    return "" if ir.WIDTH[type_] == 1 else "_le" if order == "<" else "_be"
+    return "" if nodes.WIDTH[type_] == 1 else "_le" if order == "<" else "_be"
 
 
-def store(scope: Scope, at: ir.Expr, value: ir.Expr, order: str) -> str:
+def store(scope: Scope, at: nodes.Expr, value: nodes.Expr, order: str) -> str:
     """A statement that writes a scalar to the message."""
     type_ = type_of(value)
     name = scope.calls(f"store_{type_}{_suffix(type_, order)}")
     return f"{name}({scope.takes('bytes')}, {expression(scope, at)}, {expression(scope, value)});"
 
 
-def read(scope: Scope, type_: ir.Scalar, place: ir.Place) -> str:
+def read(scope: Scope, type_: nodes.Scalar, place: nodes.Place) -> str:
     """A field of a row: by its name, or where the schema has no such field by its bytes."""
     named = _field(scope, place, type_)
     if named is not None:
@@ -253,7 +253,7 @@ def read(scope: Scope, type_: ir.Scalar, place: ir.Place) -> str:
     return f"{scope.calls(f'get_{type_}')}({', '.join(location(scope, place))})"
 
 
-def written(scope: Scope, place: ir.Place, value: ir.Expr) -> str:
+def written(scope: Scope, place: nodes.Place, value: nodes.Expr) -> str:
     """A statement that sets a field of a row."""
     type_, text = type_of(value), expression(scope, value)
     if place.lane == 0 and place.offset in scope.lanes.straight:
@@ -267,17 +267,17 @@ def written(scope: Scope, place: ir.Place, value: ir.Expr) -> str:
     return f"{named} = {bare(text)};"
 
 
-def _field(scope: Scope, place: ir.Place, type_: ir.Scalar) -> str | None:
+def _field(scope: Scope, place: nodes.Place, type_: nodes.Scalar) -> str | None:
     scope.rows(place.lane)
     return scope.lanes.field(place.lane, bare(expression(scope, place.row)), place.offset, type_)
 
 
-def location(scope: Scope, address: ir.Address) -> tuple[str, str]:
+def location(scope: Scope, address: nodes.Address) -> tuple[str, str]:
     """Memory, and the number of a byte in there."""
     match address:
-        case ir.Wire(at):
+        case nodes.Wire(at):
             return scope.takes("bytes"), bare(expression(scope, at))
-        case ir.Place(lane, row, offset):
+        case nodes.Place(lane, row, offset):
             stride = scope.lanes.stride(lane)
             start = _scaled(scope, row, stride)
             if offset:
@@ -289,8 +289,8 @@ def location(scope: Scope, address: ir.Address) -> tuple[str, str]:
             assert_never(address)
 
 
-def _scaled(scope: Scope, row: ir.Expr, stride: int) -> str:
-    if isinstance(row, ir.Const):
+def _scaled(scope: Scope, row: nodes.Expr, stride: int) -> str:
+    if isinstance(row, nodes.Const):
         return str(int(row.value) * stride)
     text = expression(scope, row)
     return bare(text) if stride == 1 else f"{text} * {stride}"

@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.base import Namespace, Writer, counted_lanes
+from rosetta_jit.backends.printing import Namespace, Writer, counted_lanes
 from rosetta_jit.generate.c.expressions import constant, expression
 from rosetta_jit.generate.c.scope import Scope, register_name
 from rosetta_jit.generate.c.state import register_word
@@ -23,7 +23,8 @@ from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.reachable import leaves, reached, read_names
 from rosetta_jit.generate.unit import Role
-from rosetta_jit.kernel.ir import Advance, Call, Direction, For, Kernel, Routine, While
+from rosetta_jit.kernel.ir import Kernel, Routine
+from rosetta_jit.kernel.nodes import Advance, Call, Direction, For, While
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -5,8 +5,8 @@ The kernels there have the words of `kernel.state` as their holder: the calls fi
 
 from __future__ import annotations
 
-from rosetta_jit.backends.base import Writer
 from rosetta_jit.backends.entry.any_machine import TargetError, object_for
+from rosetta_jit.backends.printing import Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.functions import Attempt, Printed

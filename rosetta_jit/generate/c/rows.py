@@ -12,9 +12,9 @@ import re
 from itertools import count
 from typing import assert_never
 
-from rosetta_jit.backends.base import Namespace
+from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.c.words import RESERVED, of_unit
-from rosetta_jit.kernel.ir import WIDTH
+from rosetta_jit.kernel.nodes import WIDTH
 from rosetta_jit.model.layout import LINK_WORDS, SPAN_BYTES, Lane, Layout, Members, Number, Row, Slot, Span, Variant
 from rosetta_jit.startup.dataclass import dataclass
 

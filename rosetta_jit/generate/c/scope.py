@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.base import Namespace
-from rosetta_jit.kernel.ir import Scalar
+from rosetta_jit.backends.printing import Namespace
+from rosetta_jit.kernel.nodes import Scalar
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

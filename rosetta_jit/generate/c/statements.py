@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.backends.base import Writer
+from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.c.expressions import expression, location, store, written
 from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.texts import comment
@@ -19,7 +19,7 @@ from rosetta_jit.generate.origins import Origin, described, origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.reachable import leaves
 from rosetta_jit.generate.unit import Role
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import END, add, type_of
 from rosetta_jit.kernel.walk import statements
@@ -76,7 +76,7 @@ class Function:
         self.line("}")
 
 
-def print_block(function: Function, block: ir.Block) -> None:
+def print_block(function: Function, block: nodes.Block) -> None:
     """The statements of a block; what they say of positions holds in there alone."""
     within = function.within
     for stmt in block:
@@ -84,104 +84,104 @@ def print_block(function: Function, block: ir.Block) -> None:
     function.within = within
 
 
-def _statement(function: Function, stmt: ir.Stmt) -> None:
+def _statement(function: Function, stmt: nodes.Stmt) -> None:
     scope = function.scope
     match stmt:
-        case ir.Require(at, size, failure):
+        case nodes.Require(at, size, failure):
             _fail_if(function, _lacks(function, at, size), failure)
-        case ir.Expect(condition, failure):
+        case nodes.Expect(condition, failure):
             if condition == FALSE:
                 _fail(function, failure)
             else:
-                _fail_if(function, expression(scope, folded(ir.Unary("not", condition))), failure)
-        case ir.Let() | ir.Var() | ir.Assign():
+                _fail_if(function, expression(scope, folded(nodes.Unary("not", condition))), failure)
+        case nodes.Let() | nodes.Var() | nodes.Assign():
             _bind(function, stmt)
             function.within -= {stmt.name}
-        case ir.Store() | ir.SetField() | ir.Copy() | ir.Fill():
+        case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             function.line(f"{_effect(scope, stmt)}{_origin(function, stmt)}")
-        case ir.Reserve() | ir.Advance():
+        case nodes.Reserve() | nodes.Advance():
             _rows(function, stmt)
-        case ir.Return(position, registers):
+        case nodes.Return(position, registers):
             for line in function.finish:
                 function.line(line)
             for number, value in registers:
                 scope.takes("holder")
                 function.line(f"{register_word(function.role, number)} = {bare(expression(scope, value))};")
             function.line(f"return {bare(expression(scope, position))};")
-        case ir.For() | ir.While() | ir.If() | ir.Switch():
+        case nodes.For() | nodes.While() | nodes.If() | nodes.Switch():
             _nested(function, stmt)
-        case ir.Call():
+        case nodes.Call():
             _call(function, stmt)
-        case ir.HostCall():
+        case nodes.HostCall():
             _host_call(function, stmt)
         case _:
             assert_never(stmt)
 
 
-def _bind(function: Function, stmt: ir.Let | ir.Var | ir.Assign) -> None:
+def _bind(function: Function, stmt: nodes.Let | nodes.Var | nodes.Assign) -> None:
     """A local, if anything reads it."""
     if stmt.name not in function.read:
         return
     name, value = function.scope.locals.identifier(stmt.name), bare(expression(function.scope, stmt.value))
-    declared = "" if isinstance(stmt, ir.Assign) else f"{C_TYPES[type_of(stmt.value)]} "
-    function.line(f"{'const ' if isinstance(stmt, ir.Let) else ''}{declared}{name} = {value};{_origin(function, stmt)}")
+    declared = "" if isinstance(stmt, nodes.Assign) else f"{C_TYPES[type_of(stmt.value)]} "
+    function.line(f"{'const ' if isinstance(stmt, nodes.Let) else ''}{declared}{name} = {value};{_origin(function, stmt)}")
 
 
-def _origin(function: Function, stmt: ir.Stmt) -> str:
+def _origin(function: Function, stmt: nodes.Stmt) -> str:
     """The line of the mapping that a statement comes from, as a comment behind it."""
     line = origin_of(stmt, function.origins) if function.origins else None
     return "" if line is None else f" {comment(line)}"
 
 
-def _effect(scope: Scope, stmt: ir.Effect) -> str:
+def _effect(scope: Scope, stmt: nodes.Effect) -> str:
     match stmt:
-        case ir.Store(at, value, order):
+        case nodes.Store(at, value, order):
             return store(scope, at, value, order)
-        case ir.SetField(place, value):
+        case nodes.SetField(place, value):
             return written(scope, place, value)
-        case ir.Copy(target, source, size):
+        case nodes.Copy(target, source, size):
             return _copy(scope, target, source, bare(expression(scope, size)))
-        case ir.Fill(target, size, byte):
+        case nodes.Fill(target, size, byte):
             return _fill(scope, target, size, byte)
         case _:
             assert_never(stmt)
 
 
-def _copy(scope: Scope, target: ir.Address, source: ir.Address, size: str) -> str:
-    if isinstance(source, ir.Place) and source.lane in scope.lanes.viewed:
+def _copy(scope: Scope, target: nodes.Address, source: nodes.Address, size: str) -> str:
+    if isinstance(source, nodes.Place) and source.lane in scope.lanes.viewed:
         taken = (scope.rows(source.lane), bare(expression(scope, source.row)), str(source.offset))
         return f"rosetta_jit::detail::copy_rows({', '.join((*location(scope, target), *taken, size))});"
     copied = ", ".join((*location(scope, target), *location(scope, source), size))
-    if scope.lanes.dialect == "c++" and isinstance(source, ir.Place) and scope.lanes.stride(source.lane) == 1:
+    if scope.lanes.dialect == "c++" and isinstance(source, nodes.Place) and scope.lanes.stride(source.lane) == 1:
         return f"rosetta_jit::detail::copy_few({copied});"
     return f"{scope.calls('copy_bytes')}({copied});"
 
 
-def _lacks(function: Function, at: ir.Expr, size: ir.Expr) -> str:
+def _lacks(function: Function, at: nodes.Expr, size: nodes.Expr) -> str:
     """Whether some of ``size`` bytes from ``at`` are missing."""
     scope = function.scope
     match at, size:
-        case ir.Const(_, start), ir.Const(_, length) if start >= 0 and length >= 0:
+        case nodes.Const(_, start), nodes.Const(_, length) if start >= 0 and length >= 0:
             return f"({expression(scope, END)} < {expression(scope, add(at, size))})"
-        case ir.Local(_, name), ir.Const(_, length) if name in function.within and length >= 0:
+        case nodes.Local(_, name), nodes.Const(_, length) if name in function.within and length >= 0:
             return f"({expression(scope, END)} < {bare(expression(scope, add(at, size)))})"
         case _:
             arguments = [bare(expression(scope, each)) for each in (at, size, END)]
             return f"{scope.calls('lacks')}({', '.join(arguments)})"
 
 
-def _fail_if(function: Function, condition: str, failure: ir.Failure) -> None:
+def _fail_if(function: Function, condition: str, failure: nodes.Failure) -> None:
     with function.block(f"if ({bare(condition)})"):
         _fail(function, failure)
 
 
-def _fail(function: Function, failure: ir.Failure) -> None:
+def _fail(function: Function, failure: nodes.Failure) -> None:
     _failed(
         function, str(function.site(failure.site)), expression(function.scope, failure.at), failure.indices, function.sites[failure.site]
     )
 
 
-def _failed(function: Function, site: str, at: str, indices: tuple[ir.Expr, ...], about: ir.Site | None) -> None:
+def _failed(function: Function, site: str, at: str, indices: tuple[nodes.Expr, ...], about: ir.Site | None) -> None:
     """Leave the function. A routine leaves the indices to who calls it."""
     function.scope.takes("failure")
     for number, each in enumerate(indices if not function.is_routine else ()):
@@ -191,19 +191,19 @@ def _failed(function: Function, site: str, at: str, indices: tuple[ir.Expr, ...]
     function.line(f"return {function.scope.calls(name)}(failure, {site}, {bare(at)});{said}")
 
 
-def _fill(scope: Scope, target: ir.Address, size: ir.Expr, byte: int) -> str:
+def _fill(scope: Scope, target: nodes.Address, size: nodes.Expr, byte: int) -> str:
     memory, start = location(scope, target)
-    if isinstance(target, ir.Place) and isinstance(size, ir.Const) and start == "0" and size.value > 0:
+    if isinstance(target, nodes.Place) and isinstance(size, nodes.Const) and start == "0" and size.value > 0:
         return f"memset({memory}, {byte}, {int(size.value)});"
     if scope.lanes.dialect == "c++":
         return f"rosetta_jit::detail::fill_few({memory}, {start}, {bare(expression(scope, size))}, {byte});"
     return f"{scope.calls('fill_bytes')}({memory}, {start}, {bare(expression(scope, size))}, {byte});"
 
 
-def _rows(function: Function, stmt: ir.Reserve | ir.Advance) -> None:
+def _rows(function: Function, stmt: nodes.Reserve | nodes.Advance) -> None:
     scope, lanes, count = function.scope, function.scope.lanes, bare(expression(function.scope, stmt.count))
     used = scope.used(stmt.lane)
-    if isinstance(stmt, ir.Advance):
+    if isinstance(stmt, nodes.Advance):
         function.line(f"{used} += {count};")
         return
     scope.takes("failure")
@@ -229,57 +229,57 @@ def moved(lanes: Lanes, lane: int) -> str:
     return f"{lanes.rows(lane)} = {lanes.member(lane)};"
 
 
-def _nested(function: Function, stmt: ir.For | ir.While | ir.If | ir.Switch) -> None:
+def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
     """A statement with blocks: behind it and, in a loop, within it, what any of them changes is not known but for what a loop says."""
-    after = function.within - {each.name for each, _ in statements((stmt,)) if isinstance(each, ir.Assign)}
-    if isinstance(stmt, ir.For | ir.While):
-        after |= _positions(stmt.invariant) if isinstance(stmt, ir.While) else frozenset()
+    after = function.within - {each.name for each, _ in statements((stmt,)) if isinstance(each, nodes.Assign)}
+    if isinstance(stmt, nodes.For | nodes.While):
+        after |= _positions(stmt.invariant) if isinstance(stmt, nodes.While) else frozenset()
         function.within = after
     _print_nested(function, stmt)
     function.within = after
 
 
-def _positions(invariant: Iterable[ir.Expr]) -> frozenset[str]:
+def _positions(invariant: Iterable[nodes.Expr]) -> frozenset[str]:
     """The variables that a loop says are positions of the message, or its end."""
     low, high = set[str](), set[str]()
     for each in invariant:
         match each:
-            case ir.Compare("ge", ir.Local(_, name), ir.Const(_, bound)) if bound >= 0:
+            case nodes.Compare("ge", nodes.Local(_, name), nodes.Const(_, bound)) if bound >= 0:
                 low.add(name)
-            case ir.Compare("le", ir.Local(_, name), bound) if bound == END:
+            case nodes.Compare("le", nodes.Local(_, name), bound) if bound == END:
                 high.add(name)
             case _:
                 pass
     return frozenset(low & high)
 
 
-def _print_nested(function: Function, stmt: ir.For | ir.While | ir.If | ir.Switch) -> None:
+def _print_nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
     scope = function.scope
     match stmt:
-        case ir.For(variable, count, body):
+        case nodes.For(variable, count, body):
             name, bound = scope.locals.identifier(variable), bare(expression(scope, count))
-            if not isinstance(count, ir.Const | ir.Local):
+            if not isinstance(count, nodes.Const | nodes.Local):
                 function.line(f"const int64_t {(before := scope.locals.identifier(f'{variable} count'))} = {bound};")
                 bound = before
             with function.block(f"for (int64_t {name} = 0; {name} < {bound}; {name}++)"):
                 print_block(function, body)
-        case ir.While(condition, body):
+        case nodes.While(condition, body):
             with function.block(f"while ({bare(expression(scope, condition))})"):
                 print_block(function, body)
-        case ir.If(condition, then, otherwise):
+        case nodes.If(condition, then, otherwise):
             _if(function, condition, then, otherwise)
-        case ir.Switch(value, cases, default):
+        case nodes.Switch(value, cases, default):
             with function.block(f"switch ({bare(expression(scope, value))})"):
                 for number, body in cases:
-                    _case(function, f"case {expression(scope, ir.Const(type_of(value), number))}:", body)
+                    _case(function, f"case {expression(scope, nodes.Const(type_of(value), number))}:", body)
                 _case(function, "default:", default)
         case _:
             assert_never(stmt)
 
 
-def _if(function: Function, condition: ir.Expr, then: ir.Block, otherwise: ir.Block) -> None:
+def _if(function: Function, condition: nodes.Expr, then: nodes.Block, otherwise: nodes.Block) -> None:
     if not then:
-        condition, then, otherwise = folded(ir.Unary("not", condition)), otherwise, ()
+        condition, then, otherwise = folded(nodes.Unary("not", condition)), otherwise, ()
     with function.block(f"if ({bare(expression(function.scope, condition))})"):
         print_block(function, then)
     if otherwise:
@@ -290,7 +290,7 @@ def _if(function: Function, condition: ir.Expr, then: ir.Block, otherwise: ir.Bl
         function.line("}")
 
 
-def _case(function: Function, label: str, body: ir.Block) -> None:
+def _case(function: Function, label: str, body: nodes.Block) -> None:
     function.writer.depth -= 1
     with function.block(label):
         print_block(function, body)
@@ -299,7 +299,7 @@ def _case(function: Function, label: str, body: ir.Block) -> None:
     function.writer.depth += 1
 
 
-def _call(function: Function, call: ir.Call) -> None:
+def _call(function: Function, call: nodes.Call) -> None:
     """Results come through pointers; what the function returns is the number of its own site that failed, or 0."""
     scope, routine = function.scope, function.routines[call.routine]
     for result in call.results:
@@ -326,7 +326,7 @@ def _site(problem: str, sites: tuple[int, ...]) -> str:
     return text
 
 
-def _host_call(function: Function, call: ir.HostCall) -> None:
+def _host_call(function: Function, call: nodes.HostCall) -> None:
     """A function that the program has which this becomes part of."""
     scope = function.scope
     result = scope.locals.identifier(call.result.name)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from itertools import count
 
-from rosetta_jit.backends.base import Namespace
+from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.c.accessors import words_of
 from rosetta_jit.generate.c.lanes import OWN_WORDS, Lane, Lanes
 from rosetta_jit.generate.c.rows import Structs, elements_of

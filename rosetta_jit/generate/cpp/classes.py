@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.backends.base import Namespace
+from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.generate.inner_types import reached_types

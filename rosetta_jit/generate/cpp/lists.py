@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.base import Writer
+from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import path_to
 from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk, members_of
 from rosetta_jit.generate.unit import Unit, kind_of
-from rosetta_jit.kernel.ir import Advance, Block, Capacity, Copy, Expr, Get, HostCall, Place, Reserve, Stmt, Used
+from rosetta_jit.kernel.nodes import Advance, Block, Capacity, Copy, Expr, Get, HostCall, Place, Reserve, Stmt, Used
 from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
 from rosetta_jit.model.layout import Number, Row, Slot, Span
 from rosetta_jit.model.types import Array, Bytes, Ref, String, Struct, Type

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from rosetta_jit.backends.base import Namespace
+from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.model.types import Struct
 

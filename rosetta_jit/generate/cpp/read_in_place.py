@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.unit import Unit, kind_of
-from rosetta_jit.kernel.ir import Copy, Fill, Get, Kernel, Place, SetField, Stmt
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Copy, Fill, Get, Place, SetField, Stmt
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.model.layout import Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, Struct, Type, Union

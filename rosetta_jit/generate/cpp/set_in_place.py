@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.cleared import clears, settled
 from rosetta_jit.generate.unit import wires_of
-from rosetta_jit.kernel.ir import Address, Copy, Fill, Get, HostCall, IsText, Kernel, Nearest, Place, Stmt
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Address, Copy, Fill, Get, HostCall, IsText, Nearest, Place, Stmt
 from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
 from rosetta_jit.model.types import Ref
 

@@ -17,7 +17,7 @@ from dataclasses import field
 from string import Template
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.backends.base import Writer
+from rosetta_jit.backends.printing import Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.rows import PADDING

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Literal, assert_never
 
 import numpy as np
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS, SIGNED, to_bytes
 from rosetta_jit.kernel.terms import END, is_wider, type_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -61,60 +61,60 @@ class Scope:
         return self.lanes.used(lane)
 
 
-def expression(scope: Scope, expr: ir.Expr) -> str:
+def expression(scope: Scope, expr: nodes.Expr) -> str:
     """The form of an expression."""
     match expr:
-        case ir.Const(type_, value):
+        case nodes.Const(type_, value):
             return constant(type_, value)
-        case ir.Local(_, name):
+        case nodes.Local(_, name):
             return "end" if name == END.name else scope.locals.symbol(name)
-        case ir.Load(type_, at, order):
+        case nodes.Load(type_, at, order):
             return f"({access(type_, order)} data {expression(scope, at)})"
-        case ir.Get(type_, place):
+        case nodes.Get(type_, place):
             return got(scope, type_, place)
-        case ir.Used() | ir.Capacity() | ir.HostValue() | ir.Register():
+        case nodes.Used() | nodes.Capacity() | nodes.HostValue() | nodes.Register():
             return _known(scope, expr)
-        case ir.Unary(function, operand):
+        case nodes.Unary(function, operand):
             return _unary(function, type_of(operand), expression(scope, operand))
-        case ir.Binary(op, left, right):
+        case nodes.Binary(op, left, right):
             return _binary(op, type_of(left), expression(scope, left), expression(scope, right))
-        case ir.Compare(op, left, right):
+        case nodes.Compare(op, left, right):
             return _compare(op, type_of(left), expression(scope, left), expression(scope, right))
-        case ir.Fits(op, left, right):
+        case nodes.Fits(op, left, right):
             return f"(fits{ARITHMETIC[op]} {expression(scope, left)} {expression(scope, right)})"
-        case ir.Convert(type_, operand):
+        case nodes.Convert(type_, operand):
             return _convert(type_, type_of(operand), expression(scope, operand))
-        case ir.Bits(type_, operand):
+        case nodes.Bits(type_, operand):
             return _bits(type_, type_of(operand), expression(scope, operand))
-        case ir.Select(condition, then, otherwise):
+        case nodes.Select(condition, then, otherwise):
             return f"(if {expression(scope, condition)} {expression(scope, then)} {expression(scope, otherwise)})"
-        case ir.IsText(address, size):
+        case nodes.IsText(address, size):
             memory, start = location(scope, address)
             return f"(text-p {memory} {start} {expression(scope, size)})"
-        case ir.Nearest() | ir.Digits() | ir.Scale():
+        case nodes.Nearest() | nodes.Digits() | nodes.Scale():
             return _decimal(scope, expr)
-        case ir.Lookup(type_, values, index):
+        case nodes.Lookup(type_, values, index):
             return f"(aref {_table(type_, values)} {expression(scope, index)})"
         case _:
             assert_never(expr)
 
 
-def _table(type_: ir.Scalar, values: tuple[int, ...]) -> str:
+def _table(type_: nodes.Scalar, values: tuple[int, ...]) -> str:
     """An array that is made when the file is loaded."""
-    element = f"({'signed' if type_ in SIGNED else 'unsigned'}-byte {8 * ir.WIDTH[type_]})"
+    element = f"({'signed' if type_ in SIGNED else 'unsigned'}-byte {8 * nodes.WIDTH[type_]})"
     made = f"(make-array {len(values)} :element-type '{element} :initial-contents '({' '.join(map(str, values))}))"
     return f"(the (simple-array {element} ({len(values)})) (load-time-value {made} t))"
 
 
-def _known(scope: Scope, expr: ir.Known) -> str:
+def _known(scope: Scope, expr: nodes.Known) -> str:
     match expr:
-        case ir.Used(lane):
+        case nodes.Used(lane):
             return scope.used(lane)
-        case ir.Capacity(lane):
+        case nodes.Capacity(lane):
             return "1" if lane == 0 else f"(the i64 (truncate (length {scope.rows(lane)}) {scope.lanes.stride(lane)}))"
-        case ir.HostValue(what):
+        case nodes.HostValue(what):
             return f"(codec-state-{what} codec)"
-        case ir.Register(number):
+        case nodes.Register(number):
             return state_word(scope, number)
         case _:
             assert_never(expr)
@@ -125,7 +125,7 @@ def state_word(scope: Scope, number: int) -> str:
     return f"(aref (codec-state-{scope.registers}-registers codec) {number})"
 
 
-def constant(type_: ir.Scalar, value: float) -> str:
+def constant(type_: nodes.Scalar, value: float) -> str:
     """A literal."""
     if type_ == "bool":
         return "t" if value else "nil"
@@ -143,17 +143,17 @@ def constant(type_: ir.Scalar, value: float) -> str:
     return f"{mantissa}{'f' if single else 'd'}{int(exponent or 0)}"
 
 
-def zero(type_: ir.Scalar) -> str:
+def zero(type_: nodes.Scalar) -> str:
     """What a variable has before it has a value."""
     return constant(type_, 0)
 
 
-def _unary(function: str, type_: ir.Scalar, value: str) -> str:
+def _unary(function: str, type_: nodes.Scalar, value: str) -> str:
     match function:
         case "not" if type_ == "bool":
             return f"(not {value})"
         case "not":
-            return f"(lognot {value})" if type_ in SIGNED else f"(logxor {value} #x{2 ** (8 * ir.WIDTH[type_]) - 1:x})"
+            return f"(lognot {value})" if type_ in SIGNED else f"(logxor {value} #x{2 ** (8 * nodes.WIDTH[type_]) - 1:x})"
         case "neg" | "abs" if type_ in FLOATS:
             return f"({'-' if function == 'neg' else 'abs'} {value})"
         case "neg" | "abs":
@@ -164,7 +164,7 @@ def _unary(function: str, type_: ir.Scalar, value: str) -> str:
             return f"({type_}-{function} {value})"
 
 
-def _binary(op: str, type_: ir.Scalar, left: str, right: str) -> str:
+def _binary(op: str, type_: nodes.Scalar, left: str, right: str) -> str:
     match op:
         case "and" | "or" if type_ == "bool":
             return f"({op} {left} {right})"
@@ -180,7 +180,7 @@ def _binary(op: str, type_: ir.Scalar, left: str, right: str) -> str:
             return f"({OF_FLOATS[op] if type_ in FLOATS else f'{type_}{ARITHMETIC[op]}'} {left} {right})"
 
 
-def _compare(op: str, type_: ir.Scalar, left: str, right: str) -> str:
+def _compare(op: str, type_: nodes.Scalar, left: str, right: str) -> str:
     if type_ == "bool":
         if op in ("eq", "ne"):
             return f"(eq {left} {right})" if op == "eq" else f"(not (eq {left} {right}))"
@@ -188,7 +188,7 @@ def _compare(op: str, type_: ir.Scalar, left: str, right: str) -> str:
     return f"({type_}{COMPARISONS[op]} codec {left} {right})" if type_ in FLOATS else f"({COMPARISONS[op]} {left} {right})"
 
 
-def _convert(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
+def _convert(target: nodes.Scalar, source: nodes.Scalar, value: str) -> str:
     if target == source:
         return value
     if target == "bool":
@@ -202,10 +202,10 @@ def _convert(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
     return value if is_wider(target, source) else f"(wrap-{target} {value})"
 
 
-def _bits(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
+def _bits(target: nodes.Scalar, source: nodes.Scalar, value: str) -> str:
     if target == source:
         return value
-    unsigned: ir.Scalar = "u64" if ir.WIDTH[source] == 8 else "u32"
+    unsigned: nodes.Scalar = "u64" if nodes.WIDTH[source] == 8 else "u32"
     if source in FLOATS:
         return _convert(target, unsigned, f"(bits-of-{source} {value})")
     if target in FLOATS:
@@ -213,16 +213,16 @@ def _bits(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
     return _convert(target, source, value)
 
 
-def _decimal(scope: Scope, expr: ir.Nearest | ir.Digits | ir.Scale) -> str:
+def _decimal(scope: Scope, expr: nodes.Nearest | nodes.Digits | nodes.Scale) -> str:
     match expr:
-        case ir.Nearest(address, size, exponent):
+        case nodes.Nearest(address, size, exponent):
             memory, start = location(scope, address)
             return f"(the f64 (nearest {memory} {start} {expression(scope, size)} {expression(scope, exponent)}))"
-        case ir.Digits(value, None):
+        case nodes.Digits(value, None):
             return f"(the u64 (shortest-digits {expression(scope, value)}))"
-        case ir.Digits(value, places):
+        case nodes.Digits(value, places):
             return f"(the u64 (fixed-digits {expression(scope, value)} {places}))"
-        case ir.Scale(value):
+        case nodes.Scale(value):
             return f"(the i64 (shortest-scale {expression(scope, value)}))"
         case _:
             assert_never(expr)
@@ -231,23 +231,23 @@ def _decimal(scope: Scope, expr: ir.Nearest | ir.Digits | ir.Scale) -> str:
 # --- memory ------------------------------------------------------------------------------------------------------------
 
 
-def access(type_: ir.Scalar, order: str = "<") -> str:
+def access(type_: nodes.Scalar, order: str = "<") -> str:
     """The function that reads a scalar, which `setf` writes."""
-    return f"{type_}{'-be' if order == '>' and ir.WIDTH[type_] > 1 else ''}-at"
+    return f"{type_}{'-be' if order == '>' and nodes.WIDTH[type_] > 1 else ''}-at"
 
 
-def got(scope: Scope, type_: ir.Scalar, place: ir.Place) -> str:
+def got(scope: Scope, type_: nodes.Scalar, place: nodes.Place) -> str:
     """A field of a row, which `setf` writes, too."""
     memory, start = location(scope, place, type_)
     return f"({access(type_)} {memory} {start})"
 
 
-def location(scope: Scope, address: ir.Address, scalar: ir.Scalar | None = None) -> tuple[str, str]:
+def location(scope: Scope, address: nodes.Address, scalar: nodes.Scalar | None = None) -> tuple[str, str]:
     """Memory, and the number of a byte in there; a field's by its name."""
     match address:
-        case ir.Wire(at):
+        case nodes.Wire(at):
             return "data", expression(scope, at)
-        case ir.Place(lane, row, offset):
+        case nodes.Place(lane, row, offset):
             behind = str(offset) if scalar is None else scope.lanes.offset(lane, offset, scalar)
             return scope.rows(lane), row_start(scope.lanes.stride(lane), expression(scope, row), behind)
         case _:

@@ -16,7 +16,8 @@ from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.reachable import leaves, reached, read_names
 from rosetta_jit.generate.shares import changed_lanes
 from rosetta_jit.kernel.arithmetic import FLOATS
-from rosetta_jit.kernel.ir import Binary, Compare, Convert, Decimal, Expr, Kernel, Routine, Unary
+from rosetta_jit.kernel.ir import Kernel, Routine
+from rosetta_jit.kernel.nodes import Binary, Compare, Convert, Decimal, Expr, Unary
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.startup.dataclass import dataclass

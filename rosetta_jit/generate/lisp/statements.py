@@ -12,7 +12,7 @@ from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.texts import literal
 from rosetta_jit.generate.lisp.words import LISP_TYPES, hyphenated
 from rosetta_jit.generate.origins import Origin, described, origin_of
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import END, add, type_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -53,7 +53,7 @@ class Function:
     def line(self, form: str, said: str = "") -> None:
         self.lines.line(form, said)
 
-    def form(self, expr: ir.Expr) -> str:
+    def form(self, expr: nodes.Expr) -> str:
         return expression(self.scope, expr)
 
     def leave(self, value: str) -> str:
@@ -65,10 +65,10 @@ class Function:
         return number if self.is_routine else self.numbers.setdefault(number, len(self.numbers))
 
 
-def print_block(function: Function, block: ir.Block, finish: Callable[[], None] | None = None, lanes: Sequence[Variable] = ()) -> None:
+def print_block(function: Function, block: nodes.Block, finish: Callable[[], None] | None = None, lanes: Sequence[Variable] = ()) -> None:
     """The statements of a block, and what finishes it, within variables for lanes and those that it binds."""
-    block = tuple(stmt for stmt in block if not (isinstance(stmt, ir.Let | ir.Var | ir.Assign) and stmt.name not in function.read))
-    first = next((number for number, stmt in enumerate(block) if not isinstance(stmt, ir.Let | ir.Var)), len(block))
+    block = tuple(stmt for stmt in block if not (isinstance(stmt, nodes.Let | nodes.Var | nodes.Assign) and stmt.name not in function.read))
+    first = next((number for number, stmt in enumerate(block) if not isinstance(stmt, nodes.Let | nodes.Var)), len(block))
     found = [each for number, stmt in enumerate(block) for each in _bound_by(function, stmt, first=number < first)]
     with bound(function.lines, [*lanes, *found]):
         for stmt in block[first:]:
@@ -77,23 +77,23 @@ def print_block(function: Function, block: ir.Block, finish: Callable[[], None] 
             finish()
 
 
-def _bound_by(function: Function, stmt: ir.Stmt, *, first: bool) -> Iterator[Variable]:
+def _bound_by(function: Function, stmt: nodes.Stmt, *, first: bool) -> Iterator[Variable]:
     """The variables of a statement: those before the first other statement have their own values, others have zero until they are set."""
     match stmt:
-        case ir.Let(name, value) | ir.Var(name, value):
+        case nodes.Let(name, value) | nodes.Var(name, value):
             type_ = type_of(value)
             yield Variable(function.scope.locals.symbol(name), LISP_TYPES[type_], function.form(value) if first else zero(type_))
-        case ir.Call(_, _, results):
+        case nodes.Call(_, _, results):
             for each in results:
                 if each.name in function.read:
                     yield _unset(function, each)
-        case ir.HostCall(_, _, result):
+        case nodes.HostCall(_, _, result):
             yield _unset(function, result)
         case _:
             return
 
 
-def _unset(function: Function, local: ir.Local) -> Variable:
+def _unset(function: Function, local: nodes.Local) -> Variable:
     return Variable(function.scope.locals.symbol(local.name), LISP_TYPES[local.type], zero(local.type))
 
 
@@ -126,35 +126,35 @@ def declaration(variables: Sequence[Variable]) -> str:
     return f"(declare {declared} (ignorable {' '.join(each.name for each in variables)}))"
 
 
-def _statement(function: Function, stmt: ir.Stmt) -> None:
+def _statement(function: Function, stmt: nodes.Stmt) -> None:
     match stmt:
-        case ir.Require(at, size, failure):
+        case nodes.Require(at, size, failure):
             with function.lines.form(f"(when {_lacks(function, at, size)}"):
                 _fail(function, failure)
-        case ir.Expect(condition, failure):
+        case nodes.Expect(condition, failure):
             if condition == FALSE:
                 _fail(function, failure)
             else:
                 _fail_unless(function, condition, failure)
-        case ir.Let(name, value) | ir.Var(name, value) | ir.Assign(name, value):
+        case nodes.Let(name, value) | nodes.Var(name, value) | nodes.Assign(name, value):
             function.line(f"(setf {function.scope.locals.symbol(name)} {function.form(value)})", _origin(function, stmt))
-        case ir.Store() | ir.SetField() | ir.Copy() | ir.Fill():
+        case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             function.line(_effect(function.scope, stmt), _origin(function, stmt))
-        case ir.Reserve() | ir.Advance():
+        case nodes.Reserve() | nodes.Advance():
             _rows(function, stmt)
-        case ir.Return(position, changed):
+        case nodes.Return(position, changed):
             _return(function, position, changed)
-        case ir.For() | ir.While() | ir.If() | ir.Switch():
+        case nodes.For() | nodes.While() | nodes.If() | nodes.Switch():
             _nested(function, stmt)
-        case ir.Call():
+        case nodes.Call():
             _call(function, stmt)
-        case ir.HostCall():
+        case nodes.HostCall():
             _host_call(function, stmt)
         case _:
             assert_never(stmt)
 
 
-def _return(function: Function, position: ir.Expr, changed: Sequence[tuple[int, ir.Expr]]) -> None:
+def _return(function: Function, position: nodes.Expr, changed: Sequence[tuple[int, nodes.Expr]]) -> None:
     """The end of a message that was handled: only now state changes, all of it at once."""
     if not changed:
         function.line(function.leave(function.form(position)))
@@ -168,28 +168,28 @@ def _return(function: Function, position: ir.Expr, changed: Sequence[tuple[int, 
         function.line(function.leave("behind"))
 
 
-def _origin(function: Function, stmt: ir.Stmt) -> str:
+def _origin(function: Function, stmt: nodes.Stmt) -> str:
     """The line of the mapping that a statement comes from."""
     return (origin_of(stmt, function.origins) or "") if function.origins else ""
 
 
-def _lacks(function: Function, at: ir.Expr, size: ir.Expr) -> str:
+def _lacks(function: Function, at: nodes.Expr, size: nodes.Expr) -> str:
     """Whether bytes are missing."""
     match at, size:
-        case ir.Const(_, start), ir.Const(_, length) if start >= 0 and length >= 0:
+        case nodes.Const(_, start), nodes.Const(_, length) if start >= 0 and length >= 0:
             return f"(< {function.form(END)} {function.form(add(at, size))})"
         case _:
             return f"(lacks {function.form(at)} {function.form(size)} end)"
 
 
-def _fail_unless(function: Function, condition: ir.Expr, failure: ir.Failure) -> None:
-    otherwise = folded(ir.Unary("not", condition))
-    bare = isinstance(otherwise, ir.Unary) and otherwise.function == "not"
+def _fail_unless(function: Function, condition: nodes.Expr, failure: nodes.Failure) -> None:
+    otherwise = folded(nodes.Unary("not", condition))
+    bare = isinstance(otherwise, nodes.Unary) and otherwise.function == "not"
     with function.lines.form(f"(unless {function.form(condition)}" if bare else f"(when {function.form(otherwise)}"):
         _fail(function, failure)
 
 
-def _fail(function: Function, failure: ir.Failure) -> None:
+def _fail(function: Function, failure: nodes.Failure) -> None:
     site, at = function.site(failure.site), function.form(failure.at)
     said = described(function.sites[failure.site])
     if function.is_routine:
@@ -199,26 +199,26 @@ def _fail(function: Function, failure: ir.Failure) -> None:
     function.line(function.leave(f"(fail codec {site} {at}{indices})"), said)
 
 
-def _effect(scope: Scope, stmt: ir.Effect) -> str:
+def _effect(scope: Scope, stmt: nodes.Effect) -> str:
     match stmt:
-        case ir.Store(at, value, order):
+        case nodes.Store(at, value, order):
             return f"(setf ({access(type_of(value), order)} data {expression(scope, at)}) {expression(scope, value)})"
-        case ir.SetField(place, value):
+        case nodes.SetField(place, value):
             return f"(setf {got(scope, type_of(value), place)} {expression(scope, value)})"
-        case ir.Copy(target, source, size):
+        case nodes.Copy(target, source, size):
             (to, first), (of, begin) = location(scope, target), location(scope, source)
             return f"(copy-octets {to} {first} {of} {begin} {expression(scope, size)})"
-        case ir.Fill(target, size, byte):
+        case nodes.Fill(target, size, byte):
             to, first = location(scope, target)
             return f"(fill-octets {to} {first} {expression(scope, size)} {byte})"
         case _:
             assert_never(stmt)
 
 
-def _rows(function: Function, stmt: ir.Reserve | ir.Advance) -> None:
+def _rows(function: Function, stmt: nodes.Reserve | nodes.Advance) -> None:
     scope, lane, count = function.scope, stmt.lane, function.form(stmt.count)
     used = scope.used(lane)
-    if isinstance(stmt, ir.Advance):
+    if isinstance(stmt, nodes.Advance):
         function.line(f"(setf {used} (i64+ {used} {count}))")
         return
     path = literal(function.paths[lane]) if lane < len(function.paths) else '""'
@@ -227,17 +227,17 @@ def _rows(function: Function, stmt: ir.Reserve | ir.Advance) -> None:
     function.line(f"(reserve ({rows} {place} {stride}) {used} {count} codec {full})")
 
 
-def _nested(function: Function, stmt: ir.For | ir.While | ir.If | ir.Switch) -> None:
+def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
     match stmt:
-        case ir.For(variable, count, body):
+        case nodes.For(variable, count, body):
             with function.lines.form(f"(for ({function.scope.locals.symbol(variable)} {function.form(count)})"):
                 print_block(function, body)
-        case ir.While(condition, body):
+        case nodes.While(condition, body):
             with function.lines.form(f"(while {function.form(condition)}"):
                 print_block(function, body)
-        case ir.If(condition, then, otherwise):
+        case nodes.If(condition, then, otherwise):
             _if(function, condition, then, otherwise)
-        case ir.Switch(value, cases, default):
+        case nodes.Switch(value, cases, default):
             with function.lines.form(f"(case {function.form(value)}"):
                 for number, body in cases:
                     with function.lines.form(f"({number}", by=1):
@@ -248,7 +248,7 @@ def _nested(function: Function, stmt: ir.For | ir.While | ir.If | ir.Switch) -> 
             assert_never(stmt)
 
 
-def _if(function: Function, condition: ir.Expr, then: ir.Block, otherwise: ir.Block) -> None:
+def _if(function: Function, condition: nodes.Expr, then: nodes.Block, otherwise: nodes.Block) -> None:
     if not (then and otherwise):
         with function.lines.form(f"({'when' if then else 'unless'} {function.form(condition)}"):
             print_block(function, then or otherwise)
@@ -256,7 +256,7 @@ def _if(function: Function, condition: ir.Expr, then: ir.Block, otherwise: ir.Bl
     with function.lines.form("(cond"):
         with function.lines.form(f"({function.form(condition)}", by=1):
             print_block(function, then)
-        while len(otherwise) == 1 and isinstance(otherwise[0], ir.If) and otherwise[0].then:
+        while len(otherwise) == 1 and isinstance(otherwise[0], nodes.If) and otherwise[0].then:
             inner = otherwise[0]
             with function.lines.form(f"({function.form(inner.condition)}", by=1):
                 print_block(function, inner.then)
@@ -266,7 +266,7 @@ def _if(function: Function, condition: ir.Expr, then: ir.Block, otherwise: ir.Bl
                 print_block(function, otherwise)
 
 
-def _call(function: Function, call: ir.Call) -> None:
+def _call(function: Function, call: nodes.Call) -> None:
     """What a routine gives is the number of its own site that failed, or 0; its results are left in the codec, where no number is boxed."""
     called = f"({function.routines[call.routine]}{''.join(f' {function.form(each)}' for each in call.arguments)})"
     problem = function.scope.locals.symbol(f"{call.routine} problem")
@@ -279,14 +279,14 @@ def _call(function: Function, call: ir.Call) -> None:
             function.line(f"(setf {function.scope.locals.symbol(result.name)} {register})")
 
 
-def _call_that_fails(function: Function, call: ir.Call, called: str, problem: str) -> None:
+def _call_that_fails(function: Function, call: nodes.Call, called: str, problem: str) -> None:
     with function.lines.form(f"(let (({problem} {called}))"):
         function.line(f"(declare (type fixnum {problem}))")
         with function.lines.form(f"(when (/= {problem} 0)"):
             function.line(function.leave(_passed_on(function, problem, call)))
 
 
-def _passed_on(function: Function, problem: str, call: ir.Call) -> str:
+def _passed_on(function: Function, problem: str, call: nodes.Call) -> str:
     """The caller's site for that of a routine."""
     sites = tuple(map(function.site, call.sites))
     site = str(sites[-1]) if len(set(sites)) == 1 else f"(svref #({' '.join(map(str, sites))}) (1- {problem}))"
@@ -296,7 +296,7 @@ def _passed_on(function: Function, problem: str, call: ir.Call) -> str:
     return f"(fail-there codec {site}{indices})"
 
 
-def registers(results: Sequence[ir.Local]) -> list[str]:
+def registers(results: Sequence[nodes.Local]) -> list[str]:
     """Where a routine leaves its results: slots of the codec, by their types."""
     counts: dict[str, int] = {}
     found: list[str] = []
@@ -306,7 +306,7 @@ def registers(results: Sequence[ir.Local]) -> list[str]:
     return found
 
 
-def _host_call(function: Function, call: ir.HostCall) -> None:
+def _host_call(function: Function, call: nodes.HostCall) -> None:
     """A function that the program has which this becomes part of."""
     scope, site = function.scope, function.site(call.failure.site)
     indices = "".join(f" {function.form(each)}" for each in call.failure.indices)

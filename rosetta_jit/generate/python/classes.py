@@ -7,7 +7,7 @@ import keyword
 import re
 from typing import assert_never
 
-from rosetta_jit.backends.base import Namespace
+from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.inner_types import reached_types
 from rosetta_jit.generate.unit import Unit, wire_of
 from rosetta_jit.model.layout import scalar_of

@@ -7,7 +7,7 @@ from dataclasses import field
 from functools import partial
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.base import Writer
+from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.python.classes import NUMPY, member_names
 from rosetta_jit.generate.python.expressions import CODES, flat_name, within
 from rosetta_jit.generate.unit import Unit

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import Assign, Binary, Block, Compare, Const, For, Let, Local, Stmt, Var, While
+from rosetta_jit.kernel.nodes import Assign, Binary, Block, Compare, Const, For, Let, Local, Stmt, Var, While
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import expressions_of, statements

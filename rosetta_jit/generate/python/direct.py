@@ -17,7 +17,7 @@ from typing import cast
 from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.groups import turned
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
@@ -40,76 +40,78 @@ class Direct:
     whole: set[int] = field(default_factory=set[int])
     appended: set[int] = field(default_factory=set[int])
     loops: dict[str, int] = field(default_factory=dict[str, int])
-    elements: dict[int, list[ir.Place]] = field(default_factory=dict[int, "list[ir.Place]"])
-    texts: dict[tuple[int, int], tuple[ir.Expr, ir.Expr]] = field(default_factory=dict[tuple[int, int], "tuple[ir.Expr, ir.Expr]"])
+    elements: dict[int, list[nodes.Place]] = field(default_factory=dict[int, "list[nodes.Place]"])
+    texts: dict[tuple[int, int], tuple[nodes.Expr, nodes.Expr]] = field(
+        default_factory=dict[tuple[int, int], "tuple[nodes.Expr, nodes.Expr]"]
+    )
 
-    def text_at(self, at: ir.Expr, size: ir.Expr) -> tuple[int, int] | None:
+    def text_at(self, at: nodes.Expr, size: nodes.Expr) -> tuple[int, int] | None:
         """The span of the text that is checked there."""
         return next((span for span, place in self.texts.items() if place == (at, size)), None)
 
 
-def direct(block: ir.Block, kernel: ir.Kernel, layout: Layout, arrays: Collection[int], *, few: int = FEW) -> tuple[ir.Block, Direct]:
+def direct(block: nodes.Block, kernel: ir.Kernel, layout: Layout, arrays: Collection[int], *, few: int = FEW) -> tuple[nodes.Block, Direct]:
     """A body of a decoder whose message's row is locals, without the statements that lanes of ``arrays`` needed; and what is direct.
 
     Arrays of a fixed length, up to ``few`` elements, are read together with the numbers around them.
     """
     found = _Search(counted(block), kernel, layout, arrays, few)
-    found.arrays(found.block, ir.Place(0, index(0)))
+    found.arrays(found.block, nodes.Place(0, index(0)))
     return found.rewritten(found.block), found.direct
 
 
 class _Search:
     """Looks for arrays and texts in the block that fills a row, and in the loops that fill rows there."""
 
-    def __init__(self, block: ir.Block, kernel: ir.Kernel, layout: Layout, arrays: Collection[int], few: int) -> None:
+    def __init__(self, block: nodes.Block, kernel: ir.Kernel, layout: Layout, arrays: Collection[int], few: int) -> None:
         self.block, self.layout, self.lists, self.few, self.direct = block, layout, arrays, few, Direct()
-        self.instead: dict[int, ir.Block] = {}
-        self.mentions: dict[int, list[ir.Stmt]] = {}
-        self.fields: dict[tuple[int, int], list[ir.Stmt]] = {}
-        self.readers: dict[str, list[ir.Stmt]] = {}
-        self.checks: dict[tuple[ir.Expr, ir.Expr], int] = {}
+        self.instead: dict[int, nodes.Block] = {}
+        self.mentions: dict[int, list[nodes.Stmt]] = {}
+        self.fields: dict[tuple[int, int], list[nodes.Stmt]] = {}
+        self.readers: dict[str, list[nodes.Stmt]] = {}
+        self.checks: dict[tuple[nodes.Expr, nodes.Expr], int] = {}
         for part in (block, *(routine.body for routine in kernel.routines)):
             for stmt, _ in statements(part):
                 self._note(stmt)
 
-    def _note(self, stmt: ir.Stmt) -> None:
+    def _note(self, stmt: nodes.Stmt) -> None:
         places = list(_places(stmt))
         for lane in {each.lane for each in places} | _counted(stmt):
             self.mentions.setdefault(lane, []).append(stmt)
-        for place in () if isinstance(stmt, ir.Fill) and stmt.target == ir.Place(0, index(0)) else places:
+        for place in () if isinstance(stmt, nodes.Fill) and stmt.target == nodes.Place(0, index(0)) else places:
             self.fields.setdefault((place.lane, place.offset), []).append(stmt)
         for name in {name for expr in expressions_of(stmt) for name in locals_in(expr)}:
             self.readers.setdefault(name, []).append(stmt)
         match stmt:
-            case ir.Expect(ir.IsText(ir.Wire(at), size), _):
+            case nodes.Expect(nodes.IsText(nodes.Wire(at), size), _):
                 self.checks[at, size] = self.checks.get((at, size), 0) + 1
             case _:
                 pass
 
-    def rewritten(self, block: ir.Block) -> ir.Block:
-        kept: list[ir.Stmt] = []
+    def rewritten(self, block: nodes.Block) -> nodes.Block:
+        kept: list[nodes.Stmt] = []
         for stmt in block:
             kept += self.instead.get(id(stmt), (stmt,))
         return tuple(with_blocks(stmt, self.rewritten) for stmt in kept)
 
     # --- a row -----------------------------------------------------------------------------------------------------------------------
 
-    def arrays(self, block: ir.Block, row: ir.Place) -> None:
+    def arrays(self, block: nodes.Block, row: nodes.Place) -> None:
         """What is direct of a row that a block fills."""
         for stmt in block:
             match stmt:
-                case ir.Reserve(lane, count) if lane in self.lists:
+                case nodes.Reserve(lane, count) if lane in self.lists:
                     self._array(block, row, stmt, count)
-                case ir.Expect(ir.IsText(ir.Wire(at), size), _) if self.checks[at, size] == 1:
+                case nodes.Expect(nodes.IsText(nodes.Wire(at), size), _) if self.checks[at, size] == 1:
                     self._text(block, row, at, size)
                 case _:
                     pass
 
-    def _text(self, block: ir.Block, row: ir.Place, at: ir.Expr, size: ir.Expr) -> None:
+    def _text(self, block: nodes.Block, row: nodes.Place, at: nodes.Expr, size: nodes.Expr) -> None:
         spans = [
             (begin, end)
             for begin in self._sets(block, row, at)
-            for end in self._sets(block, row, ir.Binary("sub", index(-1), size))
+            for end in self._sets(block, row, nodes.Binary("sub", index(-1), size))
             if end.place.offset == begin.place.offset + 8
         ]
         slots = _spans(self.layout, row.lane)
@@ -120,24 +122,24 @@ class _Search:
             self.direct.texts[row.lane, begin.place.offset] = at, size
             self.instead[id(begin)] = self.instead[id(end)] = ()
 
-    def _sets(self, block: ir.Block, row: ir.Place, value: ir.Expr) -> list[ir.SetField]:
+    def _sets(self, block: nodes.Block, row: nodes.Place, value: nodes.Expr) -> list[nodes.SetField]:
         """The one statement, if it is one, that sets a field of the row to a value, and that has to do with the field."""
         found = [
             each
             for each in block
-            if isinstance(each, ir.SetField) and each.value == value and each.place.lane == row.lane and each.place.row == row.row
+            if isinstance(each, nodes.SetField) and each.value == value and each.place.lane == row.lane and each.place.row == row.row
         ]
         return [each for each in found if len(self.fields[each.place.lane, each.place.offset]) == 1]
 
-    def _array(self, block: ir.Block, row: ir.Place, reserve: ir.Reserve, count: ir.Expr) -> None:
+    def _array(self, block: nodes.Block, row: nodes.Place, reserve: nodes.Reserve, count: nodes.Expr) -> None:
         lane, found = reserve.lane, self.mentions[reserve.lane]
-        lets = [each for each in found if isinstance(each, ir.Let) and each.value == ir.Used(lane)]
-        advances = [each for each in found if each == ir.Advance(lane, count)]
+        lets = [each for each in found if isinstance(each, nodes.Let) and each.value == nodes.Used(lane)]
+        advances = [each for each in found if each == nodes.Advance(lane, count)]
         own = {id(each) for each in (reserve, *lets, *advances)}
         here = {id(each) for each in block}
-        if len(lets) != 1 or len(advances) != 1 or not own <= here or sum(isinstance(each, ir.Reserve) for each in found) > 1:
+        if len(lets) != 1 or len(advances) != 1 or not own <= here or sum(isinstance(each, nodes.Reserve) for each in found) > 1:
             return
-        start = ir.Local("i64", lets[0].name)
+        start = nodes.Local("i64", lets[0].name)
         spans = [
             (begin, end)
             for begin in self._sets(block, row, start)
@@ -158,97 +160,107 @@ class _Search:
 
     # --- its arrays ------------------------------------------------------------------------------------------------------------------
 
-    def _at_once(self, block: ir.Block, lane: int, start: ir.Local, count: ir.Expr, fills: list[ir.Stmt]) -> bool:
+    def _at_once(self, block: nodes.Block, lane: int, start: nodes.Local, count: nodes.Expr, fills: list[nodes.Stmt]) -> bool:
         if len(fills) != 1:
             return False
         stride, element = self.layout.lanes[lane].stride, self.layout.lanes[lane].element
         code = numbers_of(element, stride)
         match fills[0]:
-            case ir.Copy(ir.Place(_, row, 0), ir.Wire(at), size) as copy if code and row == start and size == mul(count, stride):
+            case nodes.Copy(nodes.Place(_, row, 0), nodes.Wire(at), size) as copy if code and row == start and size == mul(count, stride):
                 outer = next((each for each in block if each is copy or _if_any(each, count, copy)), None)
                 if outer is None:
                     return False
-                if isinstance(count, ir.Const) and isinstance(element, Number) and 0 < count.value <= self.few and element.scalar != "bool":
-                    places = [ir.Place(lane, add(start, number)) for number in range(int(count.value))]
+                if (
+                    isinstance(count, nodes.Const)
+                    and isinstance(element, Number)
+                    and 0 < count.value <= self.few
+                    and element.scalar != "bool"
+                ):
+                    places = [nodes.Place(lane, add(start, number)) for number in range(int(count.value))]
                     self.direct.elements[lane] = places
                     self.instead[id(outer)] = tuple(
-                        ir.SetField(place, ir.Load(code[0], add(at, number * stride))) for number, place in enumerate(places)
+                        nodes.SetField(place, nodes.Load(code[0], add(at, number * stride))) for number, place in enumerate(places)
                     )
                     return True
                 self.instead[id(outer)] = (copy,)
-            case ir.SetField() as last if isinstance(element, Number):
-                loop = next((each for each in block if isinstance(each, ir.For) and each.body and each.body[-1] is last), None)
+            case nodes.SetField() as last if isinstance(element, Number):
+                loop = next((each for each in block if isinstance(each, nodes.For) and each.body and each.body[-1] is last), None)
                 found = None if loop is None else turned(loop)
-                if loop is None or found is None or loop.count != count or found[0] != ir.Place(lane, start):
+                if loop is None or found is None or loop.count != count or found[0] != nodes.Place(lane, start):
                     return False
             case _:
                 return False
         self.direct.whole.add(lane)
         return True
 
-    def _by_name(self, block: ir.Block, lane: int, start: ir.Local, count: ir.Expr, fills: list[ir.Stmt]) -> bool:
-        if not isinstance(count, ir.Const) or not 0 < count.value <= FEW or len(fills) != count.value:
+    def _by_name(self, block: nodes.Block, lane: int, start: nodes.Local, count: nodes.Expr, fills: list[nodes.Stmt]) -> bool:
+        if not isinstance(count, nodes.Const) or not 0 < count.value <= FEW or len(fills) != count.value:
             return False
-        places = [ir.Place(lane, add(start, number)) for number in range(int(count.value))]
+        places = [nodes.Place(lane, add(start, number)) for number in range(int(count.value))]
         here = {id(each) for each in block}
-        if not all(isinstance(each, ir.SetField) and id(each) in here for each in fills):
+        if not all(isinstance(each, nodes.SetField) and id(each) in here for each in fills):
             return False
-        if {each.place for each in fills if isinstance(each, ir.SetField)} != set(places):
+        if {each.place for each in fills if isinstance(each, nodes.SetField)} != set(places):
             return False
         if not isinstance(self.layout.lanes[lane].element, Number):
             return False
         self.direct.elements[lane] = places
         return True
 
-    def _one_by_one(self, block: ir.Block, lane: int, start: ir.Local, count: ir.Expr, fills: list[ir.Stmt]) -> bool:
-        loops = [each for each in block if isinstance(each, ir.For) and each.count == count and any(fill in each.body for fill in fills)]
+    def _one_by_one(self, block: nodes.Block, lane: int, start: nodes.Local, count: nodes.Expr, fills: list[nodes.Stmt]) -> bool:
+        loops = [each for each in block if isinstance(each, nodes.For) and each.count == count and any(fill in each.body for fill in fills)]
         element = self.layout.lanes[lane].element
         needed = offsets_of(element)
         if len(loops) != 1 or needed is None:
             return False
         loop = loops[0]
-        row = ir.Binary("add", start, ir.Local("i64", loop.variable))
+        row = nodes.Binary("add", start, nodes.Local("i64", loop.variable))
         here = {id(each) for each in loop.body}
-        sets = [each for each in fills if isinstance(each, ir.SetField) and id(each) in here and each.place.row == row]
+        sets = [each for each in fills if isinstance(each, nodes.SetField) and id(each) in here and each.place.row == row]
         if len(sets) != len(fills) or sorted(each.place.offset for each in sets) != sorted(needed):
             return False
         self.direct.appended.add(lane)
         self.direct.loops[loop.variable] = lane
-        self.arrays(loop.body, ir.Place(lane, row))
+        self.arrays(loop.body, nodes.Place(lane, row))
         return True
 
 
-def _places(stmt: ir.Stmt) -> Iterator[ir.Place]:
+def _places(stmt: nodes.Stmt) -> Iterator[nodes.Place]:
     """Places of lanes that a statement has to do with."""
     match stmt:
-        case ir.SetField(place):
+        case nodes.SetField(place):
             yield place
-        case ir.Copy(target, source, _):
-            yield from (each for each in (target, source) if isinstance(each, ir.Place))
-        case ir.Fill(ir.Place() as target, _, _):
+        case nodes.Copy(target, source, _):
+            yield from (each for each in (target, source) if isinstance(each, nodes.Place))
+        case nodes.Fill(nodes.Place() as target, _, _):
             yield target
-        case ir.HostCall():
-            yield from (each.address for each in extents_of(stmt) if isinstance(each.address, ir.Place))
+        case nodes.HostCall():
+            yield from (each.address for each in extents_of(stmt) if isinstance(each.address, nodes.Place))
         case _:
             pass
     for expr in expressions_of(stmt):
         for part in subexpressions(expr):
             match part:
-                case ir.Get(_, place) | ir.IsText(ir.Place() as place, _) | ir.Nearest(ir.Place() as place, _, _):
+                case nodes.Get(_, place) | nodes.IsText(nodes.Place() as place, _) | nodes.Nearest(nodes.Place() as place, _, _):
                     yield place
                 case _:
                     pass
 
 
-def _counted(stmt: ir.Stmt) -> set[int]:
+def _counted(stmt: nodes.Stmt) -> set[int]:
     """Lanes whose counts a statement changes or asks for."""
-    found = {stmt.lane} if isinstance(stmt, ir.Reserve | ir.Advance) else set[int]()
+    found = {stmt.lane} if isinstance(stmt, nodes.Reserve | nodes.Advance) else set[int]()
     parts = (part for expr in expressions_of(stmt) for part in subexpressions(expr))
-    return found | {part.lane for part in parts if isinstance(part, ir.Used)}
+    return found | {part.lane for part in parts if isinstance(part, nodes.Used)}
 
 
-def _if_any(stmt: ir.Stmt, count: ir.Expr, copy: ir.Copy) -> bool:
-    return isinstance(stmt, ir.If) and stmt.condition == ir.Compare("gt", count, index(0)) and stmt.then == (copy,) and not stmt.otherwise
+def _if_any(stmt: nodes.Stmt, count: nodes.Expr, copy: nodes.Copy) -> bool:
+    return (
+        isinstance(stmt, nodes.If)
+        and stmt.condition == nodes.Compare("gt", count, index(0))
+        and stmt.then == (copy,)
+        and not stmt.otherwise
+    )
 
 
 def _spans(layout: Layout, lane: int) -> dict[int, int]:
@@ -256,12 +268,12 @@ def _spans(layout: Layout, lane: int) -> dict[int, int]:
     return {each.offset: each.lane for each in slots_of(layout.lanes[lane].element if lane else layout.root) if isinstance(each, Span)}
 
 
-def numbers_of(slot: Slot, stride: int) -> tuple[ir.Scalar, ...]:
+def numbers_of(slot: Slot, stride: int) -> tuple[nodes.Scalar, ...]:
     """The types of the numbers that a row is, one behind the other."""
     slots = [each for each in slots_of(slot) if not isinstance(each, Row)]
     numbers = sorted((each for each in slots if isinstance(each, Number)), key=lambda each: each.offset)
     at = 0
     for each in numbers:
-        at = at + ir.WIDTH[each.scalar] if each.offset == at else -1
-    scalars: list[ir.Scalar] = [cast("ir.Scalar", each.scalar) for each in numbers]
+        at = at + nodes.WIDTH[each.scalar] if each.offset == at else -1
+    scalars: list[nodes.Scalar] = [cast("nodes.Scalar", each.scalar) for each in numbers]
     return tuple(scalars) if len(numbers) == len(slots) and at == stride else ()

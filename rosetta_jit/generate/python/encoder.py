@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.base import Namespace, Writer
+from rosetta_jit.backends.printing import Namespace, Writer
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.functions import words_of
 from rosetta_jit.generate.python.object_rows import ObjectScope
@@ -15,7 +15,8 @@ from rosetta_jit.generate.python.statements import Function, Objects
 from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import Unit
-from rosetta_jit.kernel.ir import Block, Expect, Kernel, Routine
+from rosetta_jit.kernel.ir import Kernel, Routine
+from rosetta_jit.kernel.nodes import Block, Expect
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.types import Ref

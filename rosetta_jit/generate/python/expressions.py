@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from rosetta_jit.backends.base import Namespace
+from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import NUMPY
 from rosetta_jit.generate.python.direct import Direct
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.terms import END, is_wider, type_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -97,7 +97,7 @@ class Scope:
         self.loads.add(name)
         return name
 
-    def place(self, place: ir.Place, scalar: str) -> str:
+    def place(self, place: nodes.Place, scalar: str) -> str:
         """The same for a place of a kernel."""
         if place.lane in self.direct.elements:
             return self.element(place.lane, self.direct.elements[place.lane].index(place))
@@ -127,7 +127,7 @@ class Scope:
             return name
         if lane in self.direct.appended or lane in self.direct.whole:
             return self.own(lane, offset, scalar)
-        width, stride = ir.WIDTH[scalar], self.lanes.stride(lane)
+        width, stride = nodes.WIDTH[scalar], self.lanes.stride(lane)
         return f"{self.view(lane, CODES[scalar])}[{_scaled(row, stride // width, offset // width)}]"
 
 
@@ -150,86 +150,86 @@ def _scaled(row: str, times: int, offset: int) -> str:
     return f"{text} + {offset}" if offset else text
 
 
-def expression(scope: Scope, expr: ir.Expr) -> str:
+def expression(scope: Scope, expr: nodes.Expr) -> str:
     """The text of an expression; one with an operator stands in parentheses."""
     match expr:
-        case ir.Const(type_, value):
+        case nodes.Const(type_, value):
             return _constant(type_, value)
-        case ir.Local(_, name):
+        case nodes.Local(_, name):
             return "end" if name == END.name else scope.locals.identifier(name)
-        case ir.Load(type_, at, order):
+        case nodes.Load(type_, at, order):
             return _loaded(scope, type_, bare(expression(scope, at)), order)
-        case ir.Get(type_, place):
+        case nodes.Get(type_, place):
             text = scope.place(place, type_)
             return f"({text} != 0)" if type_ == "bool" else text
-        case ir.Used() | ir.Capacity() | ir.HostValue() | ir.Register():
+        case nodes.Used() | nodes.Capacity() | nodes.HostValue() | nodes.Register():
             return _known(scope, expr)
-        case ir.Unary(function, operand):
+        case nodes.Unary(function, operand):
             return _unary(function, type_of(operand), expression(scope, operand))
-        case ir.Binary(op, left, right):
+        case nodes.Binary(op, left, right):
             return _binary(op, type_of(left), expression(scope, left), expression(scope, right))
-        case ir.Compare(op, left, right):
+        case nodes.Compare(op, left, right):
             return f"({expression(scope, left)} {COMPARISONS[op]} {expression(scope, right)})"
-        case ir.Fits(op, left, right):
+        case nodes.Fits(op, left, right):
             return f"({-(2**63)} <= {expression(scope, left)} {OPERATORS[op]} {expression(scope, right)} <= {2**63 - 1})"
-        case ir.Convert(type_, operand):
+        case nodes.Convert(type_, operand):
             return _convert(type_, type_of(operand), expression(scope, operand))
-        case ir.Bits(type_, operand):
+        case nodes.Bits(type_, operand):
             return _bits(type_, type_of(operand), expression(scope, operand))
-        case ir.Select(condition, then, otherwise):
+        case nodes.Select(condition, then, otherwise):
             return f"({expression(scope, then)} if {expression(scope, condition)} else {expression(scope, otherwise)})"
-        case ir.IsText(address, size):
+        case nodes.IsText(address, size):
             return _is_text(scope, address, expression(scope, size))
-        case ir.Nearest() | ir.Digits() | ir.Scale():
+        case nodes.Nearest() | nodes.Digits() | nodes.Scale():
             return _decimal(scope, expr)
-        case ir.Lookup(_, values, index):
+        case nodes.Lookup(_, values, index):
             return f"{values!r}[{bare(expression(scope, index))}]"
         case _:
             assert_never(expr)
 
 
-def _decimal(scope: Scope, expr: ir.Nearest | ir.Digits | ir.Scale) -> str:
+def _decimal(scope: Scope, expr: nodes.Nearest | nodes.Digits | nodes.Scale) -> str:
     match expr:
-        case ir.Nearest(address, size, exponent):
+        case nodes.Nearest(address, size, exponent):
             (memory, start), count = location(scope, address), expression(scope, size)
             return f"_nearest({memory}[{start} : {start} + {count}], {bare(expression(scope, exponent))})"
-        case ir.Digits(value, None):
+        case nodes.Digits(value, None):
             return f"_shortest({_and_width(scope, value)})[0]"
-        case ir.Digits(value, places):
+        case nodes.Digits(value, places):
             return f"_fixed_digits({bare(expression(scope, value))}, {places})"
-        case ir.Scale(value):
+        case nodes.Scale(value):
             return f"_shortest({_and_width(scope, value)})[1]"
         case _:
             assert_never(expr)
 
 
-def _and_width(scope: Scope, value: ir.Expr) -> str:
+def _and_width(scope: Scope, value: nodes.Expr) -> str:
     """A float, and how many bits it has."""
-    return f"{bare(expression(scope, value))}, {8 * ir.WIDTH[type_of(value)]}"
+    return f"{bare(expression(scope, value))}, {8 * nodes.WIDTH[type_of(value)]}"
 
 
-def _known(scope: Scope, expr: ir.Known) -> str:
+def _known(scope: Scope, expr: nodes.Known) -> str:
     match expr:
-        case ir.Used(lane):
+        case nodes.Used(lane):
             return scope.used(lane)
-        case ir.Capacity(lane):
+        case nodes.Capacity(lane):
             return scope.room(lane)
-        case ir.HostValue(what):
+        case nodes.HostValue(what):
             scope.from_call.add(what)
             return f"call_{what}"
-        case ir.Register(number):
+        case nodes.Register(number):
             scope.from_call.add("registers")
             return f"call_registers[{number}]"
 
 
-def _is_text(scope: Scope, address: ir.Address, size: str) -> str:
+def _is_text(scope: Scope, address: nodes.Address, size: str) -> str:
     memory, start = location(scope, address)
     if memory == "data":  # bytes know whether they are ASCII
         return f"(data[{start} : {start} + {size}].isascii() or _is_text(data, {start}, {bare(size)}))"
     return f"_is_text({memory}, {start}, {bare(size)})"
 
 
-def _constant(type_: ir.Scalar, value: float) -> str:
+def _constant(type_: nodes.Scalar, value: float) -> str:
     if type_ == "bool":
         return "True" if value else "False"
     if type_ not in FLOATS:
@@ -243,20 +243,20 @@ def _constant(type_: ir.Scalar, value: float) -> str:
     return repr(number) if not repr(number).startswith("-") else f"({number!r})"
 
 
-def _loaded(scope: Scope, type_: ir.Scalar, at: str, order: str) -> str:
+def _loaded(scope: Scope, type_: nodes.Scalar, at: str, order: str) -> str:
     if type_ == "u8":
         return f"data[{at}]"
     if type_ == "bool":
         return f"(data[{at}] != 0)"
-    return f"{scope.struct('<' if ir.WIDTH[type_] == 1 else order, CODES[type_], 'load')}(data, {at})[0]"
+    return f"{scope.struct('<' if nodes.WIDTH[type_] == 1 else order, CODES[type_], 'load')}(data, {at})[0]"
 
 
-def _unary(function: str, type_: ir.Scalar, value: str) -> str:
+def _unary(function: str, type_: nodes.Scalar, value: str) -> str:
     match function:
         case "not" if type_ == "bool":
             return f"(not {value})"
         case "not":
-            return f"(~{value})" if type_[0] == "i" else f"({value} ^ {2 ** (8 * ir.WIDTH[type_]) - 1})"
+            return f"(~{value})" if type_[0] == "i" else f"({value} ^ {2 ** (8 * nodes.WIDTH[type_]) - 1})"
         case "neg":
             return f"(-{value})"
         case "abs":
@@ -269,11 +269,11 @@ def _unary(function: str, type_: ir.Scalar, value: str) -> str:
             return _rounded(type_, f"_of_math(math.{function}, {bare(value)})")
 
 
-def _rounded(type_: ir.Scalar, value: str) -> str:
+def _rounded(type_: nodes.Scalar, value: str) -> str:
     return f"_single({bare(value)})" if type_ == "f32" else value
 
 
-def _binary(op: str, type_: ir.Scalar, left: str, right: str) -> str:
+def _binary(op: str, type_: nodes.Scalar, left: str, right: str) -> str:
     match op:
         case "and" | "or" | "xor" if type_ == "bool":
             return f"({left} {LOGICAL[op]} {right})"
@@ -295,15 +295,15 @@ def _binary(op: str, type_: ir.Scalar, left: str, right: str) -> str:
             return _rounded(type_, f"({left} {OPERATORS[op]} {right})") if type_ in FLOATS else f"({left} {OPERATORS[op]} {right})"
 
 
-def _wrapped(type_: ir.Scalar, value: str) -> str:
+def _wrapped(type_: nodes.Scalar, value: str) -> str:
     """The low bits of an integer."""
-    bits = 8 * ir.WIDTH[type_]
+    bits = 8 * nodes.WIDTH[type_]
     if type_[0] == "u":
         return f"({value} & {2**bits - 1})"
     return f"(({value} + {2 ** (bits - 1)} & {2**bits - 1}) - {2 ** (bits - 1)})"
 
 
-def _convert(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
+def _convert(target: nodes.Scalar, source: nodes.Scalar, value: str) -> str:
     if target == source:
         return value
     if target == "bool":
@@ -313,7 +313,7 @@ def _convert(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
     if target in FLOATS:
         return f"float({bare(value)})" if target == "f64" else f"_single_of_int({bare(value)})"
     if source in FLOATS:
-        bits, signed = 8 * ir.WIDTH[target], target[0] == "i"
+        bits, signed = 8 * nodes.WIDTH[target], target[0] == "i"
         least, most = (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) if signed else (0, 2**bits - 1)
         return f"_saturated({bare(value)}, {least}, {most})"
     if source == "bool":
@@ -321,10 +321,10 @@ def _convert(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
     return value if is_wider(target, source) else _wrapped(target, value)
 
 
-def _bits(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
+def _bits(target: nodes.Scalar, source: nodes.Scalar, value: str) -> str:
     if target == source:
         return value
-    width = 8 * ir.WIDTH[source]
+    width = 8 * nodes.WIDTH[source]
     if source in FLOATS:
         return _convert(target, "u64" if width == 64 else "u32", f"_bits{width}({bare(value)})")
     if target in FLOATS:
@@ -334,16 +334,16 @@ def _bits(target: ir.Scalar, source: ir.Scalar, value: str) -> str:
 
 def within(text: str, scalar: str) -> str:
     """An integer, which is looked at first."""
-    bits, signed = 8 * ir.WIDTH[scalar], scalar[0] == "i"
+    bits, signed = 8 * nodes.WIDTH[scalar], scalar[0] == "i"
     return f"_within({bare(text)}, {-(1 << bits - 1) if signed else 0}, {(1 << bits - signed) - 1})"
 
 
-def location(scope: Scope, address: ir.Address) -> tuple[str, str]:
+def location(scope: Scope, address: nodes.Address) -> tuple[str, str]:
     """Memory, and the number of a byte in there."""
     match address:
-        case ir.Wire(at):
+        case nodes.Wire(at):
             return "data", bare(expression(scope, at))
-        case ir.Place(lane, row, offset):
+        case nodes.Place(lane, row, offset):
             return scope.view(lane, ""), _scaled(expression(scope, row), scope.lanes.stride(lane), offset)
         case _:
             assert_never(address)

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.base import Namespace, Writer
+from rosetta_jit.backends.printing import Namespace, Writer
 from rosetta_jit.generate.cleared import settled
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
@@ -19,7 +19,7 @@ from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.shares import moved_lanes
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import Role, kind_of
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 
@@ -35,9 +35,9 @@ def is_flat(kernel: ir.Kernel, lanes: Lanes) -> bool:
     for body in kernel.bodies:
         for stmt, _ in statements(body):
             whole = (
-                isinstance(stmt, ir.Fill)
-                and stmt == ir.Fill(stmt.target, ir.Const("i64", kernel.strides[0]))
-                and stmt.target == ir.Place(0, ir.Const("i64", 0))
+                isinstance(stmt, nodes.Fill)
+                and stmt == nodes.Fill(stmt.target, nodes.Const("i64", kernel.strides[0]))
+                and stmt.target == nodes.Place(0, nodes.Const("i64", 0))
             )
             if not whole and any(place.lane == 0 for place in _memory(stmt)):
                 return False
@@ -45,22 +45,22 @@ def is_flat(kernel: ir.Kernel, lanes: Lanes) -> bool:
     return all(place.lane for place in places)
 
 
-def _memory(stmt: ir.Stmt) -> list[ir.Place]:
+def _memory(stmt: nodes.Stmt) -> list[nodes.Place]:
     """Places whose bytes a statement takes for what they are."""
-    found = (stmt.target, stmt.source) if isinstance(stmt, ir.Copy) else (stmt.target,) if isinstance(stmt, ir.Fill) else ()
-    texts = [part.address for expr in expressions_of(stmt) for part in subexpressions(expr) if isinstance(part, ir.IsText)]
-    return [each for each in (*found, *texts) if isinstance(each, ir.Place)]
+    found = (stmt.target, stmt.source) if isinstance(stmt, nodes.Copy) else (stmt.target,) if isinstance(stmt, nodes.Fill) else ()
+    texts = [part.address for expr in expressions_of(stmt) for part in subexpressions(expr) if isinstance(part, nodes.IsText)]
+    return [each for each in (*found, *texts) if isinstance(each, nodes.Place)]
 
 
-def _fields(stmt: ir.Stmt) -> list[tuple[ir.Place, ir.Scalar]]:
+def _fields(stmt: nodes.Stmt) -> list[tuple[nodes.Place, nodes.Scalar]]:
     """The scalars of rows that a statement sets or reads."""
-    found: list[tuple[ir.Place, ir.Scalar]] = [(stmt.place, type_of(stmt.value))] if isinstance(stmt, ir.SetField) else []
-    gets = (part for expr in expressions_of(stmt) for part in subexpressions(expr) if isinstance(part, ir.Get))
+    found: list[tuple[nodes.Place, nodes.Scalar]] = [(stmt.place, type_of(stmt.value))] if isinstance(stmt, nodes.SetField) else []
+    gets = (part for expr in expressions_of(stmt) for part in subexpressions(expr) if isinstance(part, nodes.Get))
     return [*found, *((each.place, each.type) for each in gets)]
 
 
-def _set(stmt: ir.Stmt) -> list[ir.Place]:
-    return [stmt.place] if isinstance(stmt, ir.SetField) else []
+def _set(stmt: nodes.Stmt) -> list[nodes.Place]:
+    return [stmt.place] if isinstance(stmt, nodes.SetField) else []
 
 
 def words_of(lanes: Lanes) -> frozenset[str]:
@@ -108,11 +108,11 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Att
         body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, few=0 if scope.numpy else FEW)
     function.settled = settled(body)
     function.read, function.positive = read_names(body), not_negative(body)
-    function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, ir.Reserve))
+    function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, nodes.Reserve))
     blocks = (body, *(routine.body for routine in kernel.routines))
     exprs = (expr for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt))
-    measured = {part.lane for expr in exprs for part in subexpressions(expr) if isinstance(part, ir.Capacity)}
-    function.outside = {stmt.lane for stmt in body if isinstance(stmt, ir.Reserve)} - measured - {*kernel.kept}
+    measured = {part.lane for expr in exprs for part in subexpressions(expr) if isinstance(part, nodes.Capacity)}
+    function.outside = {stmt.lane for stmt in body if isinstance(stmt, nodes.Reserve)} - measured - {*kernel.kept}
     print_block(function, body)
     made = objects.inner(scope)
     name = f"_{role}_{number + 1}"

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.terms import END, index, type_of
 from rosetta_jit.kernel.walk import bound_names, statements
 
 
-def grouped(block: ir.Block) -> Iterator[list[ir.Stmt]]:
+def grouped(block: nodes.Block) -> Iterator[list[nodes.Stmt]]:
     """The statements of a block: those that read, or write, scalars one behind the other in the message together."""
-    group: list[ir.Stmt] = []
+    group: list[nodes.Stmt] = []
     for stmt in block:
         if group and not _continues(group, stmt):
             yield group
@@ -23,71 +23,71 @@ def grouped(block: ir.Block) -> Iterator[list[ir.Stmt]]:
         yield group
 
 
-def scalar_of(stmt: ir.Stmt) -> tuple[str, ir.Expr, str] | None:
+def scalar_of(stmt: nodes.Stmt) -> tuple[str, nodes.Expr, str] | None:
     """Type, place and byte order of the one scalar that a statement takes from the message, or puts there."""
     match stmt:
-        case ir.Let(_, value) | ir.SetField(_, value):
+        case nodes.Let(_, value) | nodes.SetField(_, value):
             load = _as_loaded(value)
             return (load.type, load.at, load.order) if load is not None and load.type != "bool" else None
-        case ir.Store(at, value, order):
+        case nodes.Store(at, value, order):
             return (type_of(value), at, order) if type_of(value) != "bool" else None
         case _:
             return None
 
 
-def _as_loaded(value: ir.Expr) -> ir.Load | None:
+def _as_loaded(value: nodes.Expr) -> nodes.Load | None:
     """The scalar of the message that a value is; an integer of more bits is the same one."""
     match value:
-        case ir.Load():
+        case nodes.Load():
             return value
-        case ir.Convert(type_, ir.Load(inner) as load) if (
-            inner[0] in "iu" and type_[0] in ("i", inner[0]) and ir.WIDTH[type_] > ir.WIDTH[inner]
+        case nodes.Convert(type_, nodes.Load(inner) as load) if (
+            inner[0] in "iu" and type_[0] in ("i", inner[0]) and nodes.WIDTH[type_] > nodes.WIDTH[inner]
         ):
             return load
         case _:
             return None
 
 
-def _continues(group: list[ir.Stmt], stmt: ir.Stmt) -> bool:
+def _continues(group: list[nodes.Stmt], stmt: nodes.Stmt) -> bool:
     before = group[-1]
     one, other = scalar_of(before), scalar_of(stmt)
-    if one is None or other is None or isinstance(before, ir.Store) != isinstance(stmt, ir.Store):
+    if one is None or other is None or isinstance(before, nodes.Store) != isinstance(stmt, nodes.Store):
         return False
-    orders = {order for type_, _, order in (*filter(None, map(scalar_of, group)), other) if ir.WIDTH[type_] > 1}
+    orders = {order for type_, _, order in (*filter(None, map(scalar_of, group)), other) if nodes.WIDTH[type_] > 1}
     (base, offset), (base_2, offset_2) = _based(one[1]), _based(other[1])
-    follows = base == base_2 and offset_2 == offset + ir.WIDTH[one[0]]
-    return len(orders) < 2 and follows and not any(isinstance(each, ir.Let) and _reads(stmt, each.name) for each in group)
+    follows = base == base_2 and offset_2 == offset + nodes.WIDTH[one[0]]
+    return len(orders) < 2 and follows and not any(isinstance(each, nodes.Let) and _reads(stmt, each.name) for each in group)
 
 
-def _based(at: ir.Expr) -> tuple[ir.Expr | None, int]:
+def _based(at: nodes.Expr) -> tuple[nodes.Expr | None, int]:
     """A place as something and a constant."""
     match at:
-        case ir.Const(_, value):
+        case nodes.Const(_, value):
             return None, int(value)
-        case ir.Binary("add", left, ir.Const(_, value)):
+        case nodes.Binary("add", left, nodes.Const(_, value)):
             base, offset = _based(left)
             return base, offset + int(value)
         case _:
             return at, 0
 
 
-def _reads(stmt: ir.Stmt, name: str) -> bool:
+def _reads(stmt: nodes.Stmt, name: str) -> bool:
     found = scalar_of(stmt)
     base = _based(found[1])[0] if found is not None else None
-    return isinstance(base, ir.Local) and base.name == name
+    return isinstance(base, nodes.Local) and base.name == name
 
 
-def not_negative(block: ir.Block) -> frozenset[str]:
+def not_negative(block: nodes.Block) -> frozenset[str]:
     """The integers of a body that are never negative, whatever the message: Python's have no end."""
-    values: dict[str, list[ir.Expr]] = {}
+    values: dict[str, list[nodes.Expr]] = {}
     unknown: set[str] = set()
     for stmt, _ in statements(block):
         match stmt:
-            case ir.Let(name, value) | ir.Var(name, value) | ir.Assign(name, value):
+            case nodes.Let(name, value) | nodes.Var(name, value) | nodes.Assign(name, value):
                 values.setdefault(name, []).append(value)
-            case ir.For(variable, _, _):
+            case nodes.For(variable, _, _):
                 values.setdefault(variable, [])
-            case ir.Call() | ir.HostCall():
+            case nodes.Call() | nodes.HostCall():
                 unknown.update(bound_names(stmt))
             case _:
                 pass
@@ -101,11 +101,11 @@ def not_negative(block: ir.Block) -> frozenset[str]:
         known = kept
 
 
-def _checked(block: ir.Block) -> Iterator[str]:
+def _checked(block: nodes.Block) -> Iterator[str]:
     """Names of constants of which the next statement says that they are 0 or more."""
     for (stmt, _), (after, _) in pairwise(statements(block)):
         match stmt, after:
-            case ir.Let(name, _), ir.Expect(ir.Compare("ge" | "gt", ir.Local(_, same), ir.Const(_, least)), _) if (
+            case nodes.Let(name, _), nodes.Expect(nodes.Compare("ge" | "gt", nodes.Local(_, same), nodes.Const(_, least)), _) if (
                 name == same and least >= 0
             ):
                 yield name
@@ -113,57 +113,57 @@ def _checked(block: ir.Block) -> Iterator[str]:
                 pass
 
 
-def is_not_negative(expr: ir.Expr, known: frozenset[str] | set[str]) -> bool:
+def is_not_negative(expr: nodes.Expr, known: frozenset[str] | set[str]) -> bool:
     """Whether an integer is 0 or more, if those of the names are."""
     match expr:
-        case ir.Const(_, value):
+        case nodes.Const(_, value):
             return value >= 0
-        case ir.Local(_, name):
+        case nodes.Local(_, name):
             return name in known
-        case ir.Load(type_, _, _):
+        case nodes.Load(type_, _, _):
             return type_[0] == "u"
-        case ir.Binary("add" | "mul", left, right):
+        case nodes.Binary("add" | "mul", left, right):
             return is_not_negative(left, known) and is_not_negative(right, known)
-        case ir.Convert(type_, operand):
+        case nodes.Convert(type_, operand):
             inner = type_of(operand)
-            return type_[0] in "iu" and inner[0] in "iu" and ir.WIDTH[type_] >= ir.WIDTH[inner] and is_not_negative(operand, known)
+            return type_[0] in "iu" and inner[0] in "iu" and nodes.WIDTH[type_] >= nodes.WIDTH[inner] and is_not_negative(operand, known)
         case _:
             return False
 
 
-def turned(loop: ir.For) -> tuple[ir.Place, ir.Expr, str] | None:
+def turned(loop: nodes.For) -> tuple[nodes.Place, nodes.Expr, str] | None:
     """The array that a loop copies between a lane and the message, byte by byte turned around: its first row, its place, its type."""
-    names = {each.name: each.value for each in loop.body if isinstance(each, ir.Let)}
+    names = {each.name: each.value for each in loop.body if isinstance(each, nodes.Let)}
     *lets, last = loop.body or (None,)
-    if not all(isinstance(each, ir.Let) for each in lets):
+    if not all(isinstance(each, nodes.Let) for each in lets):
         return None
     match last:
-        case ir.SetField(place, ir.Load(type_, at, ">")) | ir.Store(at, ir.Get(type_, place), ">") if ir.WIDTH[type_] > 1:
-            row, base = _without(place.row, loop.variable, 1), _without(_resolved(at, names), loop.variable, ir.WIDTH[type_])
+        case nodes.SetField(place, nodes.Load(type_, at, ">")) | nodes.Store(at, nodes.Get(type_, place), ">") if nodes.WIDTH[type_] > 1:
+            row, base = _without(place.row, loop.variable, 1), _without(_resolved(at, names), loop.variable, nodes.WIDTH[type_])
             used = set(names) & (locals_in(row) | locals_in(base)) if row is not None and base is not None else {""}
             if row is None or base is None or used or place.offset or len(names) > 1:
                 return None
-            return ir.Place(place.lane, row), base, type_
+            return nodes.Place(place.lane, row), base, type_
         case _:
             return None
 
 
-def _resolved(expr: ir.Expr, names: dict[str, ir.Expr]) -> ir.Expr:
-    return names.get(expr.name, expr) if isinstance(expr, ir.Local) else expr
+def _resolved(expr: nodes.Expr, names: dict[str, nodes.Expr]) -> nodes.Expr:
+    return names.get(expr.name, expr) if isinstance(expr, nodes.Local) else expr
 
 
-def _without(expr: ir.Expr, variable: str, times: int) -> ir.Expr | None:
+def _without(expr: nodes.Expr, variable: str, times: int) -> nodes.Expr | None:
     """An expression that is ``variable * times`` more than another: that other one."""
     match expr:
-        case ir.Local(_, name) if name == variable and times == 1:
+        case nodes.Local(_, name) if name == variable and times == 1:
             return index(0)
-        case ir.Binary("mul", ir.Local(_, name), ir.Const(_, factor)) if name == variable and factor == times:
+        case nodes.Binary("mul", nodes.Local(_, name), nodes.Const(_, factor)) if name == variable and factor == times:
             return index(0)
-        case ir.Binary("add", left, right):
+        case nodes.Binary("add", left, right):
             for one, other in ((left, right), (right, left)):
                 found = _without(one, variable, times)
                 if found is not None and variable not in locals_in(other):
-                    return other if found == index(0) else ir.Binary("add", other, found)
+                    return other if found == index(0) else nodes.Binary("add", other, found)
             return None
         case _:
             return None

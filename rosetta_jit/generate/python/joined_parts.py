@@ -14,7 +14,7 @@ from rosetta_jit.generate.python.packed import ANY, Part, part_text, with_number
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
 from rosetta_jit.generate.python.varints import _varint  # pyright: ignore[reportPrivateUsage] - as generated modules name it
 from rosetta_jit.generate.unit import Unit
-from rosetta_jit.kernel.ir import WIDTH, Convert, Expr, Get, Place
+from rosetta_jit.kernel.nodes import WIDTH, Convert, Expr, Get, Place
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.model.layout import Number
 from rosetta_jit.startup.dataclass import dataclass

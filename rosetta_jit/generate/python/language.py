@@ -6,7 +6,7 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
-from rosetta_jit.backends.base import Writer
+from rosetta_jit.backends.printing import Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.lanes import Lanes
@@ -21,7 +21,8 @@ from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.python.statements import Objects
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
 from rosetta_jit.generate.unit import Role, Unit, wire_of
-from rosetta_jit.kernel.ir import Advance, Const, Direction, Kernel, Return
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Advance, Const, Direction, Return
 from rosetta_jit.kernel.traits import asks_host
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.types import Ref

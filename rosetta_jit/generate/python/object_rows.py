@@ -12,7 +12,7 @@ from rosetta_jit.generate.python.expressions import Scope, expression, within
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.arithmetic import FLOATS
-from rosetta_jit.kernel.ir import WIDTH, Binary, Expr, Local, Place
+from rosetta_jit.kernel.nodes import WIDTH, Binary, Expr, Local, Place
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.model.layout import Member, Number, Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Map, Optional, String, Struct, Type, Union

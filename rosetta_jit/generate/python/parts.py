@@ -20,7 +20,7 @@ from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
 from rosetta_jit.generate.python.presence import bit_tested, case_tested, named_in_rounds, places_read
 from rosetta_jit.generate.python.statements import Function, fail, print_statement
 from rosetta_jit.generate.unit import Unit
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
@@ -34,60 +34,60 @@ class Parts(Written):
     of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has.
     """
 
-    def __init__(self, unit: Unit, function: Function, scope: ObjectScope, body: ir.Block, routines: Mapping[str, str]) -> None:
+    def __init__(self, unit: Unit, function: Function, scope: ObjectScope, body: nodes.Block, routines: Mapping[str, str]) -> None:
         exprs = (expr for stmt, _ in statements(body) for expr in expressions_of(stmt))
         needed = {(place.lane, place.offset) for expr in exprs for place in places_read(expr)}
         super().__init__(unit, function, scope, needed)
         self.body, self.routines, self.called = body, routines, set[str]()
-        self.lengths, self.words = set[str](), dict[str, ir.Place]()
+        self.lengths, self.words = set[str](), dict[str, nodes.Place]()
         self.counted = named_in_rounds(body)
 
     # --- statements ------------------------------------------------------------------------------------------------------------------
 
-    def block(self, block: ir.Block) -> None:
+    def block(self, block: nodes.Block) -> None:
         for stmt in block:
             self._statement(stmt)
 
-    def _statement(self, stmt: ir.Stmt) -> None:
+    def _statement(self, stmt: nodes.Stmt) -> None:
         match stmt:
-            case ir.Let():
+            case nodes.Let():
                 self._let(stmt)
-            case ir.Var(name, value) | ir.Assign(name, value):
+            case nodes.Var(name, value) | nodes.Assign(name, value):
                 if name in self.function.read:
                     self.flush()
                     print_statement(self.function, stmt)
                 self.positions.variable(name, value)
-            case ir.Expect():
+            case nodes.Expect():
                 self._expect(stmt)
-            case ir.Store(at, value, order):
+            case nodes.Store(at, value, order):
                 self._store(at, value, order)
-            case ir.Copy(ir.Wire(at), ir.Place() as source, size):
+            case nodes.Copy(nodes.Wire(at), nodes.Place() as source, size):
                 self._copy(at, source, size)
-            case ir.Fill(ir.Wire(at), size, byte):
+            case nodes.Fill(nodes.Wire(at), size, byte):
                 text = bare(expression(self.scope, size))
                 self.pending.append(Part("", "", (f"bytes({text})" if byte == 0 else f"bytes([{byte}]) * ({text})",)))
                 self.positions.written(at, self.positions.sum(size))
-            case ir.Call():
+            case nodes.Call():
                 self._call(stmt)
-            case ir.HostCall(inputs=(), target=None):
+            case nodes.HostCall(inputs=(), target=None):
                 print_statement(self.function, stmt)
-            case ir.Return(position, registers):
+            case nodes.Return(position, registers):
                 self._return(stmt, position, registers)
-            case ir.If():
+            case nodes.If():
                 self._if(stmt)
-            case ir.Switch(value, cases, default):
-                tested = [(f"case {number}:", each, self._maybe(ir.Compare("eq", value, index(number)))) for number, each in cases]
+            case nodes.Switch(value, cases, default):
+                tested = [(f"case {number}:", each, self._maybe(nodes.Compare("eq", value, index(number)))) for number, each in cases]
                 self._branches(f"match {self.function.text(value)}:", tested, default)
-            case ir.For():
+            case nodes.For():
                 self._for(stmt)
-            case ir.While():
+            case nodes.While():
                 self._while(stmt)
             case _:
                 raise NotInParts
 
-    def _expect(self, stmt: ir.Expect) -> None:
+    def _expect(self, stmt: nodes.Expect) -> None:
         match stmt.condition:
-            case ir.Compare("eq", ir.Local(_, name), ir.Local(_, same)) if name == same and name in self.around:
+            case nodes.Compare("eq", nodes.Local(_, name), nodes.Local(_, same)) if name == same and name in self.around:
                 self.finish(name)
             case condition if (maybe := self._maybe(condition)) is not None and not maybe.case:
                 with self.function.writer.indented(f"if {maybe.local} is None:"):
@@ -97,22 +97,22 @@ class Parts(Written):
                 self._note(condition)
                 print_statement(self.function, stmt)
 
-    def _maybe(self, condition: ir.Expr) -> Maybe | None:
+    def _maybe(self, condition: nodes.Expr) -> Maybe | None:
         """What an object has if a condition holds: a field that may be absent, or the case of a union."""
         tested = bit_tested(condition, self.words) or case_tested(condition, self.words)
         return None if tested is None else self.scope.maybe.get(tested)
 
-    def _let(self, stmt: ir.Let) -> None:
-        if isinstance(stmt.value, ir.Get) and stmt.value.place.lane >= self.scope.lanes.own:
+    def _let(self, stmt: nodes.Let) -> None:
+        if isinstance(stmt.value, nodes.Get) and stmt.value.place.lane >= self.scope.lanes.own:
             self.lengths.add(stmt.name)
             return
-        if isinstance(stmt.value, ir.Get) and stmt.value.type in ("u64", "i64"):
+        if isinstance(stmt.value, nodes.Get) and stmt.value.type in ("u64", "i64"):
             self.words[stmt.name] = stmt.value.place
         match stmt.value:
-            case ir.Get(_, place) if (lane := self.scope.start(place)) is not None:
+            case nodes.Get(_, place) if (lane := self.scope.start(place)) is not None:
                 self.scope.starts[stmt.name] = lane
                 return
-            case ir.Get(_, place) if (lane := self.scope.start(place, 8)) is not None:
+            case nodes.Get(_, place) if (lane := self.scope.start(place, 8)) is not None:
                 self.scope.counts[stmt.name] = lane
             case _:
                 pass
@@ -120,30 +120,30 @@ class Parts(Written):
         if stmt.name in self.function.read:
             print_statement(self.function, stmt)
 
-    def _note(self, condition: ir.Expr) -> None:
+    def _note(self, condition: nodes.Expr) -> None:
         """How many elements an array has, where that is checked."""
         match condition:
-            case ir.Compare("eq", ir.Local(_, name), ir.Const(_, count)) if name in self.scope.counts:
+            case nodes.Compare("eq", nodes.Local(_, name), nodes.Const(_, count)) if name in self.scope.counts:
                 self.exact[self.scope.counts[name]] = int(count)
-            case ir.Compare("lt", value, ir.Const(_, most)) if self._is_count(value):
+            case nodes.Compare("lt", value, nodes.Const(_, most)) if self._is_count(value):
                 self.limits[value] = int(most)
             case _:
                 pass
 
-    def _is_count(self, value: ir.Expr) -> bool:
+    def _is_count(self, value: nodes.Expr) -> bool:
         """Whether an integer is a number of elements, or one and some more."""
         match value:
-            case ir.Local(_, name) | ir.Binary("add", ir.Local(_, name), ir.Const(_, 0 | 1)):
+            case nodes.Local(_, name) | nodes.Binary("add", nodes.Local(_, name), nodes.Const(_, 0 | 1)):
                 return name in self.scope.counts
             case _:
                 return False
 
-    def _call(self, call: ir.Call) -> None:
+    def _call(self, call: nodes.Call) -> None:
         """A routine that writes from its first argument on, and gives the position behind."""
         if call.routine not in self.routines or call.results[0].name in self.function.read:
             raise NotInParts
         match call.arguments[1:]:
-            case (ir.Convert(_, ir.Local(_, name)),) if name in self.lengths:
+            case (nodes.Convert(_, nodes.Local(_, name)),) if name in self.lengths:
                 self.begin(name, self.routines[call.routine])
             case arguments:
                 texts = ", ".join(self._argument(each) for each in arguments)
@@ -153,43 +153,43 @@ class Parts(Written):
         self.positions.values[call.results[0].name] = behind
         self.called.add(call.routine)
 
-    def _argument(self, value: ir.Expr) -> str:
+    def _argument(self, value: nodes.Expr) -> str:
         """A number that a routine gets; the length of a sequence is no negative one."""
         match value:
-            case ir.Convert("u64", ir.Local(_, name) as count) if name in self.scope.counts:
+            case nodes.Convert("u64", nodes.Local(_, name) as count) if name in self.scope.counts:
                 return self.function.text(count)
             case _:
                 return self.function.text(value)
 
-    def _return(self, stmt: ir.Return, position: ir.Expr, registers: Sequence[tuple[int, ir.Expr]]) -> None:
+    def _return(self, stmt: nodes.Return, position: nodes.Expr, registers: Sequence[tuple[int, nodes.Expr]]) -> None:
         if self.positions.sum(position) != self.positions.at or self.function.writer.depth != 2:
             raise NotInParts
         if not registers:
             self.end("")
             return
         self.end("message")
-        print_statement(self.function, ir.Return(index(0), stmt.registers))
+        print_statement(self.function, nodes.Return(index(0), stmt.registers))
 
     # --- branches and loops ----------------------------------------------------------------------------------------------------------
 
-    def _if(self, stmt: ir.If) -> None:
+    def _if(self, stmt: nodes.If) -> None:
         match stmt:
-            case ir.If(ir.Compare("gt", _, ir.Const(_, 0)), (ir.Copy(ir.Wire(at), ir.Place() as source, size),), ()):
+            case nodes.If(nodes.Compare("gt", _, nodes.Const(_, 0)), (nodes.Copy(nodes.Wire(at), nodes.Place() as source, size),), ()):
                 self._copy(at, source, size)  # a copy of nothing does nothing
-            case ir.If(condition, (), otherwise):
-                self._branches(f"if {self.function.text(folded(ir.Unary('not', condition)))}:", [("", otherwise, None)], ())
-            case ir.If(condition, then, otherwise):
+            case nodes.If(condition, (), otherwise):
+                self._branches(f"if {self.function.text(folded(nodes.Unary('not', condition)))}:", [("", otherwise, None)], ())
+            case nodes.If(condition, then, otherwise):
                 maybe = self._maybe(condition)
                 text = self.function.text(condition) if maybe is None or maybe.case else f"{maybe.local} is not None"
                 self._branches(f"if {text}:", [("", then, maybe)], otherwise)
 
-    def _branches(self, head: str, cases: list[tuple[str, ir.Block, Maybe | None]], default: ir.Block) -> None:
+    def _branches(self, head: str, cases: list[tuple[str, nodes.Block, Maybe | None]], default: nodes.Block) -> None:
         self.flush()
         before, ends = self.positions, list[Positions]()
         writer = self.function.writer
         is_match = bool(cases[0][0]) if cases else True
 
-        def inside(block: ir.Block, maybe: Maybe | None = None) -> None:
+        def inside(block: nodes.Block, maybe: Maybe | None = None) -> None:
             lines, exact, objects = len(writer.lines), dict(self.exact), dict(self.scope.objects)
             self.positions = before.branch()
             if maybe is not None:
@@ -199,7 +199,7 @@ class Parts(Written):
             self.exact, self.scope.objects = exact, objects
             if len(writer.lines) == lines:
                 self.line("pass")
-            if not (block and isinstance(block[-1], ir.Expect) and block[-1].condition == FALSE):
+            if not (block and isinstance(block[-1], nodes.Expect) and block[-1].condition == FALSE):
                 ends.append(self.positions)
 
         if is_match:
@@ -218,14 +218,14 @@ class Parts(Written):
         before.join(ends)
         self.positions = before
 
-    def _for(self, loop: ir.For) -> None:
-        if (found := turned(loop)) is not None and isinstance(loop.body[-1], ir.Store):
+    def _for(self, loop: nodes.For) -> None:
+        if (found := turned(loop)) is not None and isinstance(loop.body[-1], nodes.Store):
             self._turned(loop, *found)
             return
-        width = sum(ir.WIDTH[type_of(each.value)] for each in loop.body if isinstance(each, ir.Store))
+        width = sum(nodes.WIDTH[type_of(each.value)] for each in loop.body if isinstance(each, nodes.Store))
         self.flush()
         outer = self.positions.at
-        holds = self.positions.loop(stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, ir.Assign))
+        holds = self.positions.loop(stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, nodes.Assign))
         self.positions.values[loop.variable] = self.positions.new()
         if holds is None:
             self.positions.at = outer.plus(self.positions.values[loop.variable], width)
@@ -251,27 +251,27 @@ class Parts(Written):
         if holds is not None:
             self.positions.at = self.positions.values[holds] = self.positions.new()
 
-    def _sequence_of(self, loop: ir.For) -> Listed | None:
+    def _sequence_of(self, loop: nodes.For) -> Listed | None:
         """What a loop over rows goes through."""
         parts = [part for stmt, _ in statements(loop.body) for expr in expressions_of(stmt) for part in subexpressions(expr)]
-        round_ = ir.Local("i64", loop.variable)
-        found = {part.place.lane for part in parts if isinstance(part, ir.Get) and self.scope.behind(part.place) == round_}
+        round_ = nodes.Local("i64", loop.variable)
+        found = {part.place.lane for part in parts if isinstance(part, nodes.Get) and self.scope.behind(part.place) == round_}
         rows = [self.scope.sequences[lane] for lane in found if not isinstance(self.scope.sequences[lane].slot, Number)]
         if len(rows) > 1 or (rows and not self._is_count_of(rows[0].lane, loop.count)):
             raise NotInParts
         return rows[0] if rows else None
 
-    def _is_count_of(self, lane: int, count: ir.Expr) -> bool:
+    def _is_count_of(self, lane: int, count: nodes.Expr) -> bool:
         """Whether a number is that of all elements of a sequence."""
         match count:
-            case ir.Local(_, name):
+            case nodes.Local(_, name):
                 return self.scope.counts.get(name) == lane
-            case ir.Const(_, number):
+            case nodes.Const(_, number):
                 return self.exact.get(lane) == number
             case _:
                 return False
 
-    def _head(self, loop: ir.For) -> str:
+    def _head(self, loop: nodes.For) -> str:
         sequence, own = self._sequence_of(loop), self.scope.locals.identifier(loop.variable)
         if sequence is None:
             return f"for {own} in range({self.function.text(loop.count)}):"
@@ -280,35 +280,35 @@ class Parts(Written):
             return f"for {rows} in {sequence.local}:"
         return f"for {own}, {f'({rows})' if sequence.is_map else rows} in enumerate({sequence.local}):"
 
-    def _row_names(self, loop: ir.For, sequence: Listed) -> list[str]:
+    def _row_names(self, loop: nodes.For, sequence: Listed) -> list[str]:
         """The locals for an element, or for key and value of a map."""
         return [
             self.scope.locals.identifier(f"{each}\0{loop.variable}") for each in (("key", "value") if sequence.is_map else ("element",))
         ]
 
-    def _rows(self, loop: ir.For) -> None:
+    def _rows(self, loop: nodes.For) -> None:
         sequence = self._sequence_of(loop)
         if sequence is None:
             return
         assert sequence.element is not None
         start = next(name for name, lane in self.scope.starts.items() if lane == sequence.lane)
-        row = ir.Binary("add", ir.Local("i64", start), ir.Local("i64", loop.variable))
+        row = nodes.Binary("add", nodes.Local("i64", start), nodes.Local("i64", loop.variable))
         names = self._row_names(loop, sequence)
         if sequence.is_map:
             self.binder.bind_entry(sequence, row, names)
         else:
             self.binder.bind(sequence.lane, row, names[0], sequence.element, sequence.slot)
 
-    def _turned(self, loop: ir.For, place: ir.Place, base: ir.Expr, type_: str) -> None:
+    def _turned(self, loop: nodes.For, place: nodes.Place, base: nodes.Expr, type_: str) -> None:
         sequence = self.scope.sequences.get(place.lane)
         if sequence is None or self.scope.behind(place) != index(0) or not self._is_count_of(place.lane, loop.count):
             raise NotInParts
         self._numbers(sequence, ">", self.exact.get(place.lane))
-        self.positions.written(base, Sum().plus(self.positions.sum(loop.count), ir.WIDTH[type_]))
+        self.positions.written(base, Sum().plus(self.positions.sum(loop.count), nodes.WIDTH[type_]))
 
-    def _while(self, loop: ir.While) -> None:
+    def _while(self, loop: nodes.While) -> None:
         self.flush()
-        holds = self.positions.loop(stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, ir.Assign))
+        holds = self.positions.loop(stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, nodes.Assign))
         begin, exact, objects = self.positions.at, dict(self.exact), dict(self.scope.objects)
         with self.function.writer.indented(f"while {self.function.text(loop.condition)}:"):
             self.block(loop.body)

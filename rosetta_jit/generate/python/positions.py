@@ -6,7 +6,7 @@ from collections.abc import Hashable, Iterable, Iterator
 from dataclasses import field, replace
 from itertools import count
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.nodes import (
     Binary,
     Block,
     Call,

@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
-from rosetta_jit.kernel.ir import Assign, Binary, Block, Call, Compare, Const, Expect, Expr, Get, Let, Local, Place, Site, Stmt, Var
+from rosetta_jit.kernel.ir import Site
+from rosetta_jit.kernel.nodes import Assign, Binary, Block, Call, Compare, Const, Expect, Expr, Get, Let, Local, Place, Stmt, Var
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 

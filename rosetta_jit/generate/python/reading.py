@@ -8,7 +8,7 @@ from itertools import groupby
 from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.expressions import CODES, Scope, expression
-from rosetta_jit.kernel.ir import Binary, Const, Expr, IsText, Wire
+from rosetta_jit.kernel.nodes import Binary, Const, Expr, IsText, Wire
 from rosetta_jit.model.layout import Number, Slot
 
 SOME = 100

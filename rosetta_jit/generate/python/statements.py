@@ -7,13 +7,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 from typing import assert_never
 
-from rosetta_jit.backends.base import Writer
+from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.origins import Origin, origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.expressions import CODES, Scope, expression, location, view_name
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
 from rosetta_jit.generate.python.reading import numbers_read, takes_text
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import mul, type_of
 from rosetta_jit.model.layout import Layout
@@ -75,11 +75,11 @@ class Function:
     def line(self, text: str) -> None:
         self.writer.line(text)
 
-    def text(self, expr: ir.Expr) -> str:
+    def text(self, expr: nodes.Expr) -> str:
         return bare(expression(self.scope, expr))
 
 
-def print_block(function: Function, block: ir.Block) -> None:
+def print_block(function: Function, block: nodes.Block) -> None:
     """The statements of a block."""
     before = len(function.writer.lines)
     for group in grouped(block):
@@ -91,95 +91,95 @@ def print_block(function: Function, block: ir.Block) -> None:
         function.line("pass")
 
 
-def _together(function: Function, group: list[ir.Stmt]) -> None:
+def _together(function: Function, group: list[nodes.Stmt]) -> None:
     """Scalars that lie one behind the other, by one call."""
     scope, found = function.scope, [each for stmt in group if (each := scalar_of(stmt)) is not None]
-    order = next((order for type_, _, order in found if ir.WIDTH[type_] > 1), "<")
+    order = next((order for type_, _, order in found if nodes.WIDTH[type_] > 1), "<")
     codes, at = "".join(CODES[type_] for type_, _, _ in found), function.text(found[0][1])
     targets: list[str] = []
     for stmt in group:
         match stmt:
-            case ir.Let(name, _):
+            case nodes.Let(name, _):
                 targets.append(scope.locals.identifier(name) if name in function.read else "_")
-            case ir.SetField(place, value):
+            case nodes.SetField(place, value):
                 targets.append(_target(function, place, value))
-            case ir.Store(_, value, _):
+            case nodes.Store(_, value, _):
                 targets.append(function.text(value))
             case _:
                 raise AssertionError(stmt)
-    if isinstance(group[0], ir.Store):
+    if isinstance(group[0], nodes.Store):
         function.line(f"{scope.struct(order, codes, 'store')}(data, {at}, {', '.join(targets)})")
     else:
         function.line(f"{', '.join(targets)} = {scope.struct(order, codes, 'load')}(data, {at})")
 
 
-def print_statement(function: Function, stmt: ir.Stmt) -> None:
+def print_statement(function: Function, stmt: nodes.Stmt) -> None:
     """One statement."""
     match stmt:
-        case ir.Require(at, size, failure):
+        case nodes.Require(at, size, failure):
             _fail_if(function, _lacks(function, at, size), failure)
-        case ir.Expect(condition, failure):
+        case nodes.Expect(condition, failure):
             if condition == FALSE:
                 fail(function, failure)
             elif (taken := takes_text(function.scope, condition)) is not None:
                 _taken(function, taken, failure)
             else:
-                _fail_if(function, function.text(folded(ir.Unary("not", condition))), failure)
-        case ir.Let(name, value) | ir.Var(name, value) | ir.Assign(name, value):
+                _fail_if(function, function.text(folded(nodes.Unary("not", condition))), failure)
+        case nodes.Let(name, value) | nodes.Var(name, value) | nodes.Assign(name, value):
             if name in function.read:
                 text = function.text(value)
                 function.line(f"{function.scope.locals.identifier(name)} = {text}{_origin(function, stmt)}")
-        case ir.Store() | ir.SetField() | ir.Copy() | ir.Fill():
+        case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             _effect(function, stmt)
-        case ir.Reserve(lane, count):
+        case nodes.Reserve(lane, count):
             _reserve(function, lane, function.text(count))
-        case ir.Advance(lane, count):
+        case nodes.Advance(lane, count):
             function.line(f"{function.scope.used(lane)} += {function.text(count)}")
-        case ir.Return(position, ()):
+        case nodes.Return(position, ()):
             function.line(f"return {function.objects.result(function.scope, function.text(position))}")
-        case ir.Return(position, registers):
+        case nodes.Return(position, registers):
             function.scope.from_call.add("registers")
             words = "".join(f"call_registers[{number}], " for number, _ in registers)
             values = "".join(f"{function.text(value)}, " for _, value in registers)
             function.line(f"{words}call_end = {values}{function.text(position)}")
             function.line(f"return {function.objects.result(function.scope, 'call_end')}")
-        case ir.For() | ir.While() | ir.If() | ir.Switch():
+        case nodes.For() | nodes.While() | nodes.If() | nodes.Switch():
             _nested(function, stmt)
-        case ir.Call():
+        case nodes.Call():
             _call(function, stmt)
-        case ir.HostCall():
+        case nodes.HostCall():
             _host_call(function, stmt)
         case _:
             assert_never(stmt)
 
 
-def _origin(function: Function, stmt: ir.Stmt) -> str:
+def _origin(function: Function, stmt: nodes.Stmt) -> str:
     line = origin_of(stmt, function.origins) if function.origins else None
     return "" if line is None else f"  # {ascii(line)[1:-1]}"
 
 
-def _lacks(function: Function, at: ir.Expr, size: ir.Expr) -> str:
+def _lacks(function: Function, at: nodes.Expr, size: nodes.Expr) -> str:
     """Whether bytes are missing."""
     where, length = function.text(at), expression(function.scope, size)
     if is_not_negative(at, function.positive) and is_not_negative(size, function.positive):
-        if isinstance(size, ir.Const):
-            return f"end < {where} + {length}" if not isinstance(at, ir.Const) else f"end < {int(at.value) + int(size.value)}"
+        if isinstance(size, nodes.Const):
+            return f"end < {where} + {length}" if not isinstance(at, nodes.Const) else f"end < {int(at.value) + int(size.value)}"
         return f"{bare(length)} > end - {expression(function.scope, at)}"
-    if isinstance(size, ir.Const):
-        if isinstance(at, ir.Const):
+    if isinstance(size, nodes.Const):
+        if isinstance(at, nodes.Const):
             return f"end < {int(at.value) + int(size.value)}"
         return f"not 0 <= {where} <= end - {length}"
-    if not isinstance(at, ir.Const):
+    if not isinstance(at, nodes.Const):
         return f"{where} < 0 or not 0 <= {bare(length)} <= end - {expression(function.scope, at)}"
     return f"not 0 <= {bare(length)} <= end - {where}"
 
 
-def _fail_if(function: Function, condition: str, failure: ir.Failure) -> None:
+def _fail_if(function: Function, condition: str, failure: nodes.Failure) -> None:
     with function.writer.indented(f"if {condition}:"):
         fail(function, failure)
 
 
-def fail(function: Function, failure: ir.Failure) -> None:
+def fail(function: Function, failure: nodes.Failure) -> None:
     """The line that ends an attempt."""
     site = function.sites[failure.site]
     at = function.text(failure.at)
@@ -196,30 +196,30 @@ def fail(function: Function, failure: ir.Failure) -> None:
     function.line(f"raise _Failed({failure.site}, {at}{places}{detail}){said}")
 
 
-def _effect(function: Function, stmt: ir.Effect) -> None:
+def _effect(function: Function, stmt: nodes.Effect) -> None:
     scope, origin = function.scope, _origin(function, stmt)
     match stmt:
-        case ir.Store(at, value, order):
+        case nodes.Store(at, value, order):
             type_, where, text = type_of(value), function.text(at), function.text(value)
             if type_ in ("u8", "bool"):
                 function.line(f"data[{where}] = {text}{origin}")
             else:
                 function.line(
-                    f"{scope.struct('<' if ir.WIDTH[type_] == 1 else order, CODES[type_], 'store')}(data, {where}, {text}){origin}"
+                    f"{scope.struct('<' if nodes.WIDTH[type_] == 1 else order, CODES[type_], 'store')}(data, {where}, {text}){origin}"
                 )
-        case ir.SetField(place, value):
+        case nodes.SetField(place, value):
             target = _target(function, place, value)
             text = function.text(value)
             if type_of(value) == "f32" and text.startswith("_single(") and target.endswith("]"):
                 text = bare(text.removeprefix("_single"))  # a view rounds by itself
             function.line(f"{target} = {text}{origin}")
-        case ir.Copy(ir.Place(lane), ir.Wire(at), size) if lane in scope.direct.whole:
+        case nodes.Copy(nodes.Place(lane), nodes.Wire(at), size) if lane in scope.direct.whole:
             function.line(f"{scope.lanes.rows(lane)} = {_list(function, lane, at, size, '<')}{origin}")
-        case ir.Copy(target, source, size):
+        case nodes.Copy(target, source, size):
             (to, first), (of, begin), length = location(scope, target), location(scope, source), expression(scope, size)
             function.line(f"{to}[{first} : {first} + {length}] = {of}[{begin} : {begin} + {length}]{origin}")
-        case ir.Fill(target, size, byte):
-            if isinstance(target, ir.Place) and target.lane == 0 and scope.flat:
+        case nodes.Fill(target, size, byte):
+            if isinstance(target, nodes.Place) and target.lane == 0 and scope.flat:
                 function.line("<row>")
                 return
             (to, first), length = location(scope, target), expression(scope, size)
@@ -229,12 +229,12 @@ def _effect(function: Function, stmt: ir.Effect) -> None:
             assert_never(stmt)
 
 
-def _target(function: Function, place: ir.Place, value: ir.Expr) -> str:
+def _target(function: Function, place: nodes.Place, value: nodes.Expr) -> str:
     """What a field is assigned to."""
     return function.scope.place(place, type_of(value))
 
 
-def _taken(function: Function, taken: str, failure: ir.Failure) -> None:
+def _taken(function: Function, taken: str, failure: nodes.Failure) -> None:
     """A text, which is not valid where it cannot be decoded."""
     with function.writer.indented("try:"):
         function.line(taken)
@@ -242,7 +242,7 @@ def _taken(function: Function, taken: str, failure: ir.Failure) -> None:
         fail(function, failure)
 
 
-def _list(function: Function, lane: int, at: ir.Expr, size: ir.Expr, order: str) -> str:
+def _list(function: Function, lane: int, at: nodes.Expr, size: nodes.Expr, order: str) -> str:
     """An array that lies in the message."""
     scope, objects = function.scope, function.objects
     assert objects.layout is not None
@@ -285,29 +285,29 @@ def _path(scope: Scope, lane: int) -> str:
     return ascii(scope.paths[lane]) if lane < len(scope.paths) else "''"
 
 
-def _nested(function: Function, stmt: ir.For | ir.While | ir.If | ir.Switch) -> None:
+def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
     scope = function.scope
     match stmt:
-        case ir.For(_, count, _) if (found := turned(stmt)) is not None:
-            _turn(function, count, found, decodes=isinstance(stmt.body[-1], ir.SetField))
-        case ir.For(variable, count, body):
+        case nodes.For(_, count, _) if (found := turned(stmt)) is not None:
+            _turn(function, count, found, decodes=isinstance(stmt.body[-1], nodes.SetField))
+        case nodes.For(variable, count, body):
             with function.writer.indented(f"for {scope.locals.identifier(variable)} in range({function.text(count)}):"):
                 print_block(function, body)
                 if variable in scope.direct.loops:
                     lane = scope.direct.loops[variable]
                     function.line(f"{scope.lanes.rows(lane)}.append({function.objects.row(scope, lane)})")
-        case ir.While(condition, body):
+        case nodes.While(condition, body):
             with function.writer.indented(f"while {function.text(condition)}:"):
                 print_block(function, body)
-        case ir.If(condition, then, otherwise):
+        case nodes.If(condition, then, otherwise):
             if not then:
-                condition, then, otherwise = folded(ir.Unary("not", condition)), otherwise, ()
+                condition, then, otherwise = folded(nodes.Unary("not", condition)), otherwise, ()
             with function.writer.indented(f"if {function.text(condition)}:"):
                 print_block(function, then)
             if otherwise:
                 with function.writer.indented("else:"):
                     print_block(function, otherwise)
-        case ir.Switch(value, cases, default):
+        case nodes.Switch(value, cases, default):
             with function.writer.indented(f"match {function.text(value)}:"):
                 for number, body in cases:
                     with function.writer.indented(f"case {number}:"):
@@ -318,12 +318,12 @@ def _nested(function: Function, stmt: ir.For | ir.While | ir.If | ir.Switch) -> 
             assert_never(stmt)
 
 
-def _turn(function: Function, count: ir.Expr, found: tuple[ir.Place, ir.Expr, str], *, decodes: bool) -> None:
+def _turn(function: Function, count: nodes.Expr, found: tuple[nodes.Place, nodes.Expr, str], *, decodes: bool) -> None:
     """An array whose numbers have their high byte first, as a whole."""
     place, base, type_ = found
-    scope, size = function.scope, f"{expression(function.scope, count)} * {ir.WIDTH[type_]}"
+    scope, size = function.scope, f"{expression(function.scope, count)} * {nodes.WIDTH[type_]}"
     if place.lane in scope.direct.whole:
-        function.line(f"{scope.lanes.rows(place.lane)} = {_list(function, place.lane, base, mul(count, ir.WIDTH[type_]), '>')}")
+        function.line(f"{scope.lanes.rows(place.lane)} = {_list(function, place.lane, base, mul(count, nodes.WIDTH[type_]), '>')}")
         return
     (lane, first), begin = location(scope, place), expression(scope, base)
     rows, part = f"{lane}[{first} : {first} + {size}]", f"data[{bare(begin)} : {begin} + {size}]"
@@ -332,7 +332,7 @@ def _turn(function: Function, count: ir.Expr, found: tuple[ir.Place, ir.Expr, st
         function.line(f'{target} = _turned({source}, "{CODES[type_]}")')
 
 
-def _call(function: Function, call: ir.Call) -> None:
+def _call(function: Function, call: nodes.Call) -> None:
     """A routine gets the numbers of the sites at which the caller fails where it does, and the indices there."""
     scope, routine = function.scope, function.routines[call.routine]
     _pass_on(function, routine)
@@ -360,7 +360,7 @@ def _tuple(texts: list[str]) -> str:
     return f"({', '.join(texts)}{',' if len(texts) == 1 else ''})"
 
 
-def _host_call(function: Function, call: ir.HostCall) -> None:
+def _host_call(function: Function, call: nodes.HostCall) -> None:
     result = function.scope.locals.identifier(call.result.name)
     arguments = ", ".join(function.text(each) for each in call.arguments)
     with function.writer.indented("try:"):

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.base import Writer
+from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.python.classes import member_names
 from rosetta_jit.generate.shares import Ways, changed_lanes, within
 from rosetta_jit.generate.unit import Role, Unit, wire_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import pairwise
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.arithmetic import FLOATS, constant, to_bytes
 from rosetta_jit.kernel.passes.affine import Affine, Rounds, rounds_of
 from rosetta_jit.kernel.passes.fold import FALSE, TRUE, folded
@@ -13,7 +13,7 @@ from rosetta_jit.kernel.rewrite import reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import index, mul, split, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
-Move = ir.Copy | ir.Fill
+Move = nodes.Copy | nodes.Fill
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,15 +24,15 @@ class _Stretch:
     """
 
     first: Move
-    steps: tuple[ir.Expr, ...]
-    size: ir.Expr
-    checks: tuple[ir.Expr, ...] = ()
+    steps: tuple[nodes.Expr, ...]
+    size: nodes.Expr
+    checks: tuple[nodes.Expr, ...] = ()
 
 
 def bulk(kernel: ir.Kernel) -> ir.Kernel:
     """The kernel with moves in place of loops of smaller moves."""
 
-    def block(body: ir.Block) -> ir.Block:
+    def block(body: nodes.Block) -> nodes.Block:
         return tuple(part for stmt in body for part in _statement(with_blocks(stmt, block), kernel.strides))
 
     return with_bodies(kernel, tuple(map(block, kernel.bodies)))
@@ -41,21 +41,21 @@ def bulk(kernel: ir.Kernel) -> ir.Kernel:
 def bulk_of_bytes(kernel: ir.Kernel) -> ir.Kernel:
     """The same with loops over single bytes alone: these are right whatever order a machine has the bytes of larger numbers in."""
 
-    def block(body: ir.Block) -> ir.Block:
+    def block(body: nodes.Block) -> nodes.Block:
         return tuple(part for stmt in body for part in _of_bytes(with_blocks(stmt, block), kernel.strides))
 
     return with_bodies(kernel, tuple(map(block, kernel.bodies)))
 
 
-def _of_bytes(stmt: ir.Stmt, strides: tuple[int, ...]) -> ir.Block:
-    return _statement(stmt, strides) if isinstance(stmt, ir.For) and all(map(_keeps_order, stmt.body)) else (stmt,)
+def _of_bytes(stmt: nodes.Stmt, strides: tuple[int, ...]) -> nodes.Block:
+    return _statement(stmt, strides) if isinstance(stmt, nodes.For) and all(map(_keeps_order, stmt.body)) else (stmt,)
 
 
-def _keeps_order(stmt: ir.Stmt) -> bool:
+def _keeps_order(stmt: nodes.Stmt) -> bool:
     """Whether a statement moves no number of several bytes between the message and a lane."""
     match stmt:
-        case ir.SetField(_, value) | ir.Store(_, value):
-            return ir.WIDTH[type_of(value)] == 1 or isinstance(value, ir.Const)
+        case nodes.SetField(_, value) | nodes.Store(_, value):
+            return nodes.WIDTH[type_of(value)] == 1 or isinstance(value, nodes.Const)
         case _:
             return True
 
@@ -63,13 +63,13 @@ def _keeps_order(stmt: ir.Stmt) -> bool:
 def group(kernel: ir.Kernel) -> ir.Kernel:
     """The kernel with moves in place of short loops whose rounds are known to lie end to end: the bytes of a channel, not yet a row."""
 
-    def block(body: ir.Block) -> ir.Block:
+    def block(body: nodes.Block) -> nodes.Block:
         return tuple(part for stmt in body for part in short(with_blocks(stmt, block)))
 
-    def short(stmt: ir.Stmt) -> ir.Block:
-        made = _statement(stmt, kernel.strides) if isinstance(stmt, ir.For) and isinstance(stmt.count, ir.Const) else (stmt,)
+    def short(stmt: nodes.Stmt) -> nodes.Block:
+        made = _statement(stmt, kernel.strides) if isinstance(stmt, nodes.For) and isinstance(stmt.count, nodes.Const) else (stmt,)
         match made:
-            case [ir.If(_, (ir.Copy() | ir.Fill(),), ())]:
+            case [nodes.If(_, (nodes.Copy() | nodes.Fill(),), ())]:
                 return made
             case _:
                 return (stmt,)
@@ -77,82 +77,82 @@ def group(kernel: ir.Kernel) -> ir.Kernel:
     return with_bodies(kernel, tuple(map(block, kernel.bodies)))
 
 
-def _statement(stmt: ir.Stmt, strides: tuple[int, ...]) -> ir.Block:
-    if not isinstance(stmt, ir.For) or reads_memory(stmt.count):
+def _statement(stmt: nodes.Stmt, strides: tuple[int, ...]) -> nodes.Block:
+    if not isinstance(stmt, nodes.For) or reads_memory(stmt.count):
         return (stmt,)
     rounds = rounds_of(stmt)
-    move = _only_move(tuple(each for each in stmt.body if not isinstance(each, ir.Expect)), rounds)
+    move = _only_move(tuple(each for each in stmt.body if not isinstance(each, nodes.Expect)), rounds)
     stretch = _stretch(move, rounds, strides) if move is not None else None
     if stretch is None:
         return (stmt,)
-    checks = [_last(each.condition, stmt, stretch, rounds) for each in stmt.body if isinstance(each, ir.Expect)]
+    checks = [_last(each.condition, stmt, stretch, rounds) for each in stmt.body if isinstance(each, nodes.Expect)]
     known = tuple(check for check in checks if check is not None)
     return _joined(stmt, replace(stretch, checks=known)) if len(known) == len(checks) else (stmt,)
 
 
-def _last(condition: ir.Expr, loop: ir.For, stretch: _Stretch, rounds: Rounds) -> ir.Expr | None:
+def _last(condition: nodes.Expr, loop: nodes.For, stretch: _Stretch, rounds: Rounds) -> nodes.Expr | None:
     """A comparison of what grows with the bytes moved, in the last round, where each round begins where the last one ended."""
     match condition:
-        case ir.Compare("lt" | "le" as op, left, right) if type_of(left) == "i64":
+        case nodes.Compare("lt" | "le" as op, left, right) if type_of(left) == "i64":
             value, bound = rounds.affine(left), rounds.fixed(right)
             if value is None or bound is None or value.step not in stretch.steps:
                 return None
-            moved = ir.Binary("sub", mul(loop.count, stretch.size), stretch.size)
-            return ir.Compare(op, ir.Binary("add", value.base, moved), bound)
+            moved = nodes.Binary("sub", mul(loop.count, stretch.size), stretch.size)
+            return nodes.Compare(op, nodes.Binary("add", value.base, moved), bound)
         case _:
             return None
 
 
-def _joined(loop: ir.For, stretch: _Stretch) -> ir.Block:
+def _joined(loop: nodes.For, stretch: _Stretch) -> nodes.Block:
     """A loop as one move: always, never, or if at run time each round begins where the last one ended."""
-    adjoin = [folded(ir.Compare("eq", step, stretch.size)) for step in stretch.steps]
+    adjoin = [folded(nodes.Compare("eq", step, stretch.size)) for step in stretch.steps]
     if FALSE in adjoin:
         return (loop,)
-    whole = ir.If(ir.Compare("gt", loop.count, index(0)), (replace(stretch.first, size=mul(loop.count, stretch.size)),))
+    whole = nodes.If(nodes.Compare("gt", loop.count, index(0)), (replace(stretch.first, size=mul(loop.count, stretch.size)),))
     open_questions = [question for question in adjoin if question != TRUE] + [*stretch.checks]
     if not open_questions:
         return (whole,)
-    condition: ir.Expr = ir.Fits("mul", loop.count, stretch.size)
+    condition: nodes.Expr = nodes.Fits("mul", loop.count, stretch.size)
     for question in open_questions:
-        condition = ir.Binary("and", condition, question)
-    return (ir.If(condition, (whole,), (loop,)),)
+        condition = nodes.Binary("and", condition, question)
+    return (nodes.If(condition, (whole,), (loop,)),)
 
 
 # --- what a round moves ------------------------------------------------------------------------------------------------
 
 
-def _only_move(body: ir.Block, rounds: Rounds) -> Move | None:
+def _only_move(body: nodes.Block, rounds: Rounds) -> Move | None:
     """The move of a body that only computes besides."""
-    effects = [stmt for stmt in body if not isinstance(stmt, ir.Let)]
+    effects = [stmt for stmt in body if not isinstance(stmt, nodes.Let)]
     match effects:
-        case [ir.If(ir.Compare("gt", _, ir.Const(_, 0)), (ir.Copy() | ir.Fill() as move,), ())]:
+        case [nodes.If(nodes.Compare("gt", _, nodes.Const(_, 0)), (nodes.Copy() | nodes.Fill() as move,), ())]:
             # Where there is nothing to move, none of the rounds moves anything.
             return move
         case [only]:
             return _move(only, rounds)
         case _:
-            copies = [move for stmt in effects if isinstance(move := _move(stmt, rounds), ir.Copy)]
+            copies = [move for stmt in effects if isinstance(move := _move(stmt, rounds), nodes.Copy)]
             return _end_to_end(copies, rounds) if copies and len(copies) == len(effects) else None
 
 
-def _move(stmt: ir.Stmt, rounds: Rounds) -> Move | None:
+def _move(stmt: nodes.Stmt, rounds: Rounds) -> Move | None:
     match stmt:
-        case ir.Copy() | ir.Fill():
+        case nodes.Copy() | nodes.Fill():
             return stmt
-        case ir.SetField(place, value):
+        case nodes.SetField(place, value):
             return _assigned(place, value, "<", rounds)
-        case ir.Store(at, value, order):
-            return _assigned(ir.Wire(at), value, order, rounds)
+        case nodes.Store(at, value, order):
+            return _assigned(nodes.Wire(at), value, order, rounds)
         case _:
             return None
 
 
-def _end_to_end(copies: list[ir.Copy], rounds: Rounds) -> ir.Copy | None:
+def _end_to_end(copies: list[nodes.Copy], rounds: Rounds) -> nodes.Copy | None:
     """Copies as one, if each begins where another one ends, on both sides: the fields of a struct that both sides have alike."""
-    placed: list[tuple[int, int, ir.Copy]] = []
+    placed: list[tuple[int, int, nodes.Copy]] = []
     for each in copies:
         there, here = _distance(copies[0].target, each.target, rounds), _distance(copies[0].source, each.source, rounds)
-        if there is None or there != here or not isinstance(each.size, ir.Const):
+        if there is None or there != here or not isinstance(each.size, nodes.Const):
             return None
         placed.append((there, there + int(each.size.value), each))
     placed.sort(key=lambda each: each[0])
@@ -161,19 +161,19 @@ def _end_to_end(copies: list[ir.Copy], rounds: Rounds) -> ir.Copy | None:
     return replace(placed[0][2], size=index(placed[-1][1] - placed[0][0]))
 
 
-def _distance(one: ir.Address, other: ir.Address, rounds: Rounds) -> int | None:
+def _distance(one: nodes.Address, other: nodes.Address, rounds: Rounds) -> int | None:
     """How many bytes further an address is than another one, if that is known."""
     match one, other:
-        case ir.Wire(at), ir.Wire(to):
+        case nodes.Wire(at), nodes.Wire(to):
             (here, near), (there, far) = _origin(at, rounds), _origin(to, rounds)
-        case ir.Place(lane, row, near), ir.Place(same, to, far) if lane == same:
+        case nodes.Place(lane, row, near), nodes.Place(same, to, far) if lane == same:
             here, there = rounds.affine(row), rounds.affine(to)
         case _:
             return None
     return far - near if here is not None and here == there else None
 
 
-def _origin(at: ir.Expr, rounds: Rounds) -> tuple[Affine | None, int]:
+def _origin(at: nodes.Expr, rounds: Rounds) -> tuple[Affine | None, int]:
     """A position without the constant that is added to it, and that."""
     found = rounds.affine(at)
     if found is None:
@@ -182,38 +182,38 @@ def _origin(at: ir.Expr, rounds: Rounds) -> tuple[Affine | None, int]:
     return Affine(base, found.step), number
 
 
-def _assigned(target: ir.Address, value: ir.Expr, order: ir.Order, rounds: Rounds) -> Move | None:
+def _assigned(target: nodes.Address, value: nodes.Expr, order: nodes.Order, rounds: Rounds) -> Move | None:
     """An assignment of a scalar as a move of its bytes, if it changes none of them."""
-    size = ir.WIDTH[type_of(value)]
+    size = nodes.WIDTH[type_of(value)]
     match _moved(value, rounds):
-        case ir.Load(type_, at, from_order) if type_ != "bool" and isinstance(target, ir.Place) and _is_same(order, from_order, size):
-            return ir.Copy(target, ir.Wire(at), index(size))
-        case ir.Get(type_, place) if type_ != "bool" and isinstance(target, ir.Wire) and _is_same(order, "<", size):
-            return ir.Copy(target, place, index(size))
-        case ir.Const(type_, number) if len(data := set(to_bytes(type_, constant(type_, number)))) == 1:
-            return ir.Fill(target, index(size), data.pop())
+        case nodes.Load(type_, at, from_order) if type_ != "bool" and isinstance(target, nodes.Place) and _is_same(order, from_order, size):
+            return nodes.Copy(target, nodes.Wire(at), index(size))
+        case nodes.Get(type_, place) if type_ != "bool" and isinstance(target, nodes.Wire) and _is_same(order, "<", size):
+            return nodes.Copy(target, place, index(size))
+        case nodes.Const(type_, number) if len(data := set(to_bytes(type_, constant(type_, number)))) == 1:
+            return nodes.Fill(target, index(size), data.pop())
         case _:
             return None
 
 
-def _is_same(order: ir.Order, other: ir.Order, size: int) -> bool:
+def _is_same(order: nodes.Order, other: nodes.Order, size: int) -> bool:
     return order == other or size == 1
 
 
-def _moved(value: ir.Expr, rounds: Rounds) -> ir.Expr:
+def _moved(value: nodes.Expr, rounds: Rounds) -> nodes.Expr:
     """The access or constant that a value has its bytes from."""
     while True:
         match value:
-            case ir.Local(_, name) if name in rounds.lets:
+            case nodes.Local(_, name) if name in rounds.lets:
                 value = rounds.lets[name]
-            case ir.Convert(type_, operand) if _keeps_bytes(type_, type_of(operand)):
+            case nodes.Convert(type_, operand) if _keeps_bytes(type_, type_of(operand)):
                 value = operand
             case _:
                 return value
 
 
-def _keeps_bytes(target: ir.Scalar, source: ir.Scalar) -> bool:
-    return ir.WIDTH[target] == ir.WIDTH[source] and not {target, source} & {*FLOATS, "bool"}
+def _keeps_bytes(target: nodes.Scalar, source: nodes.Scalar) -> bool:
+    return nodes.WIDTH[target] == nodes.WIDTH[source] and not {target, source} & {*FLOATS, "bool"}
 
 
 # --- where the rounds lie ----------------------------------------------------------------------------------------------
@@ -224,21 +224,21 @@ def _stretch(move: Move, rounds: Rounds, strides: tuple[int, ...]) -> _Stretch |
     size, target = rounds.fixed(move.size), _along(move.target, rounds, strides)
     if size is None or target is None:
         return None
-    if isinstance(move, ir.Fill):
+    if isinstance(move, nodes.Fill):
         return _Stretch(replace(move, target=target[0]), (target[1],), size)
     source = _along(move.source, rounds, strides)
     # Within a lane the rounds may build on each other.
-    if source is None or (isinstance(move.target, ir.Place) and isinstance(move.source, ir.Place)):
+    if source is None or (isinstance(move.target, nodes.Place) and isinstance(move.source, nodes.Place)):
         return None
-    return _Stretch(ir.Copy(target[0], source[0], size), (target[1], source[1]), size)
+    return _Stretch(nodes.Copy(target[0], source[0], size), (target[1], source[1]), size)
 
 
-def _along(address: ir.Address, rounds: Rounds, strides: tuple[int, ...]) -> tuple[ir.Address, ir.Expr] | None:
+def _along(address: nodes.Address, rounds: Rounds, strides: tuple[int, ...]) -> tuple[nodes.Address, nodes.Expr] | None:
     """An address in the first round, and how many bytes further it is in the next."""
     match address:
-        case ir.Wire(at):
+        case nodes.Wire(at):
             found = rounds.affine(at)
-            return (ir.Wire(found.base), found.step) if found is not None else None
-        case ir.Place(lane, row, offset):
+            return (nodes.Wire(found.base), found.step) if found is not None else None
+        case nodes.Place(lane, row, offset):
             found = rounds.affine(row)
-            return (ir.Place(lane, found.base, offset), mul(found.step, strides[lane])) if found is not None else None
+            return (nodes.Place(lane, found.base, offset), mul(found.step, strides[lane])) if found is not None else None

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from rosetta_jit.kernel.ir import Block, If, Kernel, Stmt
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Block, If, Stmt
 from rosetta_jit.kernel.proof.verify import settled
 from rosetta_jit.kernel.rewrite import with_blocks, with_bodies
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from rosetta_jit.kernel import arithmetic
 from rosetta_jit.kernel.arithmetic import FLOATS, Value, limits
-from rosetta_jit.kernel.ir import Binary, Compare, Comparison, Const, Convert, Expr, Fits, Local, Scalar, Select, Unary
+from rosetta_jit.kernel.nodes import Binary, Compare, Comparison, Const, Convert, Expr, Fits, Local, Scalar, Select, Unary
 from rosetta_jit.kernel.terms import add, type_of
 
 COMMUTATIVE = frozenset({"add", "mul", "and", "or", "xor"})

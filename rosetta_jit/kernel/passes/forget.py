@@ -10,7 +10,8 @@ from collections import defaultdict
 from collections.abc import Iterable
 from functools import partial
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import (
     WIDTH,
     Address,
     Advance,
@@ -21,7 +22,6 @@ from rosetta_jit.kernel.ir import (
     Get,
     HostCall,
     IsText,
-    Kernel,
     Nearest,
     Place,
     Reserve,

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rosetta_jit.kernel.ir import Block, Compare, Const, Expect, Expr, Failure, Fits, For, If, Kernel, Local, Part, Require, Site, Stmt
+from rosetta_jit.kernel.ir import Kernel, Part, Site
+from rosetta_jit.kernel.nodes import Block, Compare, Const, Expect, Expr, Failure, Fits, For, If, Local, Require, Stmt
 from rosetta_jit.kernel.passes.affine import Rounds, rounds_of
 from rosetta_jit.kernel.passes.fold import TRUE, folded
 from rosetta_jit.kernel.passes.widen import widened

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.limits import MAX_PIECE, MAX_PIECES
 from rosetta_jit.kernel.rewrite import reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import add, index, split, type_of
@@ -22,8 +22,8 @@ class _Move:
 
     is_decoding: bool
     lane: int
-    row: ir.Expr
-    base: ir.Expr
+    row: nodes.Expr
+    base: nodes.Expr
     offset: int
     at: int
     size: int
@@ -37,14 +37,14 @@ class _Move:
 def join(kernel: ir.Kernel) -> ir.Kernel:
     """The kernel with one move where fields lie side by side."""
 
-    def block(body: ir.Block) -> ir.Block:
-        return _uncovered(tuple(_joined([stmt if isinstance(stmt, ir.For) else with_blocks(stmt, block) for stmt in body])))
+    def block(body: nodes.Block) -> nodes.Block:
+        return _uncovered(tuple(_joined([stmt if isinstance(stmt, nodes.For) else with_blocks(stmt, block) for stmt in body])))
 
     return with_bodies(kernel, tuple(map(block, kernel.bodies)))
 
 
-def _joined(block: list[ir.Stmt]) -> Iterator[ir.Stmt]:
-    run: list[tuple[_Move, ir.Stmt]] = []
+def _joined(block: list[nodes.Stmt]) -> Iterator[nodes.Stmt]:
+    run: list[tuple[_Move, nodes.Stmt]] = []
     for stmt in block:
         move = _move(stmt)
         if run and (move is None or not run[-1][0].is_followed_by(move)):
@@ -57,29 +57,29 @@ def _joined(block: list[ir.Stmt]) -> Iterator[ir.Stmt]:
     yield from _together(run)
 
 
-def _move(stmt: ir.Stmt) -> _Move | None:
+def _move(stmt: nodes.Stmt) -> _Move | None:
     """A statement as a move, if it is one of so many bytes."""
     match stmt:
-        case ir.SetField(place, ir.Load(type_, at, order)) if type_ != "bool" and (order == "<" or ir.WIDTH[type_] == 1):
-            return _between(place, at, ir.WIDTH[type_], is_decoding=True)
-        case ir.Store(at, ir.Get(type_, place), order) if type_ != "bool" and (order == "<" or ir.WIDTH[type_] == 1):
-            return _between(place, at, ir.WIDTH[type_], is_decoding=False)
-        case ir.Copy(ir.Place() as place, ir.Wire(at), ir.Const(_, size)):
+        case nodes.SetField(place, nodes.Load(type_, at, order)) if type_ != "bool" and (order == "<" or nodes.WIDTH[type_] == 1):
+            return _between(place, at, nodes.WIDTH[type_], is_decoding=True)
+        case nodes.Store(at, nodes.Get(type_, place), order) if type_ != "bool" and (order == "<" or nodes.WIDTH[type_] == 1):
+            return _between(place, at, nodes.WIDTH[type_], is_decoding=False)
+        case nodes.Copy(nodes.Place() as place, nodes.Wire(at), nodes.Const(_, size)):
             return _between(place, at, int(size), is_decoding=True)
-        case ir.Copy(ir.Wire(at), ir.Place() as place, ir.Const(_, size)):
+        case nodes.Copy(nodes.Wire(at), nodes.Place() as place, nodes.Const(_, size)):
             return _between(place, at, int(size), is_decoding=False)
         case _:
             return None
 
 
-def _between(place: ir.Place, at: ir.Expr, size: int, *, is_decoding: bool) -> _Move | None:
+def _between(place: nodes.Place, at: nodes.Expr, size: int, *, is_decoding: bool) -> _Move | None:
     if reads_memory(at) or reads_memory(place.row):
         return None
     base, begin = split(at)
     return _Move(is_decoding, place.lane, place.row, base, place.offset, begin, size)
 
 
-def _together(run: list[tuple[_Move, ir.Stmt]]) -> Iterator[ir.Stmt]:
+def _together(run: list[tuple[_Move, nodes.Stmt]]) -> Iterator[nodes.Stmt]:
     """The moves of a run as few: one, or some of a size that a processor moves without a loop."""
     if len(run) < 2:
         yield from (stmt for _, stmt in run)
@@ -90,21 +90,21 @@ def _together(run: list[tuple[_Move, ir.Stmt]]) -> Iterator[ir.Stmt]:
         yield _copy(first, begin, min(piece, size - begin))
 
 
-def _copy(first: _Move, begin: int, size: int) -> ir.Copy:
+def _copy(first: _Move, begin: int, size: int) -> nodes.Copy:
     """The move of some bytes of a run, from so many bytes behind its first."""
-    place, wire = ir.Place(first.lane, first.row, first.offset + begin), ir.Wire(add(first.base, first.at + begin))
-    return ir.Copy(place, wire, index(size)) if first.is_decoding else ir.Copy(wire, place, index(size))
+    place, wire = nodes.Place(first.lane, first.row, first.offset + begin), nodes.Wire(add(first.base, first.at + begin))
+    return nodes.Copy(place, wire, index(size)) if first.is_decoding else nodes.Copy(wire, place, index(size))
 
 
-def _uncovered(block: ir.Block) -> ir.Block:
+def _uncovered(block: nodes.Block) -> nodes.Block:
     """A block without what empties bytes of a row that are then all set, by statements that only check, name values, or set fields."""
     return tuple(stmt for number, stmt in enumerate(block) if not _is_covered(block, number))
 
 
-def _is_covered(block: ir.Block, number: int) -> bool:
+def _is_covered(block: nodes.Block, number: int) -> bool:
     """Whether a statement is one that empties bytes, all of which are set behind it."""
     match block[number]:
-        case ir.Fill(ir.Place() as place, ir.Const(_, size)) if not reads_memory(place.row):
+        case nodes.Fill(nodes.Place() as place, nodes.Const(_, size)) if not reads_memory(place.row):
             free = [(place.offset, place.offset + int(size))]
         case _:
             return False
@@ -113,26 +113,26 @@ def _is_covered(block: ir.Block, number: int) -> bool:
         covered = _span(stmt, place)
         if covered is not None:
             free = [each for span in free for each in _without(span, covered)]
-        elif not isinstance(stmt, ir.Require | ir.Expect | ir.Let) or any(map(reads_memory, expressions_of(stmt))):
+        elif not isinstance(stmt, nodes.Require | nodes.Expect | nodes.Let) or any(map(reads_memory, expressions_of(stmt))):
             return False
         if not free:
             return True
     return False
 
 
-def _span(stmt: ir.Stmt, place: ir.Place) -> tuple[int, int] | None:
+def _span(stmt: nodes.Stmt, place: nodes.Place) -> tuple[int, int] | None:
     """The bytes of a row that a statement sets, from where to where; None if it may do anything else with lanes."""
     match stmt:
-        case ir.SetField(ir.Place(place.lane, place.row, offset), value) if not _reads_lanes(value):
-            return offset, offset + ir.WIDTH[type_of(value)]
-        case ir.Copy(ir.Place(place.lane, place.row, offset), ir.Wire(_), ir.Const(_, size)):
+        case nodes.SetField(nodes.Place(place.lane, place.row, offset), value) if not _reads_lanes(value):
+            return offset, offset + nodes.WIDTH[type_of(value)]
+        case nodes.Copy(nodes.Place(place.lane, place.row, offset), nodes.Wire(_), nodes.Const(_, size)):
             return offset, offset + int(size)
         case _:
             return None
 
 
-def _reads_lanes(value: ir.Expr) -> bool:
-    return any(isinstance(part, ir.Get | ir.IsText | ir.Nearest) for part in subexpressions(value))
+def _reads_lanes(value: nodes.Expr) -> bool:
+    return any(isinstance(part, nodes.Get | nodes.IsText | nodes.Nearest) for part in subexpressions(value))
 
 
 def _without(span: tuple[int, int], covered: tuple[int, int]) -> Iterator[tuple[int, int]]:

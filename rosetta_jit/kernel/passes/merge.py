@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from dataclasses import field, replace
 
-from rosetta_jit.kernel.ir import Block, Const, Expect, Expr, Failure, Kernel, Part, Require, Site, Stmt
+from rosetta_jit.kernel.ir import Kernel, Part, Site
+from rosetta_jit.kernel.nodes import Block, Const, Expect, Expr, Failure, Require, Stmt
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, may_return, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import index, split

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from operator import is_
 
-from rosetta_jit.kernel.ir import Block, Kernel
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Block
 from rosetta_jit.kernel.passes.bulk import bulk, bulk_of_bytes, group
 from rosetta_jit.kernel.passes.drop import drop, without
 from rosetta_jit.kernel.passes.forget import forget

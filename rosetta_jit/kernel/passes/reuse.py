@@ -11,7 +11,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import field
 from itertools import count
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import (
     Address,
     Block,
     Call,
@@ -21,7 +22,6 @@ from rosetta_jit.kernel.ir import (
     Fill,
     Get,
     HostCall,
-    Kernel,
     Let,
     Load,
     Local,

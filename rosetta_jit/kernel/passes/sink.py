@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import (
     Address,
     Binary,
     Block,
@@ -17,7 +18,6 @@ from rosetta_jit.kernel.ir import (
     Get,
     HostCall,
     IsText,
-    Kernel,
     Local,
     Place,
     SetField,

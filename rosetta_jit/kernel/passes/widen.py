@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Expr, Failure, Fits
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, Expect, Expr, Failure, Fits
 from rosetta_jit.kernel.passes.affine import Affine, Rounds
 from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.startup.dataclass import dataclass

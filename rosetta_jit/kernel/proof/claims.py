@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import WIDTH
+from rosetta_jit.kernel.nodes import WIDTH
 from rosetta_jit.startup.dataclass import dataclass
 
 

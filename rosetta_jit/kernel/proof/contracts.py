@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Call, Routine
+from rosetta_jit.kernel.ir import Routine
+from rosetta_jit.kernel.nodes import Call
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.linear import Linear
 from rosetta_jit.kernel.proof.obligations import demand, oblige

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from rosetta_jit.kernel.ir import WIDTH, Advance, Copy, Failure, Fill, HostCall, Place, Reserve, SetField, Store, Wire
 from rosetta_jit.kernel.limits import MAX_ROWS, MAX_USED_TERMS
+from rosetta_jit.kernel.nodes import WIDTH, Advance, Copy, Failure, Fill, HostCall, Place, Reserve, SetField, Store, Wire
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import All, Any
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus

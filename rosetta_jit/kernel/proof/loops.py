@@ -12,8 +12,8 @@ from collections import Counter
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 
 from rosetta_jit.kernel.arithmetic import FLOATS, limits
-from rosetta_jit.kernel.ir import WIDTH, Advance, Assign, Binary, Block, Const, Convert, Expr, If, Let, Local, Select, Stmt
 from rosetta_jit.kernel.limits import MAX_LOOP_ROUNDS
+from rosetta_jit.kernel.nodes import WIDTH, Advance, Assign, Binary, Block, Const, Convert, Expr, If, Let, Local, Select, Stmt
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import All, Any, Formula
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times

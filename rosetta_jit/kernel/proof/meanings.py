@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, assert_never, cast
 import z3
 
 from rosetta_jit.kernel.arithmetic import limits
-from rosetta_jit.kernel.ir import Scalar
+from rosetta_jit.kernel.nodes import Scalar
 from rosetta_jit.kernel.proof.formula import All, Any, Formula
 from rosetta_jit.kernel.proof.linear import Linear
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from rosetta_jit.kernel.arithmetic import limits
-from rosetta_jit.kernel.ir import Scalar
 from rosetta_jit.kernel.limits import MAX_POSITION, MAX_ROWS
+from rosetta_jit.kernel.nodes import Scalar
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import Formula
 from rosetta_jit.kernel.proof.linear import Linear, coefficient_of, minus, plus, shifted, times

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
-from rosetta_jit.kernel.ir import Expect, HostCall, Require, Site, Stmt
+from rosetta_jit.kernel.ir import Site
+from rosetta_jit.kernel.nodes import Expect, HostCall, Require, Stmt
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.claims import Claim
 from rosetta_jit.kernel.proof.formula import All, Formula, equal

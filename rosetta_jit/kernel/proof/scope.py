@@ -6,8 +6,8 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.arithmetic import limits
-from rosetta_jit.kernel.ir import Scalar
 from rosetta_jit.kernel.limits import MAX_POSITION, MAX_ROWS
+from rosetta_jit.kernel.nodes import Scalar
 from rosetta_jit.kernel.proof.formula import All, Any
 from rosetta_jit.kernel.proof.linear import Linear, Terms, minus, plus, shifted, times
 from rosetta_jit.kernel.proof.prove import Facts

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS, limits
 from rosetta_jit.kernel.decimals import LARGEST_SCALE, MOST_DIGITS
 from rosetta_jit.kernel.limits import MAX_PLACES
@@ -25,7 +25,7 @@ ROUNDING = frozenset(("sqrt", "floor", "ceil", "trunc", "rint"))
 # --- what is evaluated must be -----------------------------------------------------------------------------------------
 
 
-def integer(scope: Scope, expr: ir.Expr, type_: ir.Scalar = "i64") -> Linear:
+def integer(scope: Scope, expr: nodes.Expr, type_: nodes.Scalar = "i64") -> Linear:
     """Value of an expression that must be an integer of a type."""
     found, value = evaluate(scope, expr)
     if found != type_:
@@ -40,22 +40,22 @@ def linear(value: Value) -> Linear:
     return value
 
 
-def condition(scope: Scope, expr: ir.Expr) -> Formula:
+def condition(scope: Scope, expr: nodes.Expr) -> Formula:
     """Value of an expression that must be a bool."""
     found, value = evaluate(scope, expr)
     demand(found == "bool", f"{found} where bool belongs")
     return value
 
 
-def check_extent(scope: Scope, address: ir.Address, size: Linear) -> Linear:
+def check_extent(scope: Scope, address: nodes.Address, size: Linear) -> Linear:
     """``size >= 0`` bytes from an address lie in the message, or in a lane; returns the first byte's offset there."""
     oblige(scope, size, claims.SIZE)
     match address:
-        case ir.Wire(at):
+        case nodes.Wire(at):
             start = integer(scope, at)
             check_wire(scope, start, size)
             return start
-        case ir.Place():
+        case nodes.Place():
             row = _row(scope, address)
             stride = scope.strides[address.lane]
             start = shifted(times(row, stride), address.offset)
@@ -72,16 +72,16 @@ def check_wire(scope: Scope, start: Linear, size: Linear) -> None:
     oblige(scope, minus(start, begin), claims.AFTER_BEGIN)
 
 
-def check_field(scope: Scope, place: ir.Place, type_: ir.Scalar) -> None:
+def check_field(scope: Scope, place: nodes.Place, type_: nodes.Scalar) -> None:
     """A scalar lies in a row of a lane, aligned."""
     row = _row(scope, place)
-    width, stride = ir.WIDTH[type_], scope.strides[place.lane]
+    width, stride = nodes.WIDTH[type_], scope.strides[place.lane]
     certify(scope, place.offset + width <= stride, claims.WITHIN_ROW)
     certify(scope, place.offset % width == 0 and stride % width == 0, claims.ALIGNED)
     oblige(scope, shifted(minus(scope.capacity[place.lane], row), -1), claims.BELOW_CAPACITY)
 
 
-def _row(scope: Scope, place: ir.Place) -> Linear:
+def _row(scope: Scope, place: nodes.Place) -> Linear:
     check_lane(scope, place.lane)
     certify(scope, place.offset >= 0, claims.OFFSET)
     row = integer(scope, place.row)
@@ -94,7 +94,7 @@ def check_lane(scope: Scope, lane: int) -> None:
     certify(scope, 0 <= lane < len(scope.strides), claims.LANE)
 
 
-def in_range(scope: Scope, value: Linear, type_: ir.Scalar) -> Linear:
+def in_range(scope: Scope, value: Linear, type_: nodes.Scalar) -> Linear:
     """``value``, proven to be in its type's range: the operation that made it did not wrap."""
     (low, high), wraps = limits(type_), claims.NO_WRAP[type_]
     oblige(scope, shifted(times(value, -1), high), wraps)
@@ -102,7 +102,7 @@ def in_range(scope: Scope, value: Linear, type_: ir.Scalar) -> Linear:
     return value
 
 
-def unknown(scope: Scope, type_: ir.Scalar) -> Value:
+def unknown(scope: Scope, type_: nodes.Scalar) -> Value:
     """Any value of a type."""
     return None if type_ == "bool" or type_ in FLOATS else scope.facts.fresh(*limits(type_))
 
@@ -110,56 +110,56 @@ def unknown(scope: Scope, type_: ir.Scalar) -> Value:
 # --- expressions -------------------------------------------------------------------------------------------------------
 
 
-def evaluate(scope: Scope, expr: ir.Expr) -> Typed:
+def evaluate(scope: Scope, expr: nodes.Expr) -> Typed:
     """Type and value of an expression; raises UnprovenError where an obligation in it cannot be shown."""
     match expr:
-        case ir.Local(type_, name):
+        case nodes.Local(type_, name):
             found = scope.locals.get(name)
             if found is None or found[0] != type_:
                 raise UnprovenError(f"{name} is not visible here" if found is None else f"{name} is no {type_}")
             return found
-        case ir.Const(type_, value):
+        case nodes.Const(type_, value):
             return type_, _constant(type_, value)
-        case ir.Binary(op, left, right):
+        case nodes.Binary(op, left, right):
             return _binary(scope, op, evaluate(scope, left), evaluate(scope, right))
-        case ir.Load(type_, at, _):
-            check_wire(scope, integer(scope, at), Linear(ir.WIDTH[type_]))
+        case nodes.Load(type_, at, _):
+            check_wire(scope, integer(scope, at), Linear(nodes.WIDTH[type_]))
             return type_, unknown(scope, type_)
-        case ir.Get(type_, place):
+        case nodes.Get(type_, place):
             check_field(scope, place, type_)
             return type_, unknown(scope, type_)
-        case ir.Convert() | ir.Bits():
+        case nodes.Convert() | nodes.Bits():
             return _converted(scope, expr)
-        case ir.Compare(op, left, right):
+        case nodes.Compare(op, left, right):
             return "bool", _compare(op, evaluate(scope, left), evaluate(scope, right))
-        case ir.Used(lane) | ir.Capacity(lane):
+        case nodes.Used(lane) | nodes.Capacity(lane):
             check_lane(scope, lane)
-            return "i64", (scope.used if isinstance(expr, ir.Used) else scope.capacity)[lane]
-        case ir.HostValue(what) | ir.Register(what):
-            kind = "host" if isinstance(expr, ir.HostValue) else "register"
+            return "i64", (scope.used if isinstance(expr, nodes.Used) else scope.capacity)[lane]
+        case nodes.HostValue(what) | nodes.Register(what):
+            kind = "host" if isinstance(expr, nodes.HostValue) else "register"
             return "i64", scope.facts.named((kind, what), *limits("i64"))
-        case ir.Unary():
+        case nodes.Unary():
             return _unary(scope, expr)
-        case ir.Fits():
+        case nodes.Fits():
             return "bool", _fits(scope, expr)
-        case ir.Select():
+        case nodes.Select():
             return _select(scope, expr)
-        case ir.IsText(address, size):
+        case nodes.IsText(address, size):
             check_extent(scope, address, integer(scope, size))
             return "bool", None
-        case ir.Nearest() | ir.Digits() | ir.Scale() | ir.Lookup():
-            return _looked_up(scope, expr) if isinstance(expr, ir.Lookup) else _decimal(scope, expr)
+        case nodes.Nearest() | nodes.Digits() | nodes.Scale() | nodes.Lookup():
+            return _looked_up(scope, expr) if isinstance(expr, nodes.Lookup) else _decimal(scope, expr)
         case _:
             assert_never(expr)
 
 
-def _fits(scope: Scope, expr: ir.Fits) -> Formula:
+def _fits(scope: Scope, expr: nodes.Fits) -> Formula:
     low, high = limits("i64")
     result = _integer_binary(scope, expr.op, "i64", integer(scope, expr.left), integer(scope, expr.right))
     return All((shifted(result, -low), shifted(times(result, -1), high)))
 
 
-def _looked_up(scope: Scope, expr: ir.Lookup) -> Typed:
+def _looked_up(scope: Scope, expr: nodes.Lookup) -> Typed:
     demand(bool(expr.values), "a value among none")
     low, high = limits(expr.type)
     demand(expr.type != "bool" and all(low <= value <= high for value in expr.values), f"a value that is no {expr.type}")
@@ -169,24 +169,24 @@ def _looked_up(scope: Scope, expr: ir.Lookup) -> Typed:
     return expr.type, scope.facts.fresh(min(expr.values), max(expr.values))
 
 
-def _decimal(scope: Scope, expr: ir.Nearest | ir.Digits | ir.Scale) -> Typed:
+def _decimal(scope: Scope, expr: nodes.Nearest | nodes.Digits | nodes.Scale) -> Typed:
     match expr:
-        case ir.Nearest(address, size, exponent):
+        case nodes.Nearest(address, size, exponent):
             check_extent(scope, address, integer(scope, size))
             integer(scope, exponent)
             return "f64", None
-        case ir.Digits(value, places):
+        case nodes.Digits(value, places):
             demand(evaluate(scope, value)[0] in FLOATS, "digits of an integer")
             demand(places is None or 0 <= places <= MAX_PLACES, "too many decimals")
             return "u64", scope.facts.fresh(0, MOST_DIGITS if places is None else limits("u64")[1])
-        case ir.Scale(value):
+        case nodes.Scale(value):
             demand(evaluate(scope, value)[0] in FLOATS, "the scale of an integer")
             return "i64", scope.facts.fresh(-LARGEST_SCALE, LARGEST_SCALE)
         case _:
             assert_never(expr)
 
 
-def _constant(type_: ir.Scalar, value: float) -> Value:
+def _constant(type_: nodes.Scalar, value: float) -> Value:
     if type_ in FLOATS:
         return None
     if type_ == "bool":
@@ -197,7 +197,7 @@ def _constant(type_: ir.Scalar, value: float) -> Value:
     return Linear(int(value))
 
 
-def _binary(scope: Scope, op: ir.Arithmetic, left: Typed, right: Typed) -> Typed:
+def _binary(scope: Scope, op: nodes.Arithmetic, left: Typed, right: Typed) -> Typed:
     type_ = left[0]
     demand(type_ == right[0], f"{op} of {type_} and {right[0]}")
     if type_ in FLOATS:
@@ -209,7 +209,7 @@ def _binary(scope: Scope, op: ir.Arithmetic, left: Typed, right: Typed) -> Typed
     return type_, _checked_binary(scope, op, type_, linear(left[1]), linear(right[1]))
 
 
-def _logical(op: ir.Arithmetic, left: Formula, right: Formula) -> Formula:
+def _logical(op: nodes.Arithmetic, left: Formula, right: Formula) -> Formula:
     match op:
         case "and":
             return bounded(All((left, right)))
@@ -221,7 +221,7 @@ def _logical(op: ir.Arithmetic, left: Formula, right: Formula) -> Formula:
             raise UnprovenError(f"{op} of bools")
 
 
-def _checked_binary(scope: Scope, op: ir.Arithmetic, type_: ir.Scalar, left: Linear, right: Linear) -> Linear:
+def _checked_binary(scope: Scope, op: nodes.Arithmetic, type_: nodes.Scalar, left: Linear, right: Linear) -> Linear:
     """``left op right``, with its obligations."""
     match op:
         case "add" | "sub":
@@ -234,13 +234,13 @@ def _checked_binary(scope: Scope, op: ir.Arithmetic, type_: ir.Scalar, left: Lin
             overflows = All((equal(left, Linear(low)), equal(right, Linear(-1))))
             oblige(scope, low == 0 or negated(overflows), claims.QUOTIENT)
         case "shl" | "shr":
-            oblige(scope, All((right, shifted(times(right, -1), 8 * ir.WIDTH[type_] - 1))), claims.SHIFT)
+            oblige(scope, All((right, shifted(times(right, -1), 8 * nodes.WIDTH[type_] - 1))), claims.SHIFT)
         case _:
             pass
     return _integer_binary(scope, op, type_, left, right)
 
 
-def _product(facts: Facts, type_: ir.Scalar, left: Linear, right: Linear) -> Linear:
+def _product(facts: Facts, type_: nodes.Scalar, left: Linear, right: Linear) -> Linear:
     """``left * right``, of which more is learnt where it might not fit its type for all that is known."""
     found = integers.product(facts, left, right)
     low, high = limits(type_)
@@ -251,7 +251,7 @@ def _product(facts: Facts, type_: ir.Scalar, left: Linear, right: Linear) -> Lin
     return found
 
 
-def _integer_binary(scope: Scope, op: ir.Arithmetic, type_: ir.Scalar, left: Linear, right: Linear) -> Linear:
+def _integer_binary(scope: Scope, op: nodes.Arithmetic, type_: nodes.Scalar, left: Linear, right: Linear) -> Linear:
     """The mathematical result of ``left op right``."""
     facts = scope.facts
     match op:
@@ -289,7 +289,7 @@ def _extreme(facts: Facts, left: Linear, right: Linear, sign: int) -> Linear:
     return result
 
 
-def _unary(scope: Scope, expr: ir.Unary) -> Typed:
+def _unary(scope: Scope, expr: nodes.Unary) -> Typed:
     type_, value = evaluate(scope, expr.operand)
     match expr.function:
         case "not" if type_ == "bool":
@@ -310,7 +310,7 @@ def _unary(scope: Scope, expr: ir.Unary) -> Typed:
             return type_, None
 
 
-def _compare(op: ir.Comparison, left: Typed, right: Typed) -> Formula:
+def _compare(op: nodes.Comparison, left: Typed, right: Typed) -> Formula:
     demand(left[0] == right[0], f"{op} of {left[0]} and {right[0]}")
     if left[0] == "bool" or left[0] in FLOATS:
         return None
@@ -332,7 +332,7 @@ def _compare(op: ir.Comparison, left: Typed, right: Typed) -> Formula:
             assert_never(op)
 
 
-def _convert(scope: Scope, target: ir.Scalar, source: ir.Scalar, value: Value) -> Value:
+def _convert(scope: Scope, target: nodes.Scalar, source: nodes.Scalar, value: Value) -> Value:
     if target in FLOATS:
         return None
     if source == "bool":
@@ -348,16 +348,16 @@ def _convert(scope: Scope, target: ir.Scalar, source: ir.Scalar, value: Value) -
     return value if scope.facts.proves(same) else scope.facts.named(("low bits", target, value), low, high)
 
 
-def _converted(scope: Scope, expr: ir.Convert | ir.Bits) -> Typed:
+def _converted(scope: Scope, expr: nodes.Convert | nodes.Bits) -> Typed:
     source, value = evaluate(scope, expr.operand)
-    if isinstance(expr, ir.Convert):
+    if isinstance(expr, nodes.Convert):
         return expr.type, _convert(scope, expr.type, source, value)
-    same = ir.WIDTH[source] == ir.WIDTH[expr.type] and "bool" not in {source, expr.type}
+    same = nodes.WIDTH[source] == nodes.WIDTH[expr.type] and "bool" not in {source, expr.type}
     demand(same, f"a {source} has not the bits of a {expr.type}")
     return expr.type, unknown(scope, expr.type)
 
 
-def _select(scope: Scope, expr: ir.Select) -> Typed:
+def _select(scope: Scope, expr: nodes.Select) -> Typed:
     chosen = condition(scope, expr.condition)
     type_, then = evaluate(scope, expr.then)
     other_type, otherwise = evaluate(scope, expr.otherwise)

@@ -11,7 +11,7 @@ from dataclasses import field
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.arithmetic import limits
 from rosetta_jit.kernel.limits import MAX_PROOFS, MAX_TERMS
 from rosetta_jit.kernel.printer import statement_text
@@ -44,7 +44,7 @@ class _Walk:
     loops: int = 0
     variables: set[str] = field(default_factory=set[str])
     dropped: dict[int, set[Guess]] = field(default_factory=dict[int, "set[Guess]"])
-    seen: dict[int, ir.Stmt] = field(default_factory=dict[int, "ir.Stmt"])
+    seen: dict[int, nodes.Stmt] = field(default_factory=dict[int, "nodes.Stmt"])
     needed: set[int] = field(default_factory=set[int])
     reads: dict[int, set[str]] = field(default_factory=dict[int, "set[str]"])
 
@@ -119,7 +119,7 @@ def _routine(strides: tuple[int, ...], routine: ir.Routine, before: tuple[ir.Rou
 
 
 def _body(
-    kernel: ir.Kernel, body: ir.Block, routines: Mapping[str, ir.Routine], record: Record | None = None, *, notes: bool = False
+    kernel: ir.Kernel, body: nodes.Block, routines: Mapping[str, ir.Routine], record: Record | None = None, *, notes: bool = False
 ) -> _Walk:
     """The walk of a body: with the guesses about its loops that are mostly enough or, where it is not proven with them, with all."""
     written = 0 if record is None else record.mark()
@@ -137,12 +137,12 @@ def _body(
     return walk
 
 
-def _whole(walk: _Walk, body: ir.Block) -> None:
+def _whole(walk: _Walk, body: nodes.Block) -> None:
     if not _block(walk, body):
         oblige(walk.scope, formula=False, claim=claims.RETURNS)
 
 
-def _block(walk: _Walk, block: ir.Block) -> bool:
+def _block(walk: _Walk, block: nodes.Block) -> bool:
     """Walk a block; True when every path through it has returned."""
     record = walk.scope.record
     outer = None if record is None else record.stmt
@@ -161,7 +161,7 @@ def _block(walk: _Walk, block: ir.Block) -> bool:
     return ended
 
 
-def _named(error: UnprovenError, stmt: ir.Stmt) -> UnprovenError:
+def _named(error: UnprovenError, stmt: nodes.Stmt) -> UnprovenError:
     """The error with the innermost statement's text."""
     return error if "\n" in str(error) else UnprovenError(f"{error}\n  in: {statement_text(stmt)}")
 
@@ -169,54 +169,54 @@ def _named(error: UnprovenError, stmt: ir.Stmt) -> UnprovenError:
 # --- statements --------------------------------------------------------------------------------------------------------
 
 
-def _statement(walk: _Walk, stmt: ir.Stmt) -> bool:
+def _statement(walk: _Walk, stmt: nodes.Stmt) -> bool:
     scope = walk.scope
     match stmt:
-        case ir.Require(at, size, failure):
+        case nodes.Require(at, size, failure):
             start, length = integer(scope, at), integer(scope, size)
             effects.failure(scope, failure)
             _check(walk, stmt, All((start, length, minus(minus(linear(scope.locals["end"][1]), start), length))))
-        case ir.Expect(expr, failure):
+        case nodes.Expect(expr, failure):
             effects.failure(scope, failure)
             _check(walk, stmt, condition(scope, expr))
-        case ir.Let(name, value) | ir.Var(name, value):
+        case nodes.Let(name, value) | nodes.Var(name, value):
             scope.bind(name, _value(scope, value))
-            if isinstance(stmt, ir.Var):
+            if isinstance(stmt, nodes.Var):
                 walk.variables.add(name)
-        case ir.Assign(name, value):
+        case nodes.Assign(name, value):
             demand(name in walk.variables and name in scope.locals, f"{name} is no variable")
             new = _value(scope, value)
             demand(new[0] == scope.locals[name][0], f"{name} is no {new[0]}")
             scope.bind(name, new)
-        case ir.Return(position, registers):
+        case nodes.Return(position, registers):
             for _, value in registers:
                 integer(scope, value)
             oblige(scope, integer(scope, position), claims.POSITION)
             return True
-        case ir.Store() | ir.SetField() | ir.Copy() | ir.Fill():
+        case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             effects.move(scope, stmt)
-        case ir.Reserve() | ir.Advance():
+        case nodes.Reserve() | nodes.Advance():
             effects.rows(scope, stmt)
-        case ir.For() | ir.While() | ir.If() | ir.Switch():
+        case nodes.For() | nodes.While() | nodes.If() | nodes.Switch():
             return _nested(walk, stmt)
-        case ir.Call(routine, _, _, _, indices):
+        case nodes.Call(routine, _, _, _, indices):
             for position in indices:
                 integer(scope, position)
             contracts.bind(scope, walk.routines[routine], stmt)
-        case ir.HostCall():
+        case nodes.HostCall():
             effects.host_call(scope, stmt)
         case _:
             assert_never(stmt)
     return False
 
 
-def _check(walk: _Walk, stmt: ir.Require | ir.Expect, formula: Formula) -> None:
+def _check(walk: _Walk, stmt: nodes.Require | nodes.Expect, formula: Formula) -> None:
     """A check holds from here on."""
     _note(walk, stmt, formula)
     walk.scope.facts.assume(formula)
 
 
-def _note(walk: _Walk, stmt: ir.Require | ir.Expect | ir.If, formula: Formula) -> None:
+def _note(walk: _Walk, stmt: nodes.Require | nodes.Expect | nodes.If, formula: Formula) -> None:
     """Note whether a condition is known before it is asked.
 
     Only in a loop is that worth a proof. Elsewhere a check costs little, and what it says saves proofs of what follows from it.
@@ -229,7 +229,7 @@ def _note(walk: _Walk, stmt: ir.Require | ir.Expect | ir.If, formula: Formula) -
         walk.needed.add(key)
 
 
-def _value(scope: Scope, expr: ir.Expr) -> Typed:
+def _value(scope: Scope, expr: nodes.Expr) -> Typed:
     type_, value = evaluate(scope, expr)
     if isinstance(value, Linear) and len(value.terms) > MAX_TERMS:
         return type_, _shortened(scope, value)
@@ -253,18 +253,18 @@ def _shortened(scope: Scope, value: Linear) -> Linear:
 # --- branches and loops ------------------------------------------------------------------------------------------------
 
 
-def _nested(walk: _Walk, stmt: ir.For | ir.While | ir.If | ir.Switch) -> bool:
+def _nested(walk: _Walk, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> bool:
     match stmt:
-        case ir.If(expr, then, otherwise):
+        case nodes.If(expr, then, otherwise):
             chosen = condition(walk.scope, expr)
             _note(walk, stmt, chosen)
-            ways: list[tuple[Formula, ir.Block]] = [(chosen, then), (negated(chosen), otherwise)]
-        case ir.Switch():
+            ways: list[tuple[Formula, nodes.Block]] = [(chosen, then), (negated(chosen), otherwise)]
+        case nodes.Switch():
             ways = _cases(walk.scope, stmt)
-        case ir.For():
+        case nodes.For():
             _for(walk, stmt)
             return False
-        case ir.While():
+        case nodes.While():
             _while(walk, stmt)
             return False
         case _:
@@ -272,7 +272,7 @@ def _nested(walk: _Walk, stmt: ir.For | ir.While | ir.If | ir.Switch) -> bool:
     return paths.branch(walk.scope, [(formula, partial(_block, walk, block)) for formula, block in ways])
 
 
-def _cases(scope: Scope, stmt: ir.Switch) -> list[tuple[Formula, ir.Block]]:
+def _cases(scope: Scope, stmt: nodes.Switch) -> list[tuple[Formula, nodes.Block]]:
     numbers = [number for number, _ in stmt.cases]
     demand(len(set(numbers)) == len(numbers), "a case that stands twice")
     type_, value = evaluate(scope, stmt.value)
@@ -284,7 +284,7 @@ def _cases(scope: Scope, stmt: ir.Switch) -> list[tuple[Formula, ir.Block]]:
     return [*((equal(subject, Linear(number)), block) for number, block in stmt.cases), (no_case, stmt.default)]
 
 
-def _for(walk: _Walk, loop: ir.For) -> None:
+def _for(walk: _Walk, loop: nodes.For) -> None:
     scope = walk.scope
     count = integer(scope, loop.count)
 
@@ -298,7 +298,7 @@ def _for(walk: _Walk, loop: ir.For) -> None:
     walk.loops -= 1
 
 
-def _while(walk: _Walk, loop: ir.While) -> None:
+def _while(walk: _Walk, loop: nodes.While) -> None:
     scope = walk.scope
     at_start: list[Linear] = []
 
@@ -321,15 +321,17 @@ def _while(walk: _Walk, loop: ir.While) -> None:
     scope.facts.assume(negated(condition(scope, loop.condition)))
 
 
-def _assume_invariant(scope: Scope, loop: ir.While) -> None:
+def _assume_invariant(scope: Scope, loop: nodes.While) -> None:
     for expr in loop.invariant:
         scope.facts.assume(condition(scope, expr))
 
 
-def _rounds(walk: _Walk, loop: ir.For | ir.While, enter: Callable[[int], None], leave: Callable[[], None], count: Linear = ZERO) -> None:
+def _rounds(
+    walk: _Walk, loop: nodes.For | nodes.While, enter: Callable[[int], None], leave: Callable[[], None], count: Linear = ZERO
+) -> None:
     dropped = walk.dropped.get(id(loop))
     if dropped is None:
-        said, measure = (loop.invariant, loop.measure) if isinstance(loop, ir.While) else ((), None)
+        said, measure = (loop.invariant, loop.measure) if isinstance(loop, nodes.While) else ((), None)
         dropped = walk.dropped[id(loop)] = set() if walk.tries_all else needless(loop.body, said, measure, walk.scope.locals, walk.reads)
-    variable = loop.variable if isinstance(loop, ir.For) else ""
+    variable = loop.variable if isinstance(loop, nodes.For) else ""
     walk_rounds(walk.scope, Loop(loop.body, enter, partial(_block, walk, loop.body), leave, variable, count), dropped)

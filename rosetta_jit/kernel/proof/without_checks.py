@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.rewrite import may_return, with_blocks, with_bodies
 from rosetta_jit.kernel.walk import blocks_of
 
@@ -20,27 +20,27 @@ def is_less(kernel: ir.Kernel, proven: ir.Kernel, known: frozenset[int]) -> bool
     return all(map(partial(_is_less, known), kernel.bodies, proven.bodies))
 
 
-def _is_less(known: frozenset[int], block: ir.Block, proven: ir.Block) -> bool:
+def _is_less(known: frozenset[int], block: nodes.Block, proven: nodes.Block) -> bool:
     rest = iter(block)
     return _goes_on(rest, proven, known) and next(rest, None) is None
 
 
-def _goes_on(rest: Iterator[ir.Stmt], proven: ir.Block, known: frozenset[int]) -> bool:
+def _goes_on(rest: Iterator[nodes.Stmt], proven: nodes.Block, known: frozenset[int]) -> bool:
     """Whether a proven block, without what is known, comes next."""
     for stmt in proven:
         if id(stmt) not in known:
             other = next(rest, None)
             if other is not stmt and (other is None or not _is_alike(other, stmt, known)):
                 return False
-        elif isinstance(stmt, ir.If):
+        elif isinstance(stmt, nodes.If):
             if may_return(stmt.then) or not _goes_on(rest, stmt.then, known):
                 return False
-        elif not isinstance(stmt, ir.Require | ir.Expect):
+        elif not isinstance(stmt, nodes.Require | nodes.Expect):
             return False
     return True
 
 
-def _is_alike(stmt: ir.Stmt, proven: ir.Stmt, known: frozenset[int]) -> bool:
+def _is_alike(stmt: nodes.Stmt, proven: nodes.Stmt, known: frozenset[int]) -> bool:
     """Whether two statements differ at most in the blocks inside, and these only by what is known."""
     inside, before = blocks_of(stmt), blocks_of(proven)
     if type(stmt) is not type(proven) or len(inside) != len(before):

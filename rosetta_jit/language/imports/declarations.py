@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rosetta_jit.catalogue import mapping as words
-from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.suggestions import closest
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError, ReportError
 from rosetta_jit.language.imports.mappings import MAPPING_SUFFIX

@@ -16,7 +16,7 @@ from itertools import islice
 from pathlib import Path, PurePosixPath
 
 from rosetta_jit.catalogue import mapping as words
-from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.suggestions import closest
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.language.limits import MAX_FILE_BYTES, MAX_LISTED_FILES, MAX_TEXT_BYTES
 from rosetta_jit.parsing.idl import Load

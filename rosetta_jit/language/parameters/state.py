@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rosetta_jit.catalogue import state as words
-from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.suggestions import closest
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.limits import MAX_STATE
 from rosetta_jit.language.parameters.values import SCALARS, accepted, written

@@ -19,8 +19,8 @@ from rosetta_jit.logs.base import Block, Wanted
 from rosetta_jit.logs.converting.journal import NAME, PART, Journal, Progress
 from rosetta_jit.logs.converting.parts import Parts
 from rosetta_jit.logs.converting.rejected import Damaged, Rejected
+from rosetta_jit.logs.decoded_parts import CLOCKS, LARGE_BYTES, Collector, Part
 from rosetta_jit.logs.folder_names import folder_names
-from rosetta_jit.logs.parts import CLOCKS, LARGE_BYTES, Collector, Part
 from rosetta_jit.logs.tables import table_of
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -15,7 +15,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosetta_jit.logs.parts import OnError, Refused
+    from rosetta_jit.logs.decoded_parts import OnError, Refused
 
 Damaged: TypeAlias = Literal["stop", "skip", "quarantine"]
 

@@ -12,7 +12,7 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import LogError, ReportError
 from rosetta_jit.logs.base import Block, Connection
-from rosetta_jit.logs.parts import Refused
+from rosetta_jit.logs.decoded_parts import Refused
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import assert_never
 
-from rosetta_jit.kernel.ir import Const, For, Local
+from rosetta_jit.kernel.nodes import Const, For, Local
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.codec.fields import Elements, Fields, scalar_name
 from rosetta_jit.lowering.writer import Writer, block

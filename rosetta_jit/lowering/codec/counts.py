@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import Binary, Compare, Convert, Expr, Get, Scalar
+from rosetta_jit.kernel.nodes import Binary, Compare, Convert, Expr, Get, Scalar
 from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.lowering.arithmetic import align, binary
 from rosetta_jit.lowering.codec.fields import Fields, scalar_name

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import field, replace
 
-from rosetta_jit.kernel.ir import Binary, Block, Compare, Const, Expect, Expr, Get, If, Local, SetField, Switch, Used, While
+from rosetta_jit.kernel.nodes import Binary, Block, Compare, Const, Expect, Expr, Get, If, Local, SetField, Switch, Used, While
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderElements, HolderFields
 from rosetta_jit.lowering.codec.walk import begin_elements, if_present, switch_cases, walk

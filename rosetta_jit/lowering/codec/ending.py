@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import WIDTH, Binary, Compare, Const, Convert, Expr, For, If, Load, Local, Store
+from rosetta_jit.kernel.nodes import WIDTH, Binary, Compare, Const, Convert, Expr, For, If, Load, Local, Store
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.codec.leaves import align, distance
 from rosetta_jit.lowering.writer import MESSAGE, Writer, block, integer

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from rosetta_jit.kernel.ir import Assign, Binary, Block, Compare, Const, Convert, Expr, If, Load, Local, Select, Switch, While
+from rosetta_jit.kernel.nodes import Assign, Binary, Block, Compare, Const, Convert, Expr, If, Load, Local, Select, Switch, While
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.startup.dataclass import dataclass

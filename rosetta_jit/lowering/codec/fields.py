@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.lowering.writer import Where
 from rosetta_jit.startup.dataclass import dataclass
@@ -19,8 +19,8 @@ from rosetta_jit.wire.codec import Choice, Codec, Path
 class Stored:
     """How many bytes or elements a field has, and the row where they start, where it is known: both read at one moment."""
 
-    size: ir.Expr
-    start: ir.Expr | None = None
+    size: nodes.Expr
+    start: nodes.Expr | None = None
 
 
 OTHER_CASE = "another case is set than the discriminator says"
@@ -38,15 +38,15 @@ class Fields(Protocol):
         """The place of a field, for errors."""
         ...
 
-    def put(self, path: Path, value: ir.Expr) -> None:
+    def put(self, path: Path, value: nodes.Expr) -> None:
         """Decode: a number has come."""
         ...
 
-    def get(self, path: Path) -> ir.Expr | None:
+    def get(self, path: Path) -> nodes.Expr | None:
         """Encode: the number to write; None where it is written later, in its place."""
         ...
 
-    def put_bytes(self, path: Path, at: ir.Expr, size: ir.Expr) -> None:
+    def put_bytes(self, path: Path, at: nodes.Expr, size: nodes.Expr) -> None:
         """Decode: bytes have come."""
         ...
 
@@ -58,7 +58,7 @@ class Fields(Protocol):
         """Encode: write bytes to the current position."""
         ...
 
-    def open(self, path: Path, count: ir.Expr) -> Elements:
+    def open(self, path: Path, count: nodes.Expr) -> Elements:
         """Decode: so many elements come, one after another."""
         ...
 
@@ -82,7 +82,7 @@ class Fields(Protocol):
         """Decode: an optional field is there, whatever is put into it."""
         ...
 
-    def present(self, path: Path) -> ir.Expr:
+    def present(self, path: Path) -> nodes.Expr:
         """Encode: whether an optional field is there."""
         ...
 
@@ -95,32 +95,32 @@ class Fields(Protocol):
 class Elements(Protocol):
     """The fields of each element of an array."""
 
-    def place(self, item: Codec, first: ir.Expr, step: int) -> Elements:
+    def place(self, item: Codec, first: nodes.Expr, step: int) -> Elements:
         """The elements are of one size: the first lies there, the others each a step further."""
         ...
 
-    def at(self, number: ir.Expr) -> Fields:
+    def at(self, number: nodes.Expr) -> Fields:
         """The fields of one element."""
         ...
 
 
-def converted(value: ir.Expr, scalar: str) -> ir.Expr:
+def converted(value: nodes.Expr, scalar: str) -> nodes.Expr:
     """A value as the scalar that a slot holds; nothing is checked."""
     source, target = type_of(value), scalar_name(scalar)
     if source == target:
         return value
     if target == "bool":
-        zero = ir.Const(source, 0)
-        return ir.Compare("ne", value, zero)
-    return ir.Convert(target, value)
+        zero = nodes.Const(source, 0)
+        return nodes.Compare("ne", value, zero)
+    return nodes.Convert(target, value)
 
 
-def negated(condition: ir.Expr) -> ir.Expr:
+def negated(condition: nodes.Expr) -> nodes.Expr:
     """The opposite of a condition."""
-    return ir.Unary("not", condition)
+    return nodes.Unary("not", condition)
 
 
-def scalar_name(scalar: str) -> ir.Scalar:
+def scalar_name(scalar: str) -> nodes.Scalar:
     """The type of the scalar in a kernel."""
     match scalar:
         case "bool" | "i8" | "u8" | "i16" | "u16" | "i32" | "u32" | "i64" | "u64" | "f32" | "f64":

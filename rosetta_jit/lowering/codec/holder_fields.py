@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import ROW, add, index, mul
 from rosetta_jit.lowering.codec.fields import OTHER_CASE, Stored, converted, scalar_name
 from rosetta_jit.lowering.limits import MAX_SIZE
@@ -19,11 +19,11 @@ class Cell:
     """A slot of a row of a lane."""
 
     lane: int
-    row: ir.Expr
+    row: nodes.Expr
     slot: Slot
 
-    def place(self, offset: int) -> ir.Place:
-        return ir.Place(self.lane, self.row, offset)
+    def place(self, offset: int) -> nodes.Place:
+        return nodes.Place(self.lane, self.row, offset)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,23 +49,23 @@ class HolderFields:
             where = where.member(name) if number == len(path) or not isinstance(slot, Variant) else where
         return where
 
-    def put(self, path: Path, value: ir.Expr) -> None:
+    def put(self, path: Path, value: nodes.Expr) -> None:
         cell = self.mark(path)
         match cell.slot:
             case Number(offset, scalar):
-                self.writer.emit(ir.SetField(cell.place(offset), converted(value, scalar)))
+                self.writer.emit(nodes.SetField(cell.place(offset), converted(value, scalar)))
             case _:
                 raise AssertionError(path)
 
-    def get(self, path: Path) -> ir.Expr | None:
+    def get(self, path: Path) -> nodes.Expr | None:
         cell = self.find(path)
         match cell.slot:
             case Number(offset, scalar):
-                return ir.Get(scalar_name(scalar), cell.place(offset))
+                return nodes.Get(scalar_name(scalar), cell.place(offset))
             case _:
                 raise AssertionError(path)
 
-    def put_bytes(self, path: Path, at: ir.Expr, size: ir.Expr) -> None:
+    def put_bytes(self, path: Path, at: nodes.Expr, size: nodes.Expr) -> None:
         cell = self.mark(path)
         span = span_of(cell)
         left = self.writer.left_in_message(span.lane, size) if self.borrow else None
@@ -73,7 +73,7 @@ class HolderFields:
             self.set_span(cell, at, left)
             return
         start = self.reserve(span.lane, size)
-        self.writer.emit(ir.Copy(ir.Place(span.lane, start), ir.Wire(at), size))
+        self.writer.emit(nodes.Copy(nodes.Place(span.lane, start), nodes.Wire(at), size))
         self.set_span(cell, start, size)
 
     def stored(self, path: Path, fixed: int | None = None) -> Stored:
@@ -83,17 +83,17 @@ class HolderFields:
 
     def copy_bytes(self, path: Path, stored: Stored) -> None:
         assert stored.start is not None
-        source = ir.Place(span_of(self.find(path)).lane, stored.start)
-        self.writer.emit(ir.Copy(ir.Wire(self.writer.position), source, stored.size))
+        source = nodes.Place(span_of(self.find(path)).lane, stored.start)
+        self.writer.emit(nodes.Copy(nodes.Wire(self.writer.position), source, stored.size))
 
-    def open(self, path: Path, count: ir.Expr) -> HolderElements:
+    def open(self, path: Path, count: nodes.Expr) -> HolderElements:
         cell = self.mark(path)
         lane = span_of(cell).lane
         start = self.reserve(lane, count)
         self.set_span(cell, start, count)
         if has_gaps(self.layout.lanes[lane].element):
             stride = self.layout.lanes[lane].stride
-            self.writer.expect(ir.Compare("le", count, index(MAX_SIZE // stride)), "count", self.shown(path), "too many elements")
+            self.writer.expect(nodes.Compare("le", count, index(MAX_SIZE // stride)), "count", self.shown(path), "too many elements")
             self.clear(lane, start, count)
         return HolderElements(self, lane, start, self.shown(path))
 
@@ -109,9 +109,9 @@ class HolderFields:
         assert isinstance(cell.slot, Variant)
         place = cell.place(cell.slot.offset)
         if self.writer.direction == "decode":
-            self.writer.emit(ir.SetField(place, index(number)))
+            self.writer.emit(nodes.SetField(place, index(number)))
         else:
-            agrees = ir.Compare("eq", ir.Get("i64", place), index(number))
+            agrees = nodes.Compare("eq", nodes.Get("i64", place), index(number))
             self.writer.expect(agrees, "union", self.shown(path[:-1]), OTHER_CASE)
 
     def scatter(self, path: Path) -> None:
@@ -120,13 +120,13 @@ class HolderFields:
     def appear(self, path: Path) -> None:
         self.mark(path)
 
-    def present(self, path: Path) -> ir.Expr:
+    def present(self, path: Path) -> nodes.Expr:
         owner = self.find(path[:-1])
         member = member_of(owner.slot, path[-1])
         assert isinstance(owner.slot, Row)
         assert member.presence is not None
         place, mask = presence_bit(owner, owner.slot, member.presence)
-        return ir.Compare("ne", ir.Binary("and", ir.Get("u64", place), mask), ir.Const("u64", 0))
+        return nodes.Compare("ne", nodes.Binary("and", nodes.Get("u64", place), mask), nodes.Const("u64", 0))
 
     # --- places ------------------------------------------------------------------------------------------------------
 
@@ -150,45 +150,47 @@ class HolderFields:
         match slot:
             case Row() if member.presence is not None:
                 place, mask = presence_bit(self.cell, slot, member.presence)
-                self.writer.emit(ir.SetField(place, ir.Binary("or", ir.Get("u64", place), mask)))
+                self.writer.emit(nodes.SetField(place, nodes.Binary("or", nodes.Get("u64", place), mask)))
             case Variant(offset, members):
-                self.writer.emit(ir.SetField(self.cell.place(offset), index(1 + members.index(member))))
+                self.writer.emit(nodes.SetField(self.cell.place(offset), index(1 + members.index(member))))
             case _:
                 pass
 
-    def reserve(self, lane: int, count: ir.Expr) -> ir.Expr:
+    def reserve(self, lane: int, count: nodes.Expr) -> nodes.Expr:
         """Take ``count`` new rows of a lane; gives the first."""
-        self.writer.emit(ir.Reserve(lane, count))
-        start = self.writer.let("start", ir.Used(lane))
-        self.writer.emit(ir.Advance(lane, count))
+        self.writer.emit(nodes.Reserve(lane, count))
+        start = self.writer.let("start", nodes.Used(lane))
+        self.writer.emit(nodes.Advance(lane, count))
         return start
 
-    def clear(self, lane: int, start: ir.Expr, count: ir.Expr) -> None:
+    def clear(self, lane: int, start: nodes.Expr, count: nodes.Expr) -> None:
         """Zeros in so many rows; but what `size` has left in their hidden words is kept for `encode`."""
         links = self.layout.lanes[lane].links
         if links is None or self.writer.direction != "encode":
-            self.writer.emit(ir.Fill(ir.Place(lane, start), mul(count, self.layout.lanes[lane].stride)))
+            self.writer.emit(nodes.Fill(nodes.Place(lane, start), mul(count, self.layout.lanes[lane].stride)))
             return
         number = self.writer.fresh("cleared")
-        row = add(start, ir.Local("i64", number))
-        self.writer.emit(ir.For(number, count, (ir.Fill(ir.Place(lane, row), index(links)),)))
+        row = add(start, nodes.Local("i64", number))
+        self.writer.emit(nodes.For(number, count, (nodes.Fill(nodes.Place(lane, row), index(links)),)))
 
     def is_own_row(self, span: Span) -> bool:
         """Whether a span leads to messages that can contain themselves."""
         return self.layout.lanes[span.lane].links is not None
 
-    def set_span(self, cell: Cell, start: ir.Expr, count: ir.Expr) -> None:
+    def set_span(self, cell: Cell, start: nodes.Expr, count: nodes.Expr) -> None:
         offset = cell.slot.offset if isinstance(cell.slot, Span) else 0
-        self.writer.emit(ir.SetField(cell.place(offset), start), ir.SetField(cell.place(offset + 8), count))
+        self.writer.emit(nodes.SetField(cell.place(offset), start), nodes.SetField(cell.place(offset + 8), count))
 
-    def read_span(self, cell: Cell, where: Where) -> tuple[ir.Expr, ir.Expr]:
+    def read_span(self, cell: Cell, where: Where) -> tuple[nodes.Expr, nodes.Expr]:
         """Start and count of a field's elements, checked: a damaged holder must not lead outside its lanes."""
         span = span_of(cell)
-        start = self.writer.let("start", ir.Get("i64", cell.place(span.offset)))
-        count = self.writer.let("count", ir.Get("i64", cell.place(span.offset + 8)))
-        inside = ir.Binary("and", ir.Compare("ge", count, index(0)), ir.Compare("le", count, ir.Used(span.lane)))
+        start = self.writer.let("start", nodes.Get("i64", cell.place(span.offset)))
+        count = self.writer.let("count", nodes.Get("i64", cell.place(span.offset + 8)))
+        inside = nodes.Binary("and", nodes.Compare("ge", count, index(0)), nodes.Compare("le", count, nodes.Used(span.lane)))
         self.writer.expect(inside, "length", where, "the holder is damaged")
-        inside = ir.Binary("and", ir.Compare("ge", start, index(0)), ir.Compare("le", start, ir.Binary("sub", ir.Used(span.lane), count)))
+        inside = nodes.Binary(
+            "and", nodes.Compare("ge", start, index(0)), nodes.Compare("le", start, nodes.Binary("sub", nodes.Used(span.lane), count))
+        )
         self.writer.expect(inside, "length", where, "the holder is damaged")
         return start, count
 
@@ -199,14 +201,14 @@ class HolderElements:
 
     parent: HolderFields
     lane: int
-    start: ir.Expr
+    start: nodes.Expr
     where: Where
 
-    def place(self, item: Codec, first: ir.Expr, step: int) -> HolderElements:
+    def place(self, item: Codec, first: nodes.Expr, step: int) -> HolderElements:
         del item, first, step
         return self
 
-    def at(self, number: ir.Expr) -> HolderFields:
+    def at(self, number: nodes.Expr) -> HolderFields:
         slot = self.parent.layout.lanes[self.lane].element
         cell = Cell(self.lane, add(self.start, number), slot)
         owner = None if isinstance(slot, Row) else self.parent.scope
@@ -249,6 +251,6 @@ def span_of(cell: Cell) -> Span:
             raise AssertionError(cell)
 
 
-def presence_bit(cell: Cell, row: Row, bit: int) -> tuple[ir.Place, ir.Const]:
+def presence_bit(cell: Cell, row: Row, bit: int) -> tuple[nodes.Place, nodes.Const]:
     """The presence word of a field, and its bit in there."""
-    return cell.place(row.offset + 8 * (bit // 64)), ir.Const("u64", 1 << bit % 64)
+    return cell.place(row.offset + 8 * (bit // 64)), nodes.Const("u64", 1 << bit % 64)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
 from rosetta_jit.lowering.codec.holder_fields import HolderFields
@@ -25,21 +25,21 @@ SECOND = 0x7F << 7
 """The bits of a number that the second byte of its varint has."""
 
 
-def read_fixed(writer: Writer, fields: HolderFields, lane: int, size: ir.Local, scalar: str, order: str, where: Where) -> None:
+def read_fixed(writer: Writer, fields: HolderFields, lane: int, size: nodes.Local, scalar: str, order: str, where: Where) -> None:
     """Numbers of a fixed size, as many as fill ``size`` bytes."""
-    width = ir.WIDTH[scalar]
-    count = writer.let("count", ir.Binary("div", size, index(width)))
-    whole = ir.Compare("eq", ir.Binary("rem", size, index(width)), index(0))
+    width = nodes.WIDTH[scalar]
+    count = writer.let("count", nodes.Binary("div", size, index(width)))
+    whole = nodes.Compare("eq", nodes.Binary("rem", size, index(width)), index(0))
     writer.expect(whole, "length", where, f"not a multiple of {width} bytes")
     start = fields.reserve(lane, count)
-    number = ir.Local("i64", writer.fresh("i"))
+    number = nodes.Local("i64", writer.fresh("i"))
     first = writer.position
     with writer.nested() as body:
-        writer.position = writer.let("item", ir.Binary("add", first, mul(number, width)))
+        writer.position = writer.let("item", nodes.Binary("add", first, mul(number, width)))
         writer.require(width, where)
-        value = ir.Load(scalar_name(scalar), writer.position, ">" if order == ">" else "<")
-        writer.emit(ir.SetField(ir.Place(lane, add(start, number)), converted(value, _element(fields, lane).scalar)))
-    writer.emit(ir.For(number.name, count, block(body)))
+        value = nodes.Load(scalar_name(scalar), writer.position, ">" if order == ">" else "<")
+        writer.emit(nodes.SetField(nodes.Place(lane, add(start, number)), converted(value, _element(fields, lane).scalar)))
+    writer.emit(nodes.For(number.name, count, block(body)))
     writer.advance(size)
 
 
@@ -50,7 +50,7 @@ def reads_several(entry: Entry, tagged: Tagged) -> bool:
 
 
 def read_varints(
-    writer: Writer, fields: HolderFields, varint: Varint, lane: int, stop: ir.Expr, at: ir.Local, read_one: Callable[[], None]
+    writer: Writer, fields: HolderFields, varint: Varint, lane: int, stop: nodes.Expr, at: nodes.Local, read_one: Callable[[], None]
 ) -> None:
     """One round of a loop over varints up to ``stop``: several of a word if none takes more than two bytes, or what ``read_one`` reads.
 
@@ -58,12 +58,12 @@ def read_varints(
     changes from one to the next, a processor would guess it wrongly. Where all are alike, LLVM makes vectors of them.
     """
     scalar = _element(fields, lane).scalar
-    word = writer.var("word", ir.Const("u64", (1 << 64) - 1))
+    word = writer.var("word", nodes.Const("u64", (1 << 64) - 1))
     with writer.nested() as enough:
-        writer.assign(word, ir.Load("u64", at, "<"))
-    writer.emit(ir.If(ir.Compare("ge", ir.Binary("sub", stop, at), index(WORD)), block(enough)))
+        writer.assign(word, nodes.Load("u64", at, "<"))
+    writer.emit(nodes.If(nodes.Compare("ge", nodes.Binary("sub", stop, at), index(WORD)), block(enough)))
     bits = writer.let("goes_on", _and(word, CONTINUES))
-    longer = ir.Binary("and", bits, ir.Binary("shl", bits, ir.Const("u64", 8)))
+    longer = nodes.Binary("and", bits, nodes.Binary("shl", bits, nodes.Const("u64", 8)))
     with writer.nested() as ones:
         _append(writer, varint, lane, scalar, [_and(_behind(word, number), 0xFF) for number in range(WORD)])
         writer.assign(at, add(at, WORD))
@@ -73,50 +73,52 @@ def read_varints(
     with writer.nested() as mixed:
         _append_mixed(writer, varint, lane, scalar, word, at)
     with writer.nested() as short:
-        alike = ir.If(ir.Compare("eq", bits, ir.Const("u64", TWOS)), block(twos), block(mixed))
-        writer.emit(ir.If(ir.Compare("eq", bits, ir.Const("u64", 0)), block(ones), (alike,)))
+        alike = nodes.If(nodes.Compare("eq", bits, nodes.Const("u64", TWOS)), block(twos), block(mixed))
+        writer.emit(nodes.If(nodes.Compare("eq", bits, nodes.Const("u64", 0)), block(ones), (alike,)))
     with writer.nested() as one:
         read_one()
-    writer.emit(ir.If(ir.Compare("eq", longer, ir.Const("u64", 0)), block(short), block(one)))
+    writer.emit(nodes.If(nodes.Compare("eq", longer, nodes.Const("u64", 0)), block(short), block(one)))
 
 
-def _append_mixed(writer: Writer, varint: Varint, lane: int, scalar: str, word: ir.Local, at: ir.Local) -> None:
+def _append_mixed(writer: Writer, varint: Varint, lane: int, scalar: str, word: nodes.Local, at: nodes.Local) -> None:
     """The first four numbers of a word: each takes two bytes if its first one says so."""
     rest, after = word, add(at, WORD // 2)
-    values: list[ir.Expr] = []
+    values: list[nodes.Expr] = []
     for _ in range(WORD // 2):
-        more = writer.let("more", _and(ir.Binary("shr", rest, ir.Const("u64", 7)), 1))
-        second = ir.Binary("and", ir.Binary("shr", rest, ir.Const("u64", 1)), ir.Binary("mul", more, ir.Const("u64", SECOND)))
-        values.append(writer.let("varint", ir.Binary("or", ir.Binary("and", rest, SEVEN_BITS), second)))
-        bits = ir.Binary("add", ir.Binary("shl", more, ir.Const("u64", 3)), ir.Const("u64", 8))
-        rest = writer.let("rest", ir.Binary("shr", rest, bits))
-        after = ir.Binary("add", after, ir.Convert("i64", more))
+        more = writer.let("more", _and(nodes.Binary("shr", rest, nodes.Const("u64", 7)), 1))
+        second = nodes.Binary(
+            "and", nodes.Binary("shr", rest, nodes.Const("u64", 1)), nodes.Binary("mul", more, nodes.Const("u64", SECOND))
+        )
+        values.append(writer.let("varint", nodes.Binary("or", nodes.Binary("and", rest, SEVEN_BITS), second)))
+        bits = nodes.Binary("add", nodes.Binary("shl", more, nodes.Const("u64", 3)), nodes.Const("u64", 8))
+        rest = writer.let("rest", nodes.Binary("shr", rest, bits))
+        after = nodes.Binary("add", after, nodes.Convert("i64", more))
     behind = writer.let("behind", after)
     _append(writer, varint, lane, scalar, values)
     writer.assign(at, behind)
 
 
-def _append(writer: Writer, varint: Varint, lane: int, scalar: str, values: list[ir.Expr]) -> None:
+def _append(writer: Writer, varint: Varint, lane: int, scalar: str, values: list[nodes.Expr]) -> None:
     """Put numbers at the end of a lane."""
-    writer.emit(ir.Reserve(lane, index(len(values))))
+    writer.emit(nodes.Reserve(lane, index(len(values))))
     for number, value in enumerate(values):
         whole = from_varint(varint, writer.let("varint", value), scalar)
-        writer.emit(ir.SetField(ir.Place(lane, add(ir.Used(lane), number)), converted(whole, scalar)))
-    writer.emit(ir.Advance(lane, index(len(values))))
+        writer.emit(nodes.SetField(nodes.Place(lane, add(nodes.Used(lane), number)), converted(whole, scalar)))
+    writer.emit(nodes.Advance(lane, index(len(values))))
 
 
-def _behind(word: ir.Local, size: int) -> ir.Expr:
+def _behind(word: nodes.Local, size: int) -> nodes.Expr:
     """A word without its first bytes."""
-    return ir.Binary("shr", word, ir.Const("u64", 8 * size)) if size else word
+    return nodes.Binary("shr", word, nodes.Const("u64", 8 * size)) if size else word
 
 
-def _of_two(word: ir.Expr) -> ir.Expr:
+def _of_two(word: nodes.Expr) -> nodes.Expr:
     """The varint that the first two bytes of a word are."""
-    return ir.Binary("or", ir.Binary("and", word, SEVEN_BITS), _and(ir.Binary("shr", word, ir.Const("u64", 1)), SECOND))
+    return nodes.Binary("or", nodes.Binary("and", word, SEVEN_BITS), _and(nodes.Binary("shr", word, nodes.Const("u64", 1)), SECOND))
 
 
-def _and(value: ir.Expr, bits: int) -> ir.Expr:
-    return ir.Binary("and", value, ir.Const("u64", bits))
+def _and(value: nodes.Expr, bits: int) -> nodes.Expr:
+    return nodes.Binary("and", value, nodes.Const("u64", bits))
 
 
 def _element(fields: HolderFields, lane: int) -> NumberSlot:

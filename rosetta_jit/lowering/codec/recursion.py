@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Expr, Get, If, Local, Place, Used, While
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, Expr, Get, If, Local, Place, Used, While
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields
 from rosetta_jit.lowering.codec.tagged import read_message

@@ -6,7 +6,7 @@ before children), then the lengths. To measure, the list is made and gone throug
 
 from __future__ import annotations
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields, span_of
 from rosetta_jit.lowering.codec.tagged_write import Lengths, present, write_message, write_tag
@@ -28,8 +28,8 @@ class Rows:
     """The list of rows: the scratch lane, how many there are, and how many there can be."""
 
     scratch: int
-    number: ir.Local
-    most: ir.Expr
+    number: nodes.Local
+    most: nodes.Expr
 
 
 def has_recursion(tagged: Tagged) -> bool:
@@ -55,13 +55,13 @@ def write_root(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer:
 def write_child(writer: Writer, fields: HolderFields, cell: Cell, recursion: Recursion, where: Where) -> None:
     """The place of a message within another: its size is known, and it is told where it belongs."""
     lane, row = cell.lane, cell.row
-    size = writer.let("size", ir.Get("i64", link(fields.layout, lane, row, SIZE_WORD)))
-    sane = ir.Binary("and", ir.Compare("ge", size, index(0)), ir.Compare("le", size, index(MAX_SIZE)))
+    size = writer.let("size", nodes.Get("i64", link(fields.layout, lane, row, SIZE_WORD)))
+    sane = nodes.Binary("and", nodes.Compare("ge", size, index(0)), nodes.Compare("le", size, index(MAX_SIZE)))
     writer.expect(sane, "length", where, DAMAGED)
     if recursion.group is None:
-        write_varint(writer, ir.Convert("u64", size), where)
+        write_varint(writer, nodes.Convert("u64", size), where)
     if writer.direction == "encode":
-        writer.emit(ir.SetField(link(fields.layout, lane, row, BEGIN_WORD), writer.position))
+        writer.emit(nodes.SetField(link(fields.layout, lane, row, BEGIN_WORD), writer.position))
     writer.require(size, where, "no room for the message")
     writer.advance(size)
     if recursion.group is not None:
@@ -75,43 +75,45 @@ def _measure(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: W
     rows = _list_rows(encoding, fields, tagged, writer, scratch)
     count = writer.let("count", rows.number)
     first = writer.let("first_length", add(mul(count, 2), HEADER))
-    writer.emit(ir.Reserve(scratch, first))
+    writer.emit(nodes.Reserve(scratch, first))
     lengths = Lengths(scratch, writer.var("lengths", first), write_child)
     back = writer.var("back", index(0))
     with writer.nested() as body:
         writer.position = index(0)
-        _each_lane(encoding, fields, writer, scratch, ir.Binary("sub", ir.Binary("sub", count, back), index(1)), lengths)
+        _each_lane(encoding, fields, writer, scratch, nodes.Binary("sub", nodes.Binary("sub", count, back), index(1)), lengths)
         writer.assign(back, add(back, 1))
     writer.emit(
-        ir.While(ir.Compare("lt", back, count), block(body), (ir.Compare("ge", back, index(0)), *_lengths_invariant(lengths)), back)
+        nodes.While(
+            nodes.Compare("lt", back, count), block(body), (nodes.Compare("ge", back, index(0)), *_lengths_invariant(lengths)), back
+        )
     )
     writer.emit(
-        ir.Reserve(scratch, index(HEADER)),
-        ir.SetField(ir.Place(scratch, index(0)), count),
-        ir.SetField(ir.Place(scratch, index(1)), lengths.next),
+        nodes.Reserve(scratch, index(HEADER)),
+        nodes.SetField(nodes.Place(scratch, index(0)), count),
+        nodes.SetField(nodes.Place(scratch, index(1)), lengths.next),
     )
     writer.position = index(0)
     write_message(writer, fields, tagged, lengths)
 
 
 def _list_rows(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: Writer, scratch: int) -> Rows:
-    most: ir.Expr = index(0)
+    most: nodes.Expr = index(0)
     for lane, _ in fields.layout.recursive:
-        most = add(most, ir.Used(lane))
+        most = add(most, nodes.Used(lane))
     rows = Rows(scratch, writer.var("rows", index(0)), writer.let("most", most))
     _visit(writer, fields, tagged, rows)
     at = writer.var("at_row", index(0))
     with writer.nested() as body:
         cases = [(lane, _visit_row(writer, fields, encoding.recursive[struct], lane, rows, at)) for lane, struct in fields.layout.recursive]
-        writer.emit(ir.Switch(_listed(writer, scratch, at, 0), tuple(cases), _damaged(writer)))
+        writer.emit(nodes.Switch(_listed(writer, scratch, at, 0), tuple(cases), _damaged(writer)))
         _say_again(writer, rows)
         writer.assign(at, add(at, 1))
-    goes_on = ir.Binary("and", ir.Compare("lt", at, rows.number), ir.Compare("lt", at, rows.most))
-    writer.emit(ir.While(goes_on, block(body), (ir.Compare("ge", at, index(0)), *_rows_invariant(rows)), at))
+    goes_on = nodes.Binary("and", nodes.Compare("lt", at, rows.number), nodes.Compare("lt", at, rows.most))
+    writer.emit(nodes.While(goes_on, block(body), (nodes.Compare("ge", at, index(0)), *_rows_invariant(rows)), at))
     return rows
 
 
-def _visit_row(writer: Writer, fields: HolderFields, tagged: Tagged, lane: int, rows: Rows, at: ir.Local) -> ir.Block:
+def _visit_row(writer: Writer, fields: HolderFields, tagged: Tagged, lane: int, rows: Rows, at: nodes.Local) -> nodes.Block:
     with writer.nested() as body:
         row = _row_of(writer, rows.scratch, at, lane)
         inner = HolderFields(writer, fields.layout, Cell(lane, row, fields.layout.lanes[lane].element))
@@ -127,7 +129,7 @@ def _visit(writer: Writer, fields: HolderFields, tagged: Tagged, rows: Rows) -> 
         there = present(fields, entry)
         with writer.nested() as body:
             _visit_field(writer, fields, entry, rows)
-        writer.emit(ir.If(there if there is not None else ir.Const("bool", value=True), block(body)))
+        writer.emit(nodes.If(there if there is not None else nodes.Const("bool", value=True), block(body)))
         _say_again(writer, rows)
 
 
@@ -140,24 +142,24 @@ def _visit_field(writer: Writer, fields: HolderFields, entry: Entry, rows: Rows)
     start, count = fields.read_span(cell, fields.shown(entry.path))
     lane, number = span_of(cell).lane, writer.var("i", index(0))
     with writer.nested() as body:
-        row = writer.let("row_of_element", ir.Binary("add", start, number))
+        row = writer.let("row_of_element", nodes.Binary("add", start, number))
         if isinstance(entry.value, Recursion):
             _append(writer, rows, lane, row)
         elif isinstance(entry.value, Tagged):
             inner = HolderFields(writer, fields.layout, Cell(lane, row, fields.layout.lanes[lane].element))
             _visit(writer, inner, entry.value, rows)
         writer.assign(number, add(number, 1))
-    invariant = (ir.Compare("ge", number, index(0)), *_rows_invariant(rows))
-    writer.emit(ir.While(ir.Compare("lt", number, count), block(body), invariant, number))
+    invariant = (nodes.Compare("ge", number, index(0)), *_rows_invariant(rows))
+    writer.emit(nodes.While(nodes.Compare("lt", number, count), block(body), invariant, number))
 
 
-def _append(writer: Writer, rows: Rows, lane: int, row: ir.Expr) -> None:
-    writer.expect(ir.Compare("lt", rows.number, rows.most), "nesting", Where(), "a message contains itself")
+def _append(writer: Writer, rows: Rows, lane: int, row: nodes.Expr) -> None:
+    writer.expect(nodes.Compare("lt", rows.number, rows.most), "nesting", Where(), "a message contains itself")
     place = writer.let("place", add(mul(rows.number, 2), HEADER))
     writer.emit(
-        ir.Reserve(rows.scratch, add(place, 2)),
-        ir.SetField(ir.Place(rows.scratch, place), index(lane)),
-        ir.SetField(ir.Place(rows.scratch, add(place, 1)), row),
+        nodes.Reserve(rows.scratch, add(place, 2)),
+        nodes.SetField(nodes.Place(rows.scratch, place), index(lane)),
+        nodes.SetField(nodes.Place(rows.scratch, add(place, 1)), row),
     )
     writer.assign(rows.number, add(rows.number, 1))
 
@@ -166,89 +168,98 @@ def _append(writer: Writer, rows: Rows, lane: int, row: ir.Expr) -> None:
 
 
 def _write(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: Writer, scratch: int) -> None:
-    writer.expect(ir.Compare("ge", ir.Capacity(scratch), index(HEADER)), "length", fields.where, DAMAGED)
-    count = writer.let("count", ir.Get("i64", ir.Place(scratch, index(0))))
+    writer.expect(nodes.Compare("ge", nodes.Capacity(scratch), index(HEADER)), "length", fields.where, DAMAGED)
+    count = writer.let("count", nodes.Get("i64", nodes.Place(scratch, index(0))))
     writer.expect(
-        ir.Binary("and", ir.Compare("ge", count, index(0)), ir.Compare("le", count, ir.Capacity(scratch))), "length", fields.where, DAMAGED
+        nodes.Binary("and", nodes.Compare("ge", count, index(0)), nodes.Compare("le", count, nodes.Capacity(scratch))),
+        "length",
+        fields.where,
+        DAMAGED,
     )
-    lengths = Lengths(scratch, writer.var("lengths", ir.Get("i64", ir.Place(scratch, index(1)))), write_child)
+    lengths = Lengths(scratch, writer.var("lengths", nodes.Get("i64", nodes.Place(scratch, index(1)))), write_child)
     _expect_lengths(writer, lengths)
     write_message(writer, fields, tagged, lengths)
     end, at = writer.position, writer.var("at_row", index(0))
     with writer.nested() as body:
         _each_lane(encoding, fields, writer, scratch, at, lengths)
         writer.assign(at, add(at, 1))
-    writer.emit(ir.While(ir.Compare("lt", at, count), block(body), (ir.Compare("ge", at, index(0)), *_lengths_invariant(lengths)), at))
+    writer.emit(
+        nodes.While(nodes.Compare("lt", at, count), block(body), (nodes.Compare("ge", at, index(0)), *_lengths_invariant(lengths)), at)
+    )
     writer.position = end
 
 
-def _each_lane(encoding: Encoding, fields: HolderFields, writer: Writer, scratch: int, number: ir.Expr, lengths: Lengths) -> None:
+def _each_lane(encoding: Encoding, fields: HolderFields, writer: Writer, scratch: int, number: nodes.Expr, lengths: Lengths) -> None:
     """Measure or write the row at a place of the list, whichever lane it is in."""
     at = writer.let("number", number)
     cases = [(lane, _one_row(writer, fields, encoding.recursive[struct], lane, at, lengths)) for lane, struct in fields.layout.recursive]
-    writer.emit(ir.Switch(_listed(writer, scratch, at, 0), tuple(cases), _damaged(writer)))
+    writer.emit(nodes.Switch(_listed(writer, scratch, at, 0), tuple(cases), _damaged(writer)))
     _expect_lengths(writer, lengths)
 
 
-def _one_row(writer: Writer, fields: HolderFields, tagged: Tagged, lane: int, at: ir.Expr, lengths: Lengths) -> ir.Block:
+def _one_row(writer: Writer, fields: HolderFields, tagged: Tagged, lane: int, at: nodes.Expr, lengths: Lengths) -> nodes.Block:
     layout = fields.layout
     with writer.nested() as body:
         row = _row_of(writer, lengths.lane, at, lane)
         inner = HolderFields(writer, layout, Cell(lane, row, layout.lanes[lane].element), Where(f".{layout.lanes[lane].name}"))
         more, size = link(layout, lane, row, MORE_WORD), link(layout, lane, row, SIZE_WORD)
         if writer.direction == "size":
-            writer.emit(ir.SetField(more, lengths.next))
+            writer.emit(nodes.SetField(more, lengths.next))
             writer.position = index(0)
             write_message(writer, inner, tagged, lengths)
-            writer.emit(ir.SetField(size, writer.position))
+            writer.emit(nodes.SetField(size, writer.position))
         else:
-            writer.assign(lengths.next, ir.Get("i64", more))
+            writer.assign(lengths.next, nodes.Get("i64", more))
             _expect_lengths(writer, lengths)
-            begin = writer.let("begin_of_message", ir.Get("i64", link(layout, lane, row, BEGIN_WORD)))
-            writer.expect(ir.Binary("and", ir.Compare("ge", begin, BEGIN), ir.Compare("le", begin, END)), "length", inner.where, DAMAGED)
+            begin = writer.let("begin_of_message", nodes.Get("i64", link(layout, lane, row, BEGIN_WORD)))
+            writer.expect(
+                nodes.Binary("and", nodes.Compare("ge", begin, BEGIN), nodes.Compare("le", begin, END)), "length", inner.where, DAMAGED
+            )
             writer.position = begin
             write_message(writer, inner, tagged, lengths)
-            written = ir.Binary("sub", writer.position, begin)
-            writer.expect(ir.Compare("eq", written, ir.Get("i64", size)), "length", inner.where, DAMAGED)
+            written = nodes.Binary("sub", writer.position, begin)
+            writer.expect(nodes.Compare("eq", written, nodes.Get("i64", size)), "length", inner.where, DAMAGED)
     return block(body)
 
 
 # --- the list --------------------------------------------------------------------------------------------------------------------
 
 
-def _listed(writer: Writer, scratch: int, at: ir.Expr, word: int) -> ir.Expr:
+def _listed(writer: Writer, scratch: int, at: nodes.Expr, word: int) -> nodes.Expr:
     """The lane (0) or the row (1) at a place of the list, which is checked to be in the scratch lane."""
-    inside = ir.Binary("and", ir.Compare("ge", at, index(0)), ir.Compare("lt", at, index(MAX_SIZE)))
+    inside = nodes.Binary("and", nodes.Compare("ge", at, index(0)), nodes.Compare("lt", at, index(MAX_SIZE)))
     writer.expect(inside, "length", Where(), DAMAGED)
     place = writer.let("place", add(mul(at, 2), HEADER + word))
-    writer.expect(ir.Compare("lt", place, ir.Capacity(scratch)), "length", Where(), DAMAGED)
-    return writer.let("listed", ir.Get("i64", ir.Place(scratch, place)))
+    writer.expect(nodes.Compare("lt", place, nodes.Capacity(scratch)), "length", Where(), DAMAGED)
+    return writer.let("listed", nodes.Get("i64", nodes.Place(scratch, place)))
 
 
-def _row_of(writer: Writer, scratch: int, at: ir.Expr, lane: int) -> ir.Expr:
+def _row_of(writer: Writer, scratch: int, at: nodes.Expr, lane: int) -> nodes.Expr:
     row = _listed(writer, scratch, at, 1)
-    writer.expect(ir.Binary("and", ir.Compare("ge", row, index(0)), ir.Compare("lt", row, ir.Used(lane))), "length", Where(), DAMAGED)
+    writer.expect(
+        nodes.Binary("and", nodes.Compare("ge", row, index(0)), nodes.Compare("lt", row, nodes.Used(lane))), "length", Where(), DAMAGED
+    )
     return row
 
 
-def _damaged(writer: Writer) -> ir.Block:
-    return (ir.Expect(ir.Const("bool", value=False), writer.failure("length", Where(), DAMAGED)),)
+def _damaged(writer: Writer) -> nodes.Block:
+    return (nodes.Expect(nodes.Const("bool", value=False), writer.failure("length", Where(), DAMAGED)),)
 
 
-def _rows_invariant(rows: Rows) -> tuple[ir.Expr, ...]:
-    return ir.Compare("ge", rows.number, index(0)), ir.Compare("le", rows.number, rows.most)
+def _rows_invariant(rows: Rows) -> tuple[nodes.Expr, ...]:
+    return nodes.Compare("ge", rows.number, index(0)), nodes.Compare("le", rows.number, rows.most)
 
 
 def _say_again(writer: Writer, rows: Rows) -> None:
     """True anyway; said for the proof, which does not follow the number through branches."""
     low, high = _rows_invariant(rows)
-    writer.expect(ir.Binary("and", low, high), "length", Where(), DAMAGED)
+    writer.expect(nodes.Binary("and", low, high), "length", Where(), DAMAGED)
 
 
-def _lengths_invariant(lengths: Lengths) -> tuple[ir.Expr, ...]:
-    return ir.Compare("ge", lengths.next, index(0)), ir.Compare("le", lengths.next, ir.Capacity(lengths.lane))
+def _lengths_invariant(lengths: Lengths) -> tuple[nodes.Expr, ...]:
+    return nodes.Compare("ge", lengths.next, index(0)), nodes.Compare("le", lengths.next, nodes.Capacity(lengths.lane))
 
 
 def _expect_lengths(writer: Writer, lengths: Lengths) -> None:
     low, high = _lengths_invariant(lengths)
-    writer.expect(ir.Binary("and", low, high), "length", Where(), DAMAGED)
+    writer.expect(nodes.Binary("and", low, high), "length", Where(), DAMAGED)

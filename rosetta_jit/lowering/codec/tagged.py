@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import BEGIN, add, index
 from rosetta_jit.lowering.codec.field_order import NONE, Case, read_cases
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
@@ -43,11 +43,11 @@ def read_message(
     writer: Writer,
     fields: HolderFields,
     tagged: Tagged,
-    stop: ir.Expr,
+    stop: nodes.Expr,
     *,
     fresh: bool,
-    depth: ir.Expr,
-    strange: ir.Local | None = None,
+    depth: nodes.Expr,
+    strange: nodes.Local | None = None,
 ) -> None:
     """Read fields up to ``stop`` (or the end of the group) into a row; a ``fresh`` row holds nothing yet, another is merged into.
 
@@ -56,19 +56,19 @@ def read_message(
     presence = presence_words(writer, fields, fresh=fresh)
     message = Message(writer, fields, tagged, stop, presence, array_starts(writer, fields, tagged, fresh=fresh), depth, strange)
     at = writer.var("at", writer.position)
-    ended = writer.var("ended", ir.Const("bool", value=False)) if tagged.group is not None else None
+    ended = writer.var("ended", nodes.Const("bool", value=False)) if tagged.group is not None else None
     with writer.nested() as body:
         writer.position = at
         _read_field(message, ended)
-        writer.expect(ir.Compare("le", writer.position, stop), "truncated", fields.where, "a field goes beyond its message")
+        writer.expect(nodes.Compare("le", writer.position, stop), "truncated", fields.where, "a field goes beyond its message")
         writer.assign(at, writer.position)
-    goes_on: ir.Expr = ir.Compare("lt", at, stop)
+    goes_on: nodes.Expr = nodes.Compare("lt", at, stop)
     if ended is not None:
-        goes_on = ir.Binary("and", goes_on, ir.Compare("eq", ended, ir.Const("bool", value=False)))
-    invariant = [ir.Compare("ge", at, BEGIN), ir.Compare("le", at, stop)]
+        goes_on = nodes.Binary("and", goes_on, nodes.Compare("eq", ended, nodes.Const("bool", value=False)))
+    invariant = [nodes.Compare("ge", at, BEGIN), nodes.Compare("le", at, stop)]
     for path, start in message.starts.items():
-        invariant += [ir.Compare("ge", start, index(0)), ir.Compare("le", start, ir.Used(lane_of(fields, path)))]
-    writer.emit(ir.While(goes_on, block(body), tuple(invariant), at))
+        invariant += [nodes.Compare("ge", start, index(0)), nodes.Compare("le", start, nodes.Used(lane_of(fields, path)))]
+    writer.emit(nodes.While(goes_on, block(body), tuple(invariant), at))
     writer.position = at
     if ended is not None:
         writer.expect(ended, "truncated", fields.where, "the group has no end")
@@ -80,24 +80,24 @@ def _finish(message: Message) -> None:
     writer, fields, row = message.writer, message.fields, row_of(message.fields)
     for path, start in message.starts.items():
         cell = fields.find(path)
-        fields.set_span(cell, start, ir.Binary("sub", ir.Used(span_of(cell).lane), start))
+        fields.set_span(cell, start, nodes.Binary("sub", nodes.Used(span_of(cell).lane), start))
     for number, word in enumerate(message.presence):
-        writer.emit(ir.SetField(fields.cell.place(row.offset + 8 * number), word))
+        writer.emit(nodes.SetField(fields.cell.place(row.offset + 8 * number), word))
     for name in message.tagged.required:
         bit = row.member(name).presence
         assert bit is not None
-        mask = ir.Const("u64", 1 << bit % 64)
-        present = ir.Compare("ne", ir.Binary("and", message.presence[bit // 64], mask), ir.Const("u64", 0))
+        mask = nodes.Const("u64", 1 << bit % 64)
+        present = nodes.Compare("ne", nodes.Binary("and", message.presence[bit // 64], mask), nodes.Const("u64", 0))
         writer.expect(present, "missing", fields.where.member(name), "a required field did not come")
 
 
-def _read_field(message: Message, ended: ir.Local | None) -> None:
+def _read_field(message: Message, ended: nodes.Local | None) -> None:
     writer, group = message.writer, message.tagged.group
     begin = writer.position
-    tag = writer.let("tag", ir.Convert("i64", read_tag(writer, message.fields.where)))
+    tag = writer.let("tag", nodes.Convert("i64", read_tag(writer, message.fields.where)))
     cases = list(_known_fields(message))
     if ended is not None and group is not None:
-        cases.append(Case(group << 3 | END_GROUP, partial(writer.assign, ended, ir.Const("bool", value=True))))
+        cases.append(Case(group << 3 | END_GROUP, partial(writer.assign, ended, nodes.Const("bool", value=True))))
 
     def unknown() -> None:
         skip_unknown(writer, message.fields, tag, message.stop)
@@ -140,18 +140,20 @@ def _read_entry(message: Message, entry: Entry, *, packed: bool) -> None:
         _read_element(message, entry)
 
 
-def _keep(message: Message, begin: ir.Expr, tag: bytes = b"") -> None:
+def _keep(message: Message, begin: nodes.Expr, tag: bytes = b"") -> None:
     """Append what was read since then to the unknown fields of the message, behind a tag if it had none of its own."""
     unknown = row_of(message.fields).unknown
     if unknown is None:
         return
     writer = message.writer
-    size = writer.let("size_of_field", ir.Binary("sub", writer.position, begin))
-    writer.expect(ir.Compare("ge", size, index(0)), "length", message.fields.where, "a field goes beyond its message")  # said for the proof
+    size = writer.let("size_of_field", nodes.Binary("sub", writer.position, begin))
+    writer.expect(
+        nodes.Compare("ge", size, index(0)), "length", message.fields.where, "a field goes beyond its message"
+    )  # said for the proof
     start = message.fields.reserve(unknown.lane, add(size, len(tag)))
     for number, byte in enumerate(tag):
-        writer.emit(ir.SetField(ir.Place(unknown.lane, add(start, number)), ir.Const("u8", byte)))
-    writer.emit(ir.Copy(ir.Place(unknown.lane, add(start, len(tag))), ir.Wire(begin), size))
+        writer.emit(nodes.SetField(nodes.Place(unknown.lane, add(start, number)), nodes.Const("u8", byte)))
+    writer.emit(nodes.Copy(nodes.Place(unknown.lane, add(start, len(tag))), nodes.Wire(begin), size))
 
 
 # --- one value ---------------------------------------------------------------------------------------------------------------
@@ -192,60 +194,60 @@ def _read_single(message: Message, entry: Entry) -> None:
 
 
 def _varint_value(
-    message: Message, varint: Varint, slot: Slot, where: Where, read: Callable[[Writer, Where], ir.Local] = read_varint
-) -> ir.Local:
+    message: Message, varint: Varint, slot: Slot, where: Where, read: Callable[[Writer, Where], nodes.Local] = read_varint
+) -> nodes.Local:
     scalar = slot.scalar if isinstance(slot, NumberSlot) else "u64"
     value = from_varint(varint, read(message.writer, where), scalar)
     return message.writer.let("value", value if scalar == "bool" else converted(value, scalar))
 
 
-def _if_allowed(message: Message, entry: Entry, value: ir.Local, known: list[ir.Stmt], begin: ir.Expr) -> None:
+def _if_allowed(message: Message, entry: Entry, value: nodes.Local, known: list[nodes.Stmt], begin: nodes.Expr) -> None:
     """A number that a closed enum does not name counts as an unknown field. It begins behind its tag."""
     writer = message.writer
     if not entry.allowed:
         writer.emit(*known)
         return
-    number = value if value.type == "i64" else ir.Convert("i64", value)
+    number = value if value.type == "i64" else nodes.Convert("i64", value)
     low, high = entry.allowed[0], entry.allowed[-1]
     if high - low + 1 == len(entry.allowed):
-        allowed: ir.Expr = ir.Binary("and", ir.Compare("ge", number, index(low)), ir.Compare("le", number, index(high)))
+        allowed: nodes.Expr = nodes.Binary("and", nodes.Compare("ge", number, index(low)), nodes.Compare("le", number, index(high)))
     else:
-        allowed = ir.Compare("eq", number, index(low))
+        allowed = nodes.Compare("eq", number, index(low))
         for each in entry.allowed[1:]:
-            allowed = ir.Binary("or", allowed, ir.Compare("eq", number, index(each)))
+            allowed = nodes.Binary("or", allowed, nodes.Compare("eq", number, index(each)))
     with writer.nested() as unknown:
         if message.strange is None:
             _keep(message, begin, varint_bytes(entry.number << 3))
         else:
-            writer.assign(message.strange, ir.Const("bool", value=True))
-    writer.emit(ir.If(allowed, block(known), block(unknown)))
+            writer.assign(message.strange, nodes.Const("bool", value=True))
+    writer.emit(nodes.If(allowed, block(known), block(unknown)))
 
 
-def _read_bytes(message: Message, fields: HolderFields, span: Span, where: Where, *, text: bool) -> tuple[ir.Expr, ir.Expr]:
+def _read_bytes(message: Message, fields: HolderFields, span: Span, where: Where, *, text: bool) -> tuple[nodes.Expr, nodes.Expr]:
     """Bytes of a string or bytes field, taken into their lane or left where they are; start and count as a span has them."""
     writer = message.writer
     size = read_length(writer, where, message.stop)
     at = writer.position
     if text:
-        writer.expect(ir.IsText(ir.Wire(at), size), "text", where, "not valid UTF-8")
+        writer.expect(nodes.IsText(nodes.Wire(at), size), "text", where, "not valid UTF-8")
     writer.advance(size)
     left = writer.left_in_message(span.lane, size) if fields.borrow and not text else None
     if left is not None:
         return at, left
     start = fields.reserve(span.lane, size)
-    writer.emit(ir.Copy(ir.Place(span.lane, start), ir.Wire(at), size))
+    writer.emit(nodes.Copy(nodes.Place(span.lane, start), nodes.Wire(at), size))
     return start, size
 
 
-def _stop(message: Message, tagged: Tagged, where: Where) -> ir.Expr:
+def _stop(message: Message, tagged: Tagged, where: Where) -> nodes.Expr:
     """Where an inner message stops: behind its length, or with what is around it if it is a group."""
     if tagged.group is not None:
         message.writer.expect(
-            ir.Compare("le", message.writer.position, message.stop), "truncated", where, "the group goes beyond its message"
+            nodes.Compare("le", message.writer.position, message.stop), "truncated", where, "the group goes beyond its message"
         )
         return message.stop
     size = read_length(message.writer, where, message.stop)
-    return message.writer.let("stop", ir.Binary("add", message.writer.position, size))
+    return message.writer.let("stop", nodes.Binary("add", message.writer.position, size))
 
 
 # --- arrays ------------------------------------------------------------------------------------------------------------------
@@ -255,7 +257,7 @@ def _read_element(message: Message, entry: Entry) -> None:
     """One more element at the end of its lane."""
     writer, fields, begin = message.writer, message.fields, message.writer.position
     lane = lane_of(fields, entry.path)
-    where = fields.shown(entry.path).element(ir.Binary("sub", ir.Used(lane), message.starts[entry.path]))
+    where = fields.shown(entry.path).element(nodes.Binary("sub", nodes.Used(lane), message.starts[entry.path]))
     match entry.value:
         case Number(_, scalar, order):
             value = writer.let("value", writer.load(scalar_name(scalar), where, order))
@@ -276,9 +278,9 @@ def _read_element(message: Message, entry: Entry) -> None:
         case Tagged() as tagged:
             stop = _stop(message, tagged, where)
             row = fields.reserve(lane, index(1))
-            writer.emit(ir.Fill(ir.Place(lane, row), index(fields.layout.lanes[lane].stride)))
+            writer.emit(nodes.Fill(nodes.Place(lane, row), index(fields.layout.lanes[lane].stride)))
             # Its number is that of the last row now. Of the locals that say it, all are in use anyway: one more would cost calls 7 %.
-            inside = fields.shown(entry.path).element(ir.Binary("sub", ir.Used(lane), add(message.starts[entry.path], 1)))
+            inside = fields.shown(entry.path).element(nodes.Binary("sub", nodes.Used(lane), add(message.starts[entry.path], 1)))
             inner = HolderFields(writer, fields.layout, Cell(lane, row, fields.layout.lanes[lane].element), inside, fields.borrow)
             read_message(writer, inner, tagged, stop, fresh=True, depth=message.depth)
         case Recursion() as recursion:
@@ -295,22 +297,24 @@ def _read_whole(message: Message, entry: Entry, tagged: Tagged, where: Where) ->
     lane = lane_of(fields, entry.path)
     element = fields.layout.lanes[lane]
     stop = _stop(message, tagged, where)
-    writer.emit(ir.Reserve(lane, index(1)))
-    row = writer.let("row", ir.Used(lane))
-    writer.emit(ir.Fill(ir.Place(lane, row), index(element.stride)))
-    strange = writer.var("strange", ir.Const("bool", value=False))
+    writer.emit(nodes.Reserve(lane, index(1)))
+    row = writer.let("row", nodes.Used(lane))
+    writer.emit(nodes.Fill(nodes.Place(lane, row), index(element.stride)))
+    strange = writer.var("strange", nodes.Const("bool", value=False))
     inner = HolderFields(writer, fields.layout, Cell(lane, row, element.element), where, fields.borrow)
     read_message(writer, inner, tagged, stop, fresh=True, depth=message.depth, strange=strange)
     with writer.nested() as unknown:
         _keep(message, begin, varint_bytes(entry.number << 3 | BYTES))
-    writer.emit(ir.If(strange, block(unknown), (ir.Advance(lane, index(1)),)))
+    writer.emit(nodes.If(strange, block(unknown), (nodes.Advance(lane, index(1)),)))
 
 
-def _append(message: Message, lane: int, value: ir.Local) -> None:
+def _append(message: Message, lane: int, value: nodes.Local) -> None:
     element = message.fields.layout.lanes[lane].element
     assert isinstance(element, NumberSlot)
     message.writer.emit(
-        ir.Reserve(lane, index(1)), ir.SetField(ir.Place(lane, ir.Used(lane)), converted(value, element.scalar)), ir.Advance(lane, index(1))
+        nodes.Reserve(lane, index(1)),
+        nodes.SetField(nodes.Place(lane, nodes.Used(lane)), converted(value, element.scalar)),
+        nodes.Advance(lane, index(1)),
     )
 
 
@@ -328,10 +332,10 @@ def _read_packed(message: Message, entry: Entry) -> None:
             raise AssertionError(entry)
 
 
-def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: int, size: ir.Local) -> None:
+def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: int, size: nodes.Local) -> None:
     writer, fields = message.writer, message.fields
     where = fields.shown(entry.path)
-    stop = writer.let("stop", ir.Binary("add", writer.position, size))
+    stop = writer.let("stop", nodes.Binary("add", writer.position, size))
     at = writer.var("at", writer.position)
 
     def read_one() -> None:
@@ -348,10 +352,10 @@ def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: i
         else:
             read_one()
         writer.position = at
-        writer.expect(ir.Compare("le", at, stop), "truncated", where, "the last number goes beyond the array")
+        writer.expect(nodes.Compare("le", at, stop), "truncated", where, "the last number goes beyond the array")
     start = message.starts[entry.path]
-    invariant = (ir.Compare("ge", at, BEGIN), ir.Compare("le", at, stop), ir.Compare("le", start, ir.Used(lane)))
-    writer.emit(ir.While(ir.Compare("lt", at, stop), block(body), invariant, at))
+    invariant = (nodes.Compare("ge", at, BEGIN), nodes.Compare("le", at, stop), nodes.Compare("le", start, nodes.Used(lane)))
+    writer.emit(nodes.While(nodes.Compare("lt", at, stop), block(body), invariant, at))
     writer.position = at
 
 

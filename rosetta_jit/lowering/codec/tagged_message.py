@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import WIDTH, Binary, Compare, Const, Expr, Fill, Get, If, Local, Select, SetField, Used
+from rosetta_jit.kernel.nodes import WIDTH, Binary, Compare, Const, Expr, Fill, Get, If, Local, Select, SetField, Used
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.lowering.codec.fields import converted
 from rosetta_jit.lowering.codec.holder_fields import HolderFields, span_of

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields, span_of
@@ -27,7 +27,7 @@ class Lengths:
     """The scratch lane of lengths, the number of the next one, and how messages of recursive structs are written."""
 
     lane: int
-    next: ir.Local
+    next: nodes.Local
     write_child: Callable[[Writer, HolderFields, Cell, Recursion, Where], None]
 
 
@@ -47,7 +47,7 @@ def write_message(writer: Writer, fields: HolderFields, tagged: Tagged, lengths:
         with writer.nested() as body:
             _write_entry(writer, fields, entry, lengths)
             writer.assign(after, writer.position)
-        writer.emit(ir.If(there, block(body)))
+        writer.emit(nodes.If(there, block(body)))
         writer.position = after
         _settle(writer, fields, lengths)
     _write_unknown(writer, fields)
@@ -62,8 +62,8 @@ def _write_unknown(writer: Writer, fields: HolderFields) -> None:
     start, size = fields.read_span(fields.find((UNKNOWN,)), where)
     writer.require(size, where, "no room for the message")
     if writer.direction == "encode":
-        copied = ir.Copy(ir.Wire(writer.position), ir.Place(row.unknown.lane, start), size)
-        writer.emit(ir.If(ir.Compare("gt", size, index(0)), (copied,)))
+        copied = nodes.Copy(nodes.Wire(writer.position), nodes.Place(row.unknown.lane, start), size)
+        writer.emit(nodes.If(nodes.Compare("gt", size, index(0)), (copied,)))
     writer.advance(size)
 
 
@@ -71,39 +71,41 @@ def _settle(writer: Writer, fields: HolderFields, lengths: Lengths) -> None:
     """Behind an optional field: say again what holds whether it was there or not, for the proof."""
     writer.settle()
     if writer.direction == "encode":
-        inside = ir.Binary("and", ir.Compare("ge", writer.position, BEGIN), ir.Compare("le", writer.position, END))
+        inside = nodes.Binary("and", nodes.Compare("ge", writer.position, BEGIN), nodes.Compare("le", writer.position, END))
         writer.expect(inside, "length", fields.where, "the holder changed while it was written")
-    known = ir.Binary("and", ir.Compare("ge", lengths.next, index(0)), ir.Compare("le", lengths.next, ir.Capacity(lengths.lane)))
+    known = nodes.Binary(
+        "and", nodes.Compare("ge", lengths.next, index(0)), nodes.Compare("le", lengths.next, nodes.Capacity(lengths.lane))
+    )
     writer.expect(known, "length", fields.where, "the holder changed while it was written")
 
 
-def present(fields: HolderFields, entry: Entry) -> ir.Expr | None:
+def present(fields: HolderFields, entry: Entry) -> nodes.Expr | None:
     """Whether a field is written; None where it always is, or its count tells."""
     row = fields.cell.slot
     assert isinstance(row, Row)
     member = row.member(entry.path[0])
     if member.presence is not None:
-        word = ir.Get("u64", fields.cell.place(row.offset + 8 * (member.presence // 64)))
-        return ir.Compare("ne", ir.Binary("and", word, ir.Const("u64", 1 << member.presence % 64)), ir.Const("u64", 0))
+        word = nodes.Get("u64", fields.cell.place(row.offset + 8 * (member.presence // 64)))
+        return nodes.Compare("ne", nodes.Binary("and", word, nodes.Const("u64", 1 << member.presence % 64)), nodes.Const("u64", 0))
     if isinstance(member.slot, Variant) and len(entry.path) > 1:
         number = next(n for n, case in enumerate(member.slot.members, 1) if case.name == entry.path[1])
-        return ir.Compare("eq", ir.Get("i64", fields.cell.place(member.slot.offset)), index(number))
+        return nodes.Compare("eq", nodes.Get("i64", fields.cell.place(member.slot.offset)), index(number))
     if not entry.implicit:
         return None
     match fields.find(entry.path).slot:
         case NumberSlot(offset, scalar):
             return _not_zero(fields, offset, scalar)
         case Span(offset, _):
-            return ir.Compare("ne", ir.Get("i64", fields.cell.place(offset + 8)), index(0))
+            return nodes.Compare("ne", nodes.Get("i64", fields.cell.place(offset + 8)), index(0))
         case _:
             return None
 
 
-def _not_zero(fields: HolderFields, offset: int, scalar: str) -> ir.Expr:
+def _not_zero(fields: HolderFields, offset: int, scalar: str) -> nodes.Expr:
     """Numbers are compared by their bits: -0.0 is written."""
     bits = {"f32": "u32", "f64": "u64"}.get(scalar, scalar)
     type_ = scalar_name(bits)
-    return ir.Compare("ne", ir.Get(type_, fields.cell.place(offset)), ir.Const(type_, value=False if type_ == "bool" else 0))
+    return nodes.Compare("ne", nodes.Get(type_, fields.cell.place(offset)), nodes.Const(type_, value=False if type_ == "bool" else 0))
 
 
 def _write_entry(writer: Writer, fields: HolderFields, entry: Entry, lengths: Lengths) -> None:
@@ -121,7 +123,7 @@ def _write_entry(writer: Writer, fields: HolderFields, entry: Entry, lengths: Le
 def write_tag(writer: Writer, number: int, wire: int, where: Where) -> None:
     """The number of a field and its wire type."""
     for byte in varint_bytes(number << 3 | wire):
-        writer.store(ir.Const("u8", byte), where)
+        writer.store(nodes.Const("u8", byte), where)
 
 
 def _write_value(writer: Writer, fields: HolderFields, entry: Entry, cell: Cell, where: Where, lengths: Lengths) -> None:
@@ -133,10 +135,10 @@ def _write_value(writer: Writer, fields: HolderFields, entry: Entry, cell: Cell,
             write_varint(writer, to_varint(varint, _number(cell)), where)
         case Blob():
             start, size = fields.read_span(cell, where)
-            write_varint(writer, ir.Convert("u64", size), where)
+            write_varint(writer, nodes.Convert("u64", size), where)
             writer.require(size, where, "no room for the message")
             if writer.direction == "encode":
-                writer.emit(ir.Copy(ir.Wire(writer.position), ir.Place(span_of(cell).lane, start), size))
+                writer.emit(nodes.Copy(nodes.Wire(writer.position), nodes.Place(span_of(cell).lane, start), size))
             writer.advance(size)
         case Tagged(group=int(number)) as tagged:
             write_message(writer, HolderFields(writer, fields.layout, cell, where), tagged, lengths)
@@ -157,16 +159,16 @@ def _write_perhaps(writer: Writer, fields: HolderFields, cell: Cell, recursion: 
     start, count = fields.read_span(cell, where)
     lane, after = span_of(cell).lane, writer.var("next", writer.position)
     with writer.nested() as there:
-        writer.expect(ir.Compare("eq", count, index(1)), "length", where, "the holder is damaged")
+        writer.expect(nodes.Compare("eq", count, index(1)), "length", where, "the holder is damaged")
         lengths.write_child(writer, fields, Cell(lane, start, fields.layout.lanes[lane].element), recursion, where)
         writer.assign(after, writer.position)
     with writer.nested() as empty:
         if recursion.group is None:
-            write_varint(writer, ir.Const("u64", 0), where)
+            write_varint(writer, nodes.Const("u64", 0), where)
         else:
             write_tag(writer, recursion.group, 4, where)
         writer.assign(after, writer.position)
-    writer.emit(ir.If(ir.Compare("gt", count, index(0)), block(there), block(empty)))
+    writer.emit(nodes.If(nodes.Compare("gt", count, index(0)), block(there), block(empty)))
     writer.position = after
     _settle(writer, fields, lengths)
 
@@ -176,13 +178,13 @@ def _child(fields: HolderFields, cell: Cell, where: Where) -> Cell:
     if not isinstance(cell.slot, Span):
         return cell
     start, count = fields.read_span(cell, where)
-    fields.writer.expect(ir.Compare("eq", count, index(1)), "length", where, "the holder is damaged")
+    fields.writer.expect(nodes.Compare("eq", count, index(1)), "length", where, "the holder is damaged")
     return Cell(cell.slot.lane, start, fields.layout.lanes[cell.slot.lane].element)
 
 
-def _number(cell: Cell) -> ir.Expr:
+def _number(cell: Cell) -> nodes.Expr:
     assert isinstance(cell.slot, NumberSlot)
-    return ir.Get(scalar_name(cell.slot.scalar), cell.place(cell.slot.offset))
+    return nodes.Get(scalar_name(cell.slot.scalar), cell.place(cell.slot.offset))
 
 
 def _delimited(writer: Writer, where: Where, lengths: Lengths, write: object) -> None:
@@ -190,23 +192,23 @@ def _delimited(writer: Writer, where: Where, lengths: Lengths, write: object) ->
     assert callable(write)
     number = writer.let("length", lengths.next)
     if writer.direction == "size":
-        writer.emit(ir.Reserve(lengths.lane, add(number, 1)))
+        writer.emit(nodes.Reserve(lengths.lane, add(number, 1)))
         writer.assign(lengths.next, add(number, 1))
         before = writer.position = writer.let("before", writer.position)
         write()
-        size = writer.let("size", ir.Binary("sub", writer.position, before))
-        writer.emit(ir.SetField(ir.Place(lengths.lane, number), size))
-        write_varint(writer, ir.Convert("u64", size), where)
+        size = writer.let("size", nodes.Binary("sub", writer.position, before))
+        writer.emit(nodes.SetField(nodes.Place(lengths.lane, number), size))
+        write_varint(writer, nodes.Convert("u64", size), where)
         return
-    known = ir.Compare("lt", number, ir.Capacity(lengths.lane))
+    known = nodes.Compare("lt", number, nodes.Capacity(lengths.lane))
     writer.expect(known, "length", where, "the holder changed while it was written")
     writer.assign(lengths.next, add(number, 1))
-    size = writer.let("size", ir.Get("i64", ir.Place(lengths.lane, number)))
-    write_varint(writer, ir.Convert("u64", size), where)
+    size = writer.let("size", nodes.Get("i64", nodes.Place(lengths.lane, number)))
+    write_varint(writer, nodes.Convert("u64", size), where)
     begin = writer.let("begin_of_message", writer.position)
     writer.position = begin
     write()
-    right = ir.Compare("eq", ir.Binary("sub", writer.position, begin), size)
+    right = nodes.Compare("eq", nodes.Binary("sub", writer.position, begin), size)
     writer.expect(right, "length", where, "the holder changed while it was written")
 
 
@@ -218,19 +220,19 @@ def _write_elements(writer: Writer, fields: HolderFields, entry: Entry, where: W
     number, at = writer.var("i", index(0)), writer.cursor()
     with writer.nested() as body:
         writer.position = at
-        element = Cell(lane, ir.Binary("add", start, number), fields.layout.lanes[lane].element)
+        element = Cell(lane, nodes.Binary("add", start, number), fields.layout.lanes[lane].element)
         place = where.element(number)
         write_tag(writer, entry.number, entry.wire, place)
         _write_value(writer, fields, entry, element, place, lengths)
         writer.settle()
-        writer.emit(ir.Assign(at.name, writer.position), ir.Assign(number.name, add(number, 1)))
+        writer.emit(nodes.Assign(at.name, writer.position), nodes.Assign(number.name, add(number, 1)))
     invariant = (
-        ir.Compare("ge", number, index(0)),
+        nodes.Compare("ge", number, index(0)),
         *writer.position_invariant(at),
-        ir.Compare("ge", lengths.next, index(0)),
-        ir.Compare("le", lengths.next, ir.Capacity(lengths.lane)),
+        nodes.Compare("ge", lengths.next, index(0)),
+        nodes.Compare("le", lengths.next, nodes.Capacity(lengths.lane)),
     )
-    writer.emit(ir.While(ir.Compare("lt", number, count), block(body), invariant, number))
+    writer.emit(nodes.While(nodes.Compare("lt", number, count), block(body), invariant, number))
     writer.position = at
 
 
@@ -246,33 +248,35 @@ def _write_packed(writer: Writer, fields: HolderFields, entry: Entry, where: Whe
         else:
             _delimited(writer, where, lengths, lambda: _packed_varints(writer, fields, cell, start, count, entry, where, lengths))
         writer.assign(after, writer.position)
-    writer.emit(ir.If(ir.Compare("gt", count, index(0)), block(body)))
+    writer.emit(nodes.If(nodes.Compare("gt", count, index(0)), block(body)))
     writer.position = after
     _settle(writer, fields, lengths)
 
 
-def _packed_fixed(writer: Writer, fields: HolderFields, cell: Cell, start: ir.Expr, count: ir.Expr, number: Number, where: Where) -> None:
-    width, scalar = ir.WIDTH[number.scalar], scalar_name(number.scalar)
-    writer.expect(ir.Compare("le", count, index(MAX_SIZE // width)), "length", where, "too many numbers")
+def _packed_fixed(
+    writer: Writer, fields: HolderFields, cell: Cell, start: nodes.Expr, count: nodes.Expr, number: Number, where: Where
+) -> None:
+    width, scalar = nodes.WIDTH[number.scalar], scalar_name(number.scalar)
+    writer.expect(nodes.Compare("le", count, index(MAX_SIZE // width)), "length", where, "too many numbers")
     size = writer.let("size", mul(count, width))
-    write_varint(writer, ir.Convert("u64", size), where)
+    write_varint(writer, nodes.Convert("u64", size), where)
     writer.require(size, where, "no room for the message")
     if writer.direction == "encode":
         lane = span_of(cell).lane
         slot = fields.layout.lanes[lane].element
         assert isinstance(slot, NumberSlot)
-        first, item = writer.position, ir.Local("i64", writer.fresh("i"))
+        first, item = writer.position, nodes.Local("i64", writer.fresh("i"))
         with writer.nested() as body:
-            value = ir.Get(scalar_name(slot.scalar), ir.Place(lane, ir.Binary("add", start, item)))
-            writer.position = writer.let("item", ir.Binary("add", first, mul(item, width)))
+            value = nodes.Get(scalar_name(slot.scalar), nodes.Place(lane, nodes.Binary("add", start, item)))
+            writer.position = writer.let("item", nodes.Binary("add", first, mul(item, width)))
             writer.require(width, where)
-            writer.emit(ir.Store(writer.position, converted(value, scalar), ">" if number.order == ">" else "<"))
-        writer.emit(ir.For(item.name, count, block(body)))
+            writer.emit(nodes.Store(writer.position, converted(value, scalar), ">" if number.order == ">" else "<"))
+        writer.emit(nodes.For(item.name, count, block(body)))
     writer.advance(size)
 
 
 def _packed_varints(
-    writer: Writer, fields: HolderFields, cell: Cell, start: ir.Expr, count: ir.Expr, entry: Entry, where: Where, lengths: Lengths
+    writer: Writer, fields: HolderFields, cell: Cell, start: nodes.Expr, count: nodes.Expr, entry: Entry, where: Where, lengths: Lengths
 ) -> None:
     lane = span_of(cell).lane
     slot = fields.layout.lanes[lane].element
@@ -282,26 +286,28 @@ def _packed_varints(
     number, at = writer.var("i", index(0)), writer.cursor()
     with writer.nested() as body:
         writer.position = at
-        _write_value(writer, fields, entry, Cell(lane, ir.Binary("add", start, number), slot), where.element(number), lengths)
+        _write_value(writer, fields, entry, Cell(lane, nodes.Binary("add", start, number), slot), where.element(number), lengths)
         writer.settle()
-        writer.emit(ir.Assign(at.name, writer.position), ir.Assign(number.name, add(number, 1)))
-    invariant = (ir.Compare("ge", number, index(0)), *writer.position_invariant(at))
-    writer.emit(ir.While(ir.Compare("lt", number, count), block(body), invariant, number))
+        writer.emit(nodes.Assign(at.name, writer.position), nodes.Assign(number.name, add(number, 1)))
+    invariant = (nodes.Compare("ge", number, index(0)), *writer.position_invariant(at))
+    writer.emit(nodes.While(nodes.Compare("lt", number, count), block(body), invariant, number))
     writer.position = at
 
 
-def _measure_varints(writer: Writer, fields: HolderFields, lane: int, start: ir.Expr, count: ir.Expr, varint: Varint, where: Where) -> None:
+def _measure_varints(
+    writer: Writer, fields: HolderFields, lane: int, start: nodes.Expr, count: nodes.Expr, varint: Varint, where: Where
+) -> None:
     """The bytes of all elements. There are so few of them that no sum can be too large, so that nothing is checked in the loop."""
-    writer.expect(ir.Compare("le", count, index(MAX_SIZE // VARINT_BYTES)), "length", where, "too many numbers")
+    writer.expect(nodes.Compare("le", count, index(MAX_SIZE // VARINT_BYTES)), "length", where, "too many numbers")
     writer.settle()
     first = writer.let("first", writer.position)
     number, at = writer.var("i", index(0)), writer.var("next", first)
     with writer.nested() as body:
-        cell = Cell(lane, ir.Binary("add", start, number), fields.layout.lanes[lane].element)
+        cell = Cell(lane, nodes.Binary("add", start, number), fields.layout.lanes[lane].element)
         size = size_of_varint(writer, to_varint(varint, _number(cell)), where.element(number))
-        writer.emit(ir.Assign(at.name, ir.Binary("add", at, size)), ir.Assign(number.name, add(number, 1)))
-    most = ir.Compare("le", at, ir.Binary("add", first, mul(number, VARINT_BYTES)))
-    invariant = (ir.Compare("ge", number, index(0)), ir.Compare("le", number, count), ir.Compare("ge", at, first), most)
-    writer.emit(ir.While(ir.Compare("lt", number, count), block(body), invariant, number))
+        writer.emit(nodes.Assign(at.name, nodes.Binary("add", at, size)), nodes.Assign(number.name, add(number, 1)))
+    most = nodes.Compare("le", at, nodes.Binary("add", first, mul(number, VARINT_BYTES)))
+    invariant = (nodes.Compare("ge", number, index(0)), nodes.Compare("le", number, count), nodes.Compare("ge", at, first), most)
+    writer.emit(nodes.While(nodes.Compare("lt", number, count), block(body), invariant, number))
     writer.position = at
     writer.settle()

@@ -1,4 +1,4 @@
-"""From a `rosetta_jit.wire.tree.Tree` to kernels: messages that describe themselves, in another dialect.
+"""From a `rosetta_jit.wire.self_describing.Tree` to kernels: messages that describe themselves, in another dialect.
 
 Values are the same in both dialects, so the message is copied as a whole, and then the numbers that differ are written over it. Decoding
 is one walk through the message, which checks it and notes those numbers. The lists around the one that is read lie on a stack, the scratch
@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
 from rosetta_jit.lowering.codec.holder_fields import HolderFields, root_fields, span_of
 from rosetta_jit.lowering.limits import MAX_LIST_NESTING
@@ -19,7 +19,7 @@ from rosetta_jit.model.layout import Layout
 from rosetta_jit.model.types import Array, Bytes, Field, Int, Ref, Schema, Struct
 
 if TYPE_CHECKING:
-    from rosetta_jit.wire.tree import Header, Scalar, Tree
+    from rosetta_jit.wire.self_describing import Header, Scalar, Tree
 
 SCALAR_BYTES = 8
 """Bytes of the largest scalar."""
@@ -35,19 +35,19 @@ MESSAGES = Schema(
 """What lies between decoding and encoding: the message, and which i32 of it become others."""
 
 
-def transcoding_kernel(tree: Tree, layout: Layout, direction: ir.Direction, references: References) -> ir.Kernel:
+def transcoding_kernel(tree: Tree, layout: Layout, direction: nodes.Direction, references: References) -> ir.Kernel:
     """The kernel that reads messages, or that measures or writes what they become."""
     writer = Writer(direction, [*(lane.stride for lane in layout.lanes), SCRATCH_STRIDE], references=references)
     with writer.nested() as body:
         writer.position = BEGIN if direction != "size" else index(0)
         fields = root_fields(writer, layout, borrow=True)
-        writer.expect(ir.Compare("lt", ROW, ir.Capacity(0)), "index", MESSAGE, "the holder has no row for the message")
+        writer.expect(nodes.Compare("lt", ROW, nodes.Capacity(0)), "index", MESSAGE, "the holder has no row for the message")
         if direction == "decode":
-            writer.emit(ir.Fill(ir.Place(0, ROW), index(layout.lanes[0].stride)))
+            writer.emit(nodes.Fill(nodes.Place(0, ROW), index(layout.lanes[0].stride)))
             _Walk(writer, fields, tree).read()
         else:
             _write(writer, fields)
-        writer.emit(ir.Return(writer.position))
+        writer.emit(nodes.Return(writer.position))
     return ir.Kernel(f"message of {tree.there}", direction, tuple(writer.strides), (block(body),), tuple(writer.sites))
 
 
@@ -59,18 +59,20 @@ def _write(writer: Writer, fields: HolderFields) -> None:
         fields.copy_bytes(("data",), stored)
         changes = fields.stored(("changes",))
         elements = fields.elements(("changes",), changes)
-        number = ir.Local("i64", writer.fresh("i"))
+        number = nodes.Local("i64", writer.fresh("i"))
         with writer.nested() as each:
             change = elements.at(number)
             at = writer.let("change", _known(change.get(("at",))))
-            inside = ir.Binary("and", ir.Compare("ge", at, index(0)), ir.Compare("le", at, ir.Binary("sub", stored.size, index(4))))
+            inside = nodes.Binary(
+                "and", nodes.Compare("ge", at, index(0)), nodes.Compare("le", at, nodes.Binary("sub", stored.size, index(4)))
+            )
             writer.expect(inside, "length", MESSAGE, "the holder is damaged")
-            writer.emit(ir.Store(add(begin, at), ir.Convert("i32", _known(change.get(("number",))))))
-        writer.emit(ir.For(number.name, changes.size, block(each)))
+            writer.emit(nodes.Store(add(begin, at), nodes.Convert("i32", _known(change.get(("number",))))))
+        writer.emit(nodes.For(number.name, changes.size, block(each)))
     writer.advance(stored.size)
 
 
-def _known(value: ir.Expr | None) -> ir.Expr:
+def _known(value: nodes.Expr | None) -> nodes.Expr:
     assert value is not None
     return value
 
@@ -96,74 +98,74 @@ class _Walk:
     def read(self) -> None:
         """Go through the whole message."""
         writer = self.writer
-        size = writer.let("size", ir.Binary("sub", END, BEGIN))
+        size = writer.let("size", nodes.Binary("sub", END, BEGIN))
         self.fields.put_bytes(("data",), BEGIN, size)
-        writer.emit(ir.Reserve(self.stack, index(2 * MAX_LIST_NESTING)), ir.Advance(self.stack, index(2 * MAX_LIST_NESTING)))
+        writer.emit(nodes.Reserve(self.stack, index(2 * MAX_LIST_NESTING)), nodes.Advance(self.stack, index(2 * MAX_LIST_NESTING)))
         self.expect_list(BEGIN)
         limit = writer.let("limit", add(mul(size, 2), 2))
-        goes_on = ir.Binary("or", ir.Compare("gt", self.left, index(0)), ir.Compare("gt", self.depth, index(0)))
+        goes_on = nodes.Binary("or", nodes.Compare("gt", self.left, index(0)), nodes.Compare("gt", self.depth, index(0)))
         with writer.nested() as body:
-            writer.emit(ir.If(ir.Compare("eq", self.left, index(0)), self.close(), self.element()))
+            writer.emit(nodes.If(nodes.Compare("eq", self.left, index(0)), self.close(), self.element()))
             writer.assign(self.rounds, add(self.rounds, 1))
         invariant = (
             *writer.within(self.at),
             *self.between(self.depth, MAX_LIST_NESTING),
             *self.between(self.left, 1 << 31),
-            ir.Compare("ge", self.rounds, index(0)),
-            ir.Compare("le", self.rounds, limit),
+            nodes.Compare("ge", self.rounds, index(0)),
+            nodes.Compare("le", self.rounds, limit),
         )
-        writer.emit(ir.While(ir.Binary("and", goes_on, ir.Compare("lt", self.rounds, limit)), block(body), invariant, self.rounds))
+        writer.emit(nodes.While(nodes.Binary("and", goes_on, nodes.Compare("lt", self.rounds, limit)), block(body), invariant, self.rounds))
         writer.expect(
-            ir.Binary("and", ir.Compare("eq", self.left, index(0)), ir.Compare("eq", self.depth, index(0))),
+            nodes.Binary("and", nodes.Compare("eq", self.left, index(0)), nodes.Compare("eq", self.depth, index(0))),
             "truncated",
             MESSAGE,
             "the message ends here",
             at=self.at,
         )
-        writer.expect(ir.Compare("eq", self.at, END), "trailing", MESSAGE, "bytes are left over", at=self.at)
-        self.fields.set_span(self.fields.find(("changes",)), index(0), writer.let("changes", ir.Used(self.changes.lane)))
+        writer.expect(nodes.Compare("eq", self.at, END), "trailing", MESSAGE, "bytes are left over", at=self.at)
+        self.fields.set_span(self.fields.find(("changes",)), index(0), writer.let("changes", nodes.Used(self.changes.lane)))
         writer.position = self.at
 
     @staticmethod
-    def between(value: ir.Expr, most: int) -> tuple[ir.Expr, ir.Expr]:
-        return ir.Compare("ge", value, index(0)), ir.Compare("le", value, index(most))
+    def between(value: nodes.Expr, most: int) -> tuple[nodes.Expr, nodes.Expr]:
+        return nodes.Compare("ge", value, index(0)), nodes.Compare("le", value, index(most))
 
-    def close(self) -> ir.Block:
+    def close(self) -> nodes.Block:
         """The list is at its end: go on in the one around it."""
         writer = self.writer
         with writer.nested() as body:
-            writer.expect(ir.Compare("gt", self.depth, index(0)), "nesting", MESSAGE, "more lists end than begin", at=self.at)
-            writer.assign(self.depth, ir.Binary("sub", self.depth, index(1)))
+            writer.expect(nodes.Compare("gt", self.depth, index(0)), "nesting", MESSAGE, "more lists end than begin", at=self.at)
+            writer.assign(self.depth, nodes.Binary("sub", self.depth, index(1)))
             row = mul(self.depth, 2)
-            left = writer.let("left_around", ir.Get("i64", ir.Place(self.stack, row)))
-            writer.expect(ir.Binary("and", *self.between(left, 1 << 31)), "count", MESSAGE, "the holder is damaged", at=self.at)
+            left = writer.let("left_around", nodes.Get("i64", nodes.Place(self.stack, row)))
+            writer.expect(nodes.Binary("and", *self.between(left, 1 << 31)), "count", MESSAGE, "the holder is damaged", at=self.at)
             writer.assign(self.left, left)
-            writer.assign(self.unit, ir.Get("i64", ir.Place(self.stack, add(row, 1))))
+            writer.assign(self.unit, nodes.Get("i64", nodes.Place(self.stack, add(row, 1))))
         return block(body)
 
-    def element(self) -> ir.Block:
+    def element(self) -> nodes.Block:
         """The next element of the list."""
         writer = self.writer
         with writer.nested() as body:
-            writer.assign(self.left, ir.Binary("sub", self.left, index(1)))
+            writer.assign(self.left, nodes.Binary("sub", self.left, index(1)))
             writer.assign(self.code, self.unit)
             writer.assign(self.after, self.at)
-            has_code = writer.let("has_code", ir.Compare("eq", self.unit, index(0)))
-            writer.emit(ir.If(has_code, self.read_code()))
+            has_code = writer.let("has_code", nodes.Compare("eq", self.unit, index(0)))
+            writer.emit(nodes.If(has_code, self.read_code()))
             writer.assign(self.there, self.code)
-            writer.emit(ir.Switch(self.code, tuple(self.cases()), self.refused("no code of this dialect")))
-            bounded = ir.Binary("and", *self.between(self.size, SCALAR_BYTES))
+            writer.emit(nodes.Switch(self.code, tuple(self.cases()), self.refused("no code of this dialect")))
+            bounded = nodes.Binary("and", *self.between(self.size, SCALAR_BYTES))
             writer.expect(bounded, "length", MESSAGE, "the holder is damaged")  # true anyway; said for the proof
             self.values()
-            writer.expect(ir.Binary("and", *writer.within(self.after)), "truncated", MESSAGE, "the message ends here", at=END)
-            differs = ir.Binary("and", has_code, ir.Compare("ne", self.there, self.code))
+            writer.expect(nodes.Binary("and", *writer.within(self.after)), "truncated", MESSAGE, "the message ends here", at=END)
+            differs = nodes.Binary("and", has_code, nodes.Compare("ne", self.there, self.code))
             with writer.nested() as noted:
                 self.note(self.at, self.there)
-            writer.emit(ir.If(differs, block(noted)))
+            writer.emit(nodes.If(differs, block(noted)))
             writer.assign(self.at, self.after)
         return block(body)
 
-    def read_code(self) -> ir.Block:
+    def read_code(self) -> nodes.Block:
         writer = self.writer
         with writer.nested() as body:
             writer.position = self.at
@@ -171,7 +173,7 @@ class _Walk:
             writer.assign(self.after, writer.position)
         return block(body)
 
-    def cases(self) -> Iterator[tuple[int, ir.Block]]:
+    def cases(self) -> Iterator[tuple[int, nodes.Block]]:
         """Each code, and the statements for the values that it announces."""
         tree = self.tree
         for scalar in tree.scalars:
@@ -182,7 +184,7 @@ class _Walk:
         yield tree.list_code, self.announced(LIST, None, tree.list_code)
         yield tree.whole_code, self.announced(WHOLE, None, tree.whole_code)
 
-    def announced(self, kind: int, scalar: Scalar | None, there: int | None) -> ir.Block:
+    def announced(self, kind: int, scalar: Scalar | None, there: int | None) -> nodes.Block:
         """What follows the code: note it for `values`, where all codes of a kind are treated together."""
         if there is None:
             assert scalar is not None
@@ -198,25 +200,25 @@ class _Walk:
         """Move on behind the value; into a list, unless all its elements have one size."""
         writer = self.writer
         cases = {SCALAR: self.scalar, TEXT: self.text, LIST: self.list_of, WHOLE: self.whole}
-        blocks: list[tuple[int, ir.Block]] = []
+        blocks: list[tuple[int, nodes.Block]] = []
         for kind, read in cases.items():
             with writer.nested() as body:
                 read()
             blocks.append((kind, block(body)))
-        writer.emit(ir.Switch(self.kind, tuple(blocks), self.refused("no code of this dialect")))
+        writer.emit(nodes.Switch(self.kind, tuple(blocks), self.refused("no code of this dialect")))
 
     def scalar(self) -> None:
         writer = self.writer
-        writer.assign(self.after, ir.Binary("add", self.after, self.size))
+        writer.assign(self.after, nodes.Binary("add", self.after, self.size))
         for header in self.tree.headers:
             with writer.nested() as noted:
                 writer.emit(*self.header(header))
-            writer.emit(ir.If(ir.Compare("eq", self.code, index(header.words[0])), block(noted)))
+            writer.emit(nodes.If(nodes.Compare("eq", self.code, index(header.words[0])), block(noted)))
 
     def text(self) -> None:
         self.writer.position = self.after
         count = self.count("length")
-        self.writer.assign(self.after, ir.Binary("add", self.writer.position, count))
+        self.writer.assign(self.after, nodes.Binary("add", self.writer.position, count))
 
     def list_of(self) -> None:
         writer = self.writer
@@ -224,67 +226,73 @@ class _Walk:
         count = self.count("count")
         writer.assign(self.after, writer.position)
         with writer.nested() as skipped:
-            writer.assign(self.after, ir.Binary("add", self.after, ir.Binary("mul", count, self.size)))
+            writer.assign(self.after, nodes.Binary("add", self.after, nodes.Binary("mul", count, self.size)))
         with writer.nested() as opened:
             self.open_list(count, self.inner)
-        writer.emit(ir.If(ir.Compare("gt", self.size, index(0)), block(skipped), block(opened)))
+        writer.emit(nodes.If(nodes.Compare("gt", self.size, index(0)), block(skipped), block(opened)))
 
     def whole(self) -> None:
         self.expect_list(self.after)
         self.open_list(index(1), index(0))
 
-    def count(self, kind: str) -> ir.Local:
+    def count(self, kind: str) -> nodes.Local:
         """The number before the bytes of a text, or before the elements of a list."""
         writer, at = self.writer, self.writer.position
         count = writer.let("count", integer(writer.load("i32", MESSAGE)))
-        writer.expect(ir.Compare("ge", count, index(0)), kind, MESSAGE, "must not be negative", at=at)
+        writer.expect(nodes.Compare("ge", count, index(0)), kind, MESSAGE, "must not be negative", at=at)
         return count
 
-    def open_list(self, count: ir.Expr, unit: ir.Expr) -> None:
+    def open_list(self, count: nodes.Expr, unit: nodes.Expr) -> None:
         """Go on with the elements of a list, and then with what is behind it."""
         writer, row = self.writer, mul(self.depth, 2)
         writer.expect(
-            ir.Compare("lt", self.depth, index(MAX_LIST_NESTING)),
+            nodes.Compare("lt", self.depth, index(MAX_LIST_NESTING)),
             "nesting",
             MESSAGE,
             f"more than {MAX_LIST_NESTING} lists within each other",
             at=self.at,
         )
-        writer.emit(ir.SetField(ir.Place(self.stack, row), self.left), ir.SetField(ir.Place(self.stack, add(row, 1)), self.unit))
-        writer.emit(ir.Assign(self.depth.name, add(self.depth, 1)), ir.Assign(self.left.name, count), ir.Assign(self.unit.name, unit))
+        writer.emit(
+            nodes.SetField(nodes.Place(self.stack, row), self.left), nodes.SetField(nodes.Place(self.stack, add(row, 1)), self.unit)
+        )
+        writer.emit(
+            nodes.Assign(self.depth.name, add(self.depth, 1)), nodes.Assign(self.left.name, count), nodes.Assign(self.unit.name, unit)
+        )
 
-    def expect_list(self, at: ir.Expr) -> None:
+    def expect_list(self, at: nodes.Expr) -> None:
         """A message is a list, whatever a reader would take."""
         writer = self.writer
         writer.require(4, MESSAGE, at=at)
-        codes = ir.Binary("and", ir.Load("i32", at), ir.Const("i32", self.tree.whole_code | self.tree.list_code))
-        writer.expect(ir.Compare("eq", codes, ir.Const("i32", self.tree.list_code)), "tag", MESSAGE, "a message is a list", at=at)
+        codes = nodes.Binary("and", nodes.Load("i32", at), nodes.Const("i32", self.tree.whole_code | self.tree.list_code))
+        writer.expect(nodes.Compare("eq", codes, nodes.Const("i32", self.tree.list_code)), "tag", MESSAGE, "a message is a list", at=at)
 
-    def refused(self, why: str) -> ir.Block:
+    def refused(self, why: str) -> nodes.Block:
         with self.writer.nested() as body:
-            self.writer.expect(ir.Const("bool", value=False), "tag", MESSAGE, why, at=self.at)
+            self.writer.expect(nodes.Const("bool", value=False), "tag", MESSAGE, why, at=self.at)
         return block(body)
 
-    def header(self, header: Header) -> tuple[ir.Stmt, ...]:
+    def header(self, header: Header) -> tuple[nodes.Stmt, ...]:
         """Note the number that differs, if this element and those behind it are a header."""
         writer = self.writer
         with writer.nested() as there:
             writer.require(header.size, MESSAGE, at=self.at)
-            known: ir.Expr = ir.Compare("eq", self.unit, index(0))
+            known: nodes.Expr = nodes.Compare("eq", self.unit, index(0))
             for offset, word in header.words.items():
-                known = ir.Binary("and", known, ir.Compare("eq", ir.Load("i32", add(self.at, offset)), ir.Const("i32", word)))
+                known = nodes.Binary("and", known, nodes.Compare("eq", nodes.Load("i32", add(self.at, offset)), nodes.Const("i32", word)))
             with writer.nested() as found:
-                number = writer.let("number", integer(ir.Load("i32", add(self.at, header.at))))
-                changed = ir.Binary("or", ir.Binary("and", number, index(header.keep)), index(header.put))
+                number = writer.let("number", integer(nodes.Load("i32", add(self.at, header.at))))
+                changed = nodes.Binary("or", nodes.Binary("and", number, index(header.keep)), index(header.put))
                 self.note(add(self.at, header.at), changed)
-            writer.emit(ir.If(known, block(found)))
-        fits = ir.Compare("ge", ir.Binary("sub", END, self.at), index(header.size))
-        return (ir.If(fits, block(there)),)
+            writer.emit(nodes.If(known, block(found)))
+        fits = nodes.Compare("ge", nodes.Binary("sub", END, self.at), index(header.size))
+        return (nodes.If(fits, block(there)),)
 
-    def note(self, at: ir.Expr, number: ir.Expr) -> None:
+    def note(self, at: nodes.Expr, number: nodes.Expr) -> None:
         """Note that an i32 of the message becomes another one."""
         writer, lane = self.writer, self.changes.lane
-        writer.emit(ir.Reserve(lane, index(1)))
-        row = writer.let("row", ir.Used(lane))
-        writer.emit(ir.Advance(lane, index(1)))
-        writer.emit(ir.SetField(ir.Place(lane, row), ir.Binary("sub", at, BEGIN)), ir.SetField(ir.Place(lane, row, 8), number))
+        writer.emit(nodes.Reserve(lane, index(1)))
+        row = writer.let("row", nodes.Used(lane))
+        writer.emit(nodes.Advance(lane, index(1)))
+        writer.emit(
+            nodes.SetField(nodes.Place(lane, row), nodes.Binary("sub", at, BEGIN)), nodes.SetField(nodes.Place(lane, row, 8), number)
+        )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from rosetta_jit.errors import Kind
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If, Load, Local, Select, While
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expr, If, Load, Local, Select, While
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.writer import MESSAGE, Contract, Where, Writer, block
 from rosetta_jit.wire.codec import Varint

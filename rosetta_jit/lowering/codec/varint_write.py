@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If, Local, Select, While
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expr, If, Local, Select, While
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.lowering.codec.varint import GUESSED, ONE, ONE_BYTE, SEVEN_BITS, TWO_BYTES, VARINT_BYTES, ZERO
 from rosetta_jit.lowering.writer import MESSAGE, Contract, Where, Writer, block

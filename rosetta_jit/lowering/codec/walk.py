@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import assert_never
 
-from rosetta_jit.kernel.ir import Assign, Binary, Block, Compare, Const, Convert, Expect, Expr, For, If, Local, Switch, While
+from rosetta_jit.kernel.nodes import Assign, Binary, Block, Compare, Const, Convert, Expect, Expr, For, If, Local, Switch, While
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.codec import leaves
 from rosetta_jit.lowering.codec.fields import Elements, Fields, scalar_name

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import field, replace
 from typing import Protocol
 
-from rosetta_jit.kernel.ir import Const, Copy, Expr, Local, Place, Scalar, Wire
+from rosetta_jit.kernel.nodes import Const, Copy, Expr, Local, Place, Scalar, Wire
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.codec.fields import Stored, scalar_name
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Advance, Binary, Compare, Expr, Fill, Get, If, Place, Reserve, SetField, Used
+from rosetta_jit.kernel.nodes import Advance, Binary, Compare, Expr, Fill, Get, If, Place, Reserve, SetField, Used
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.codec.holder_fields import span_of
 from rosetta_jit.lowering.codec.unknown_fields import skip

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Assign, Binary, Block, Compare, Const, Expr, If, Local, Select, Switch, While
+from rosetta_jit.kernel.nodes import Assign, Binary, Block, Compare, Const, Expr, If, Local, Select, Switch, While
 from rosetta_jit.kernel.terms import BEGIN, END, index
 from rosetta_jit.lowering.codec import leaves
 from rosetta_jit.lowering.codec.fields import Fields

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Block, Compare, Const, Convert, Expr, If, Local, Select, Store, Switch, While
+from rosetta_jit.kernel.nodes import Binary, Block, Compare, Const, Convert, Expr, If, Local, Select, Store, Switch, While
 from rosetta_jit.kernel.terms import BEGIN, add, index
 from rosetta_jit.lowering.codec import leaves
 from rosetta_jit.lowering.codec.absent_members import elements_given, give

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import field
 from typing import assert_never
 
-from rosetta_jit.kernel.ir import Direction
+from rosetta_jit.kernel.nodes import Direction
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.codec.wire_fields import EACH, leaves, numbers_of_counts
 from rosetta_jit.lowering.rules.packed_values import rule_for

@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import partial, reduce
 from typing import Protocol
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.nodes import (
     Assign,
     Binary,
     Compare,

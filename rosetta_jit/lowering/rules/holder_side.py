@@ -9,7 +9,7 @@ from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from dataclasses import field, replace
 
-from rosetta_jit.kernel.ir import Address, Assign, Binary, Compare, Const, Expr, Get, If, Place, Select, SetField, Switch, Used
+from rosetta_jit.kernel.nodes import Address, Assign, Binary, Compare, Const, Expr, Get, If, Place, Select, SetField, Switch, Used
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.discriminators import Discriminator, discriminator_of

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import Expr, HostCall, Local
+from rosetta_jit.kernel.nodes import Expr, HostCall, Local
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.codec.fields import scalar_name
 from rosetta_jit.lowering.evaluation import Evaluation

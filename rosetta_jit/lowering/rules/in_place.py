@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rosetta_jit.kernel.ir import Direction
+from rosetta_jit.kernel.nodes import Direction
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import rules_within
 from rosetta_jit.language.resolve.defaults import has_array

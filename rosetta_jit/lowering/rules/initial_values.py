@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from rosetta_jit.kernel.ir import Expr, Fill, For, Local, Place, SetField
+from rosetta_jit.kernel.nodes import Expr, Fill, For, Local, Place, SetField
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import rules_within

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rosetta_jit.kernel.ir import Const
+from rosetta_jit.kernel.nodes import Const
 from rosetta_jit.language import typed
 from rosetta_jit.language.walk import expressions_of, parts
 from rosetta_jit.lowering.evaluation import Awaited, Evaluation

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import Convert, Expr, Unary
+from rosetta_jit.kernel.nodes import Convert, Expr, Unary
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.lowering.codec.fields import scalar_name

@@ -6,7 +6,7 @@ import struct
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place
+from rosetta_jit.kernel.nodes import Compare, Const, Expr, If, Local, Place
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.functions.texts import is_textual

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import field, replace
 from typing import assert_never
 
-from rosetta_jit.kernel.ir import Binary, Block, Compare, Const, Convert, Copy, Expr, For, Get, If, Local, Place, Scalar, Switch
+from rosetta_jit.kernel.nodes import Binary, Block, Compare, Const, Convert, Copy, Expr, For, Get, If, Local, Place, Scalar, Switch
 from rosetta_jit.kernel.terms import index, mul, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.typed import Change

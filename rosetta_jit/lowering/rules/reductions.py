@@ -8,14 +8,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import cast
 
-from rosetta_jit.kernel.ir import Compare, Const, Expr, For, If, Local, Select
+from rosetta_jit.kernel.nodes import Compare, Const, Expr, For, If, Local, Select
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.function import functions
 from rosetta_jit.language.places import shown_fields
 from rosetta_jit.lowering.codec.fields import scalar_name
-from rosetta_jit.lowering.elements import Elements
 from rosetta_jit.lowering.evaluation import Evaluation
+from rosetta_jit.lowering.reduced_elements import Elements
 from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int

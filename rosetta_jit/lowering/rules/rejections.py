@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rosetta_jit.kernel.ir import Binary, Const, Expect, Expr, Failure, If, Site
+from rosetta_jit.kernel.ir import Site
+from rosetta_jit.kernel.nodes import Binary, Const, Expect, Expr, Failure, If
 from rosetta_jit.kernel.terms import add
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.evaluation import Evaluation

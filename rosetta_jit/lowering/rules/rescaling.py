@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import count
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expr, If
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import FLOAT64

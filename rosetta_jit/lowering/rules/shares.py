@@ -9,7 +9,23 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import assert_never
 
-from rosetta_jit.kernel.ir import Assign, Binary, Capacity, Compare, Const, Copy, Expr, For, Get, If, Local, Place, Scalar, SetField, Used
+from rosetta_jit.kernel.nodes import (
+    Assign,
+    Binary,
+    Capacity,
+    Compare,
+    Const,
+    Copy,
+    Expr,
+    For,
+    Get,
+    If,
+    Local,
+    Place,
+    Scalar,
+    SetField,
+    Used,
+)
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.language.check.wire_needs import Names
 from rosetta_jit.language.check.wire_shares import Share

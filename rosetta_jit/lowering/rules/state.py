@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import struct
 
-from rosetta_jit.kernel.ir import Bits, Convert, Expr, Register, Scalar
+from rosetta_jit.kernel.nodes import Bits, Convert, Expr, Register, Scalar
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import rules_within

@@ -13,7 +13,7 @@ from typing import assert_never, cast
 
 from rosetta_jit.catalogue.pipeline import endless_copy
 from rosetta_jit.errors import MappingError
-from rosetta_jit.kernel.ir import Block, Compare, Copy, Expr, For, If, IsText, Local, Wire
+from rosetta_jit.kernel.nodes import Block, Compare, Copy, Expr, For, If, IsText, Local, Wire
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import binary

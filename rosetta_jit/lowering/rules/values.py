@@ -7,7 +7,7 @@ from dataclasses import field, replace
 from pathlib import PurePath
 from typing import assert_never, cast
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.language import typed
@@ -38,16 +38,18 @@ class Values:
 
     writer: Writer
     source: Source
-    variables: Mapping[str, ir.Expr]
+    variables: Mapping[str, nodes.Expr]
     where: Where = MESSAGE
     line: str = ""
-    decided: dict[typed.Expr, tuple[list[ir.Stmt], ir.Expr]] = field(default_factory=dict["typed.Expr", "tuple[list[ir.Stmt], ir.Expr]"])
-    groups: dict[typed.Expr, tuple[list[ir.Stmt], Mapping[str, ir.Expr]]] = field(
-        default_factory=dict["typed.Expr", "tuple[list[ir.Stmt], Mapping[str, ir.Expr]]"]
+    decided: dict[typed.Expr, tuple[list[nodes.Stmt], nodes.Expr]] = field(
+        default_factory=dict["typed.Expr", "tuple[list[nodes.Stmt], nodes.Expr]"]
+    )
+    groups: dict[typed.Expr, tuple[list[nodes.Stmt], Mapping[str, nodes.Expr]]] = field(
+        default_factory=dict["typed.Expr", "tuple[list[nodes.Stmt], Mapping[str, nodes.Expr]]"]
     )
     awaited: dict[typed.Expr, Awaited] = field(default_factory=dict["typed.Expr", "Awaited"])
 
-    def of(self, value: typed.Expr) -> ir.Expr:
+    def of(self, value: typed.Expr) -> nodes.Expr:
         """The kernel expression of a number. Choices and searches are made once where they are known: nothing that rules read changes."""
         if isinstance(value, typed.Reduce) and value in self.awaited and self.writer.is_around(self.awaited[value].block):
             return self.first_time(value, self.awaited[value])
@@ -60,7 +62,7 @@ class Values:
             self.decided[value] = block, found
         return found
 
-    def together(self, value: typed.Expr, compute: Callable[[], Mapping[str, ir.Expr]]) -> Mapping[str, ir.Expr]:
+    def together(self, value: typed.Expr, compute: Callable[[], Mapping[str, nodes.Expr]]) -> Mapping[str, nodes.Expr]:
         """Numbers that are computed together, by name; what was computed for an equal value is found again where it is known."""
         if calls_out(value):
             return compute()
@@ -70,15 +72,15 @@ class Values:
             self.groups[value] = block, found
         return found
 
-    def first_time(self, value: typed.Reduce, awaited: Awaited) -> ir.Expr:
+    def first_time(self, value: typed.Reduce, awaited: Awaited) -> nodes.Expr:
         """A value that is computed here unless it is known."""
         with self.source.forgetting(), self.writer.nested() as body:
             self.writer.assign(awaited.found, self.computed(value))
-            self.writer.assign(awaited.is_known, ir.Const("bool", value=True))
-        self.writer.emit(ir.If(ir.Unary("not", awaited.is_known), block(body)))
+            self.writer.assign(awaited.is_known, nodes.Const("bool", value=True))
+        self.writer.emit(nodes.If(nodes.Unary("not", awaited.is_known), block(body)))
         return awaited.found
 
-    def computed(self, value: typed.Expr) -> ir.Expr:
+    def computed(self, value: typed.Expr) -> nodes.Expr:
         match value:
             case typed.Const(number, type_):
                 return constant(number, scalar_type(type_))
@@ -90,7 +92,7 @@ class Values:
             case typed.LenOf(place):
                 return self.source.count(place, self)
             case typed.Unary("not", operand):
-                return ir.Unary("not", self.of(operand))
+                return nodes.Unary("not", self.of(operand))
             case typed.Unary(_, operand):
                 return self.negative(self.of(operand))
             case typed.Binary(operator, left, right):
@@ -105,7 +107,7 @@ class Values:
             case typed.Nearest():
                 return nearest(value, self)
             case typed.Call():
-                return cast("ir.Expr", lowered(value, self))
+                return cast("nodes.Expr", lowered(value, self))
             case typed.HostCall():
                 return called(value, self)
             case typed.IsText(place, text):
@@ -119,7 +121,7 @@ class Values:
             case _:
                 assert_never(value)
 
-    def answer(self, value: typed.Has | typed.Search | typed.Reduce) -> ir.Expr:
+    def answer(self, value: typed.Has | typed.Search | typed.Reduce) -> nodes.Expr:
         """The value of a query about a place, or about the elements of arrays."""
         match value:
             case typed.Has(place):
@@ -131,16 +133,16 @@ class Values:
             case _:
                 assert_never(value)
 
-    def operation(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> ir.Expr:
+    def operation(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> nodes.Expr:
         if operator in ("and", "or"):
             return self.joined(operator, left, right)
         if operator == "differs":
             return differ(self.writer, self.of(left), self.of(right))
         if operator in COMPARISONS:
-            return ir.Compare(COMPARISONS[operator], self.of(left), self.of(right))
+            return nodes.Compare(COMPARISONS[operator], self.of(left), self.of(right))
         return binary(self.writer, operator, self.of(left), self.of(right), self.where, self.line)
 
-    def joined(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> ir.Expr:
+    def joined(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> nodes.Expr:
         """``left and right``, ``left or right``: where the left one decides, the right one may have no value."""
         writer, first = self.writer, self.of(left)
         with self.source.forgetting(), writer.nested() as step:
@@ -149,32 +151,32 @@ class Values:
             writer.emit(*step)
             return binary(writer, operator, first, second, self.where, self.line)
         found = writer.var("joined", first)
-        step.append(ir.Assign(found.name, second))
-        writer.emit(ir.If(found, block(step)) if operator == "and" else ir.If(found, (), block(step)))
+        step.append(nodes.Assign(found.name, second))
+        writer.emit(nodes.If(found, block(step)) if operator == "and" else nodes.If(found, (), block(step)))
         return found
 
-    def choice(self, choice: typed.Choice) -> ir.Expr:
+    def choice(self, choice: typed.Choice) -> nodes.Expr:
         """Only the value that is chosen is computed, and only the conditions before it: others may not have one."""
         writer = self.writer
         found = writer.var("chosen", constant(0, scalar_type(choice.type)))
-        undecided = writer.var("undecided", ir.Const("bool", value=True))
+        undecided = writer.var("undecided", nodes.Const("bool", value=True))
         for condition, chosen in choice.cases:
             with self.source.forgetting(), writer.nested() as step:
                 holds = self.of(condition)
                 with writer.nested() as then:
                     writer.assign(found, self.of(chosen))
-                    writer.assign(undecided, ir.Const("bool", value=False))
-                writer.emit(ir.If(holds, block(then)))
-            writer.emit(ir.If(undecided, block(step)))
+                    writer.assign(undecided, nodes.Const("bool", value=False))
+                writer.emit(nodes.If(holds, block(then)))
+            writer.emit(nodes.If(undecided, block(step)))
         if choice.otherwise is None:
             self.reject(choice.reason, choice.pieces, when=undecided)
             return found
         with self.source.forgetting(), writer.nested() as other:
             writer.assign(found, self.of(choice.otherwise))
-        writer.emit(ir.If(undecided, block(other)))
+        writer.emit(nodes.If(undecided, block(other)))
         return found
 
-    def listed(self, listed: typed.Listed | typed.Given) -> ir.Expr:
+    def listed(self, listed: typed.Listed | typed.Given) -> nodes.Expr:
         """Only the item that is chosen is computed."""
         assert isinstance(listed, typed.Listed), "parameters are given before a mapping is lowered"
         found = self.writer.var("item", constant(0, scalar_type(listed.type)))
@@ -185,33 +187,33 @@ class Values:
         """Do something with the item of a list that an index chooses."""
         writer = self.writer
         number = writer.let("number", self.of(listed.index))
-        there = ir.Binary("and", ir.Compare("ge", number, index(0)), ir.Compare("lt", number, index(len(listed.items))))
+        there = nodes.Binary("and", nodes.Compare("ge", number, index(0)), nodes.Compare("lt", number, index(len(listed.items))))
         writer.expect(there, "index", self.where, f"the list has {len(listed.items)} items", line=self.line)
-        cases: list[tuple[int, ir.Block]] = []
+        cases: list[tuple[int, nodes.Block]] = []
         for case, item in enumerate(listed.items):
             with self.source.forgetting(), writer.nested() as body:
                 use(item)
             cases.append((case, block(body)))
-        writer.emit(ir.Switch(number, tuple(cases), ()))
+        writer.emit(nodes.Switch(number, tuple(cases), ()))
 
-    def reject(self, reason: str, pieces: tuple[typed.Expr, ...] = (), *, when: ir.Expr | None = None) -> None:
+    def reject(self, reason: str, pieces: tuple[typed.Expr, ...] = (), *, when: nodes.Expr | None = None) -> None:
         """Refuse the message, always or where something holds: with a reason, or with what its pieces say."""
         if pieces:
             reject_with(pieces, reason, when, self)
             return
-        good = ir.Const("bool", value=False) if when is None else ir.Unary("not", when)
+        good = nodes.Const("bool", value=False) if when is None else nodes.Unary("not", when)
         self.writer.expect(good, "rejected", self.where, reason, line=self.line)
 
     def look_ahead(self, exprs: tuple[typed.Expr, ...]) -> None:
         """Before a loop that computes some expressions: what is the same in each round, and takes a loop of its own."""
         look_ahead_of(exprs, self)
 
-    def with_local(self, name: str, number: ir.Expr, *, afresh: bool = False) -> Values:
+    def with_local(self, name: str, number: nodes.Expr, *, afresh: bool = False) -> Values:
         """The same where a loop variable has a value; ``afresh`` where what was decided may be something else for it."""
         variables = {**self.variables, name: number}
         return replace(self, variables=variables, decided={}, groups={}, awaited={}) if afresh else replace(self, variables=variables)
 
-    def with_locals(self, numbers: Mapping[str, ir.Expr]) -> Values:
+    def with_locals(self, numbers: Mapping[str, nodes.Expr]) -> Values:
         """The same where these names alone have values, and nothing is decided yet."""
         return replace(self, variables=numbers, decided={}, groups={}, awaited={})
 
@@ -222,23 +224,23 @@ class Values:
         line, column = span.source.line_column(span.start)
         return replace(self, line=f"{PurePath(span.source.name).name}:{line}:{column}")
 
-    def negative(self, operand: ir.Expr) -> ir.Expr:
+    def negative(self, operand: nodes.Expr) -> nodes.Expr:
         if type_of(operand) in ("f32", "f64"):
-            return ir.Unary("neg", operand)
+            return nodes.Unary("neg", operand)
         return binary(self.writer, "-", index(0), operand, self.where, self.line)
 
     # --- conversions ---------------------------------------------------------------------------------------------------
 
-    def convert(self, value: ir.Expr, target: ir.Scalar, rule: typed.ConversionRule) -> ir.Expr:
+    def convert(self, value: nodes.Expr, target: nodes.Scalar, rule: typed.ConversionRule) -> nodes.Expr:
         """A number as another type, by the rule that the mapping states."""
         source = type_of(value)
-        if isinstance(value, ir.Const):
+        if isinstance(value, nodes.Const):
             folded = converted_constant(value, target)
             if folded is not None:
                 return folded
         match rule:
             case "widen" | "nearest" | "wrap":
-                return value if source == target else ir.Convert(target, value)
+                return value if source == target else nodes.Convert(target, value)
             case "saturate":
                 return self.saturated(value, target)
             case "exact" | "round" | "truncate":
@@ -246,78 +248,78 @@ class Values:
             case _:
                 assert_never(rule)
 
-    def named(self, value: ir.Expr, type_: Bool | Enum) -> ir.Expr:
+    def named(self, value: nodes.Expr, type_: Bool | Enum) -> nodes.Expr:
         """A number as one of the few that a type has."""
         known = (0, 1) if isinstance(type_, Bool) else sorted({number for _, number in type_.values})
         number = self.writer.let("number", value)
         self.in_range(number, scalar_type(type_))
         with self.writer.nested() as other:
-            self.expect(ir.Const("bool", value=False), describe(type_))
-        self.writer.emit(ir.Switch(ir.Convert("i64", number), tuple((each, ()) for each in known), block(other)))
+            self.expect(nodes.Const("bool", value=False), describe(type_))
+        self.writer.emit(nodes.Switch(nodes.Convert("i64", number), tuple((each, ()) for each in known), block(other)))
         return self.convert(number, scalar_type(type_), "wrap")
 
-    def exact(self, value: ir.Expr, target: ir.Scalar, rule: str) -> ir.Expr:
+    def exact(self, value: nodes.Expr, target: nodes.Scalar, rule: str) -> nodes.Expr:
         source = type_of(value)
         local = self.writer.let("number", value)
         if target in ("f32", "f64"):
             return self.exact_float(local, target)
         if source in ("f32", "f64"):
-            whole = self.writer.let("whole", ir.Unary("rint" if rule == "round" else "trunc", local))
+            whole = self.writer.let("whole", nodes.Unary("rint" if rule == "round" else "trunc", local))
             if rule == "exact":
-                self.expect(ir.Compare("eq", whole, local), target)
+                self.expect(nodes.Compare("eq", whole, local), target)
             local = whole
         self.in_range(local, target)
-        return ir.Convert(target, local)
+        return nodes.Convert(target, local)
 
-    def exact_float(self, value: ir.Local, target: ir.Scalar) -> ir.Expr:
+    def exact_float(self, value: nodes.Local, target: nodes.Scalar) -> nodes.Expr:
         """A float that is the same number; NaN stays one."""
         source = type_of(value)
-        made = self.writer.let("float", ir.Convert(target, value))
-        same: ir.Expr = ir.Compare("eq", ir.Convert(source, made), value)
+        made = self.writer.let("float", nodes.Convert(target, value))
+        same: nodes.Expr = nodes.Compare("eq", nodes.Convert(source, made), value)
         if source in ("f32", "f64"):
-            same = ir.Binary("or", same, ir.Compare("ne", value, value))
+            same = nodes.Binary("or", same, nodes.Compare("ne", value, value))
         else:  # what is rounded up beyond the integers comes back as the last of them
-            same = ir.Binary("and", same, ir.Compare("lt", made, ir.Const(target, float(RANGES[source][1]))))
+            same = nodes.Binary("and", same, nodes.Compare("lt", made, nodes.Const(target, float(RANGES[source][1]))))
         self.expect(same, target)
         return made
 
-    def in_range(self, value: ir.Local, target: ir.Scalar) -> None:
+    def in_range(self, value: nodes.Local, target: nodes.Scalar) -> None:
         source = type_of(value)
         if target in ("f32", "f64", "bool"):
             return
         low, high = RANGES[target]
         if source in ("f32", "f64"):
-            self.expect(ir.Compare("ge", value, ir.Const(source, float(low))), target)
-            self.expect(ir.Compare("lt", value, ir.Const(source, float(high))), target)
+            self.expect(nodes.Compare("ge", value, nodes.Const(source, float(low))), target)
+            self.expect(nodes.Compare("lt", value, nodes.Const(source, float(high))), target)
             return
         least, most = RANGES.get(source, (0, 2))
         if low > least:
-            self.expect(ir.Compare("ge", value, ir.Const(source, low)), target)
+            self.expect(nodes.Compare("ge", value, nodes.Const(source, low)), target)
         if high < most:
-            self.expect(ir.Compare("lt", value, ir.Const(source, high)), target)
+            self.expect(nodes.Compare("lt", value, nodes.Const(source, high)), target)
 
-    def saturated(self, value: ir.Expr, target: ir.Scalar) -> ir.Expr:
+    def saturated(self, value: nodes.Expr, target: nodes.Scalar) -> nodes.Expr:
         source = type_of(value)
         if source in ("f32", "f64"):
             number = self.writer.let("number", value)
-            self.expect(ir.Compare("eq", number, number), target)  # NaN is none
-            return ir.Convert(target, ir.Unary("rint", number))
+            self.expect(nodes.Compare("eq", number, number), target)  # NaN is none
+            return nodes.Convert(target, nodes.Unary("rint", number))
         low, high = RANGES[target]
         least, most = RANGES[source]
         if low > least:
-            value = ir.Binary("max", value, ir.Const(source, low))
+            value = nodes.Binary("max", value, nodes.Const(source, low))
         if high < most:
-            value = ir.Binary("min", value, ir.Const(source, high - 1))
-        return ir.Convert(target, value)
+            value = nodes.Binary("min", value, nodes.Const(source, high - 1))
+        return nodes.Convert(target, value)
 
-    def expect(self, condition: ir.Expr, target: str) -> None:
+    def expect(self, condition: nodes.Expr, target: str) -> None:
         self.writer.expect(condition, "range", self.where, f"the value does not fit {NAMES.get(target, target)}", line=self.line)
 
 
 KEPT = (typed.IsText, typed.Choice, typed.Reduce)
 """Values that take a loop, or statements."""
 
-FAILING = (ir.Require, ir.Expect, ir.HostCall, ir.Call)
+FAILING = (nodes.Require, nodes.Expect, nodes.HostCall, nodes.Call)
 """Statements that may refuse a message."""
 
 

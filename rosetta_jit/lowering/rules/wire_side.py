@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from contextlib import AbstractContextManager, nullcontext
 
-from rosetta_jit.kernel.ir import WIDTH, Address, Binary, Compare, Const, Expr, Load, Require, Store, Wire
+from rosetta_jit.kernel.nodes import WIDTH, Address, Binary, Compare, Const, Expr, Load, Require, Store, Wire
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.language import typed
 from rosetta_jit.language.typed import FieldStep, IndexStep

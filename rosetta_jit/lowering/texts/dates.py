@@ -6,7 +6,7 @@ The calendar's arithmetic counts years from March, so that the leap day is the l
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import Binary, Compare, Convert, Expr, If, Local, Select, Unary
+from rosetta_jit.kernel.nodes import Binary, Compare, Convert, Expr, If, Local, Select, Unary
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.texts.views import (
     TRUE,

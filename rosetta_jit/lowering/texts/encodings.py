@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If, Local, Select
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expr, If, Local, Select
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.texts.views import TRUE, View, has_room, kept, parameters, put, room, scanning
 from rosetta_jit.lowering.writer import MESSAGE, Contract, Writer, block

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from rosetta_jit.kernel.ir import Binary, Capacity, Compare, Const, Copy, Expr, Fill, If, Local, Place, Select, While
+from rosetta_jit.kernel.nodes import Binary, Capacity, Compare, Const, Copy, Expr, Fill, If, Local, Place, Select, While
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.texts.search import find, next_start, parts
 from rosetta_jit.lowering.texts.views import LOST, View, has_room, is_between, kept, lane_of, parameters, put, room, scanning

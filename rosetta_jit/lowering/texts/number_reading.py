@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Fits, If, Local, Nearest, Select, Stmt, Unary
+from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expr, Fits, If, Local, Nearest, Select, Stmt, Unary
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.limits import MAX_EXPONENT
 from rosetta_jit.lowering.texts.number_writing import INFINITE, NAN

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from rosetta_jit.kernel.ir import WIDTH, Address, Binary, Compare, Const, Expr, Get, If, Load, Local, Place, Scalar, Select, While, Wire
+from rosetta_jit.kernel.nodes import WIDTH, Address, Binary, Compare, Const, Expr, Get, If, Load, Local, Place, Scalar, Select, While, Wire
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.evaluation import Evaluation

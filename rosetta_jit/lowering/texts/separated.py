@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 
-from rosetta_jit.kernel.ir import Binary, Compare, Expr, For, Local, Select, Unary, Used
+from rosetta_jit.kernel.nodes import Binary, Compare, Expr, For, Local, Select, Unary, Used
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.texts.search import find, parts
 from rosetta_jit.lowering.texts.views import Quoted, View, append, between, lane_of, sound

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import cast
 
-from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Expr, If, IsText, Local, Used, Wire
+from rosetta_jit.kernel.nodes import Address, Binary, Compare, Const, Expr, If, IsText, Local, Used, Wire
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.evaluation import Evaluation, lowered

@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
 
-from rosetta_jit.kernel import ir
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.writer import MESSAGE, Writer, block
 from rosetta_jit.startup.dataclass import dataclass
@@ -26,17 +26,17 @@ class View:
     """
 
     lane: int | None
-    first: ir.Expr
-    after: ir.Expr
+    first: nodes.Expr
+    after: nodes.Expr
     valid: bool = False
 
     @property
-    def size(self) -> ir.Expr:
-        return ir.Binary("sub", self.after, self.first)
+    def size(self) -> nodes.Expr:
+        return nodes.Binary("sub", self.after, self.first)
 
     @property
-    def address(self) -> ir.Address:
-        return ir.Wire(self.first) if self.lane is None else ir.Place(self.lane, self.first)
+    def address(self) -> nodes.Address:
+        return nodes.Wire(self.first) if self.lane is None else nodes.Place(self.lane, self.first)
 
     @property
     def memory(self) -> str:
@@ -59,49 +59,49 @@ def lane_of(writer: Writer) -> int:
     return writer.lane(LANE, 1)
 
 
-def byte_at(lane: int | None, at: ir.Expr) -> ir.Expr:
+def byte_at(lane: int | None, at: nodes.Expr) -> nodes.Expr:
     """One byte of a lane of bytes, or of the message."""
-    return ir.Load("u8", at) if lane is None else ir.Get("u8", ir.Place(lane, at))
+    return nodes.Load("u8", at) if lane is None else nodes.Get("u8", nodes.Place(lane, at))
 
 
-def lies_in(lane: int | None, at: ir.Expr) -> ir.Expr:
+def lies_in(lane: int | None, at: nodes.Expr) -> nodes.Expr:
     """Whether there is such a byte."""
-    low, high = (BEGIN, END) if lane is None else (index(0), ir.Capacity(lane))
-    return ir.Binary("and", ir.Compare("ge", at, low), ir.Compare("lt", at, high))
+    low, high = (BEGIN, END) if lane is None else (index(0), nodes.Capacity(lane))
+    return nodes.Binary("and", nodes.Compare("ge", at, low), nodes.Compare("lt", at, high))
 
 
-def put(writer: Writer, at: ir.Expr, byte: ir.Expr | int) -> None:
+def put(writer: Writer, at: nodes.Expr, byte: nodes.Expr | int) -> None:
     """Write a byte of the hidden lane."""
-    writer.emit(ir.SetField(ir.Place(lane_of(writer), at), ir.Const("u8", byte) if isinstance(byte, int) else byte))
+    writer.emit(nodes.SetField(nodes.Place(lane_of(writer), at), nodes.Const("u8", byte) if isinstance(byte, int) else byte))
 
 
-def room(writer: Writer, size: ir.Expr) -> ir.Local:
+def room(writer: Writer, size: nodes.Expr) -> nodes.Local:
     """Where the next so many bytes of the hidden lane begin; they become part of it by `kept`."""
-    writer.emit(ir.Reserve(lane_of(writer), size))
-    start = writer.let("text", ir.Used(lane_of(writer)))
+    writer.emit(nodes.Reserve(lane_of(writer), size))
+    start = writer.let("text", nodes.Used(lane_of(writer)))
     for each in has_room(writer, start, size):  # there is: said again, as what is used becomes a long sum where many texts are made
         writer.expect(each, "length", MESSAGE, LOST)
     return start
 
 
-def kept(writer: Writer, start: ir.Expr, first: ir.Expr, after: ir.Expr, *, valid: bool) -> View:
+def kept(writer: Writer, start: nodes.Expr, first: nodes.Expr, after: nodes.Expr, *, valid: bool) -> View:
     """The view of what was written from ``first`` to ``after``, into the room that starts there or before."""
     lane, end = lane_of(writer), writer.let("after", after)
-    count = writer.let("written", ir.Binary("sub", end, start))
-    writer.emit(ir.Reserve(lane, count), ir.Advance(lane, count))  # there is room: said again where the proof may have lost it
+    count = writer.let("written", nodes.Binary("sub", end, start))
+    writer.emit(nodes.Reserve(lane, count), nodes.Advance(lane, count))  # there is room: said again where the proof may have lost it
     return sound(writer, View(lane, first, end, valid))
 
 
-def sound(writer: Writer, view: View, expect: Callable[[ir.Expr], None] | None = None) -> View:
+def sound(writer: Writer, view: View, expect: Callable[[nodes.Expr], None] | None = None) -> View:
     """A view that lies where it says. That follows from how it was made; written down, each use of it is proven at a glance.
 
     Where it follows from a check before, ``expect`` is that check: in a loop, this one may be made before it.
     """
-    known = [ir.Compare("le", view.first, view.after)]
+    known = [nodes.Compare("le", view.first, view.after)]
     if view.lane is None:
-        known += [ir.Compare("ge", view.first, BEGIN), ir.Compare("le", view.after, END)]
+        known += [nodes.Compare("ge", view.first, BEGIN), nodes.Compare("le", view.after, END)]
     else:
-        known += [ir.Compare("ge", view.first, index(0)), ir.Compare("le", view.after, ir.Capacity(view.lane))]
+        known += [nodes.Compare("ge", view.first, index(0)), nodes.Compare("le", view.after, nodes.Capacity(view.lane))]
     for each in known:
         if expect is None:
             writer.expect(each, "length", MESSAGE, LOST)
@@ -117,23 +117,23 @@ def append(writer: Writer, text: Text) -> None:
         start = room(writer, index(len(text.text)))
         for number, byte in enumerate(text.text):
             put(writer, add(start, number), byte)
-        writer.emit(ir.Advance(lane, index(len(text.text))))
+        writer.emit(nodes.Advance(lane, index(len(text.text))))
         return
     size = writer.let("size", text.size)
     start = room(writer, size)
     if text.lane == lane:
-        writer.expect(ir.Compare("le", text.after, start), "length", MESSAGE, LOST)
-    writer.emit(ir.Copy(ir.Place(lane, start), text.address, size), ir.Advance(lane, size))
+        writer.expect(nodes.Compare("le", text.after, start), "length", MESSAGE, LOST)
+    writer.emit(nodes.Copy(nodes.Place(lane, start), text.address, size), nodes.Advance(lane, size))
 
 
 def joined(writer: Writer, texts: Iterable[Text]) -> View:
     """One text of several."""
     pieces = tuple(texts)
-    start = writer.let("text", ir.Used(lane_of(writer)))
+    start = writer.let("text", nodes.Used(lane_of(writer)))
     for piece in pieces:
         append(writer, piece)
     valid = all(isinstance(piece, Quoted) or piece.valid for piece in pieces)
-    return sound(writer, View(lane_of(writer), start, writer.let("after", ir.Used(lane_of(writer))), valid))
+    return sound(writer, View(lane_of(writer), start, writer.let("after", nodes.Used(lane_of(writer))), valid))
 
 
 def placed(writer: Writer, text: Text) -> View:
@@ -146,61 +146,65 @@ def placed(writer: Writer, text: Text) -> View:
 
 def parameters(
     writer: Writer, lane: int | None, names: tuple[str, str] = ("first", "after")
-) -> tuple[ir.Local, ir.Local, tuple[ir.Expr, ...]]:
+) -> tuple[nodes.Local, nodes.Local, tuple[nodes.Expr, ...]]:
     """The ends of a text that a routine is given, and what it relies on."""
     first, after = (writer.parameter(name, "i64") for name in names)
-    low, high = (BEGIN, END) if lane is None else (index(0), ir.Capacity(lane))
-    return first, after, (ir.Compare("ge", first, low), ir.Compare("le", first, after), ir.Compare("le", after, high))
+    low, high = (BEGIN, END) if lane is None else (index(0), nodes.Capacity(lane))
+    return first, after, (nodes.Compare("ge", first, low), nodes.Compare("le", first, after), nodes.Compare("le", after, high))
 
 
-def has_room(writer: Writer, target: ir.Expr, size: ir.Expr) -> tuple[ir.Expr, ir.Expr]:
+def has_room(writer: Writer, target: nodes.Expr, size: nodes.Expr) -> tuple[nodes.Expr, nodes.Expr]:
     """The precondition of a routine that writes so many bytes to the hidden lane: there is room for them."""
-    return ir.Compare("ge", target, index(0)), ir.Compare("le", target, ir.Binary("sub", ir.Capacity(lane_of(writer)), size))
+    return nodes.Compare("ge", target, index(0)), nodes.Compare("le", target, nodes.Binary("sub", nodes.Capacity(lane_of(writer)), size))
 
 
-def between(value: ir.Expr, low: ir.Expr, high: ir.Expr) -> ir.Expr:
+def between(value: nodes.Expr, low: nodes.Expr, high: nodes.Expr) -> nodes.Expr:
     """A value that is known to lie there, so that the proof knows it too: that it is not too low at once."""
-    return ir.Binary("max", ir.Binary("min", value, high), low)
+    return nodes.Binary("max", nodes.Binary("min", value, high), low)
 
 
-def within(first: ir.Expr, *inside: ir.Expr, after: ir.Expr) -> tuple[ir.Expr, ...]:
+def within(first: nodes.Expr, *inside: nodes.Expr, after: nodes.Expr) -> tuple[nodes.Expr, ...]:
     """A routine's promise: the places that it gives are in order, from one end of a text to the other."""
     places = (first, *inside, after)
-    return tuple(ir.Compare("le", before, behind) for before, behind in itertools.pairwise(places))
+    return tuple(nodes.Compare("le", before, behind) for before, behind in itertools.pairwise(places))
 
 
 @dataclass(frozen=True, slots=True)
 class Scan:
     """A byte at a place; ``done`` is a variable that ends the scan."""
 
-    at: ir.Local
-    byte: ir.Local
-    done: ir.Local
+    at: nodes.Local
+    byte: nodes.Local
+    done: nodes.Local
 
 
 @contextmanager
 def scanning(
-    writer: Writer, lane: int | None, first: ir.Expr, after: ir.Expr, keeps: Callable[[ir.Local], tuple[ir.Expr, ...]] = lambda _: ()
+    writer: Writer,
+    lane: int | None,
+    first: nodes.Expr,
+    after: nodes.Expr,
+    keeps: Callable[[nodes.Local], tuple[nodes.Expr, ...]] = lambda _: (),
 ) -> Generator[Scan]:
     """A block that looks at each byte of a text in turn; ``keeps`` says what holds at each place."""
-    at, done = writer.var("at", first), writer.var("done", ir.Const("bool", value=False))
+    at, done = writer.var("at", first), writer.var("done", nodes.Const("bool", value=False))
     with writer.nested() as body:
         yield Scan(at, writer.let("byte", byte_at(lane, at)), done)
-        writer.assign(at, ir.Select(done, after, add(at, 1)))
-    writer.emit(ir.While(ir.Compare("lt", at, after), block(body), (*within(first, at, after=after), *keeps(at)), at))
+        writer.assign(at, nodes.Select(done, after, add(at, 1)))
+    writer.emit(nodes.While(nodes.Compare("lt", at, after), block(body), (*within(first, at, after=after), *keeps(at)), at))
 
 
-def is_one_of(byte: ir.Expr, characters: bytes) -> ir.Expr:
+def is_one_of(byte: nodes.Expr, characters: bytes) -> nodes.Expr:
     """Whether a byte is among some, of which there is one at least."""
-    found: ir.Expr = ir.Compare("eq", byte, ir.Const("u8", characters[0]))
+    found: nodes.Expr = nodes.Compare("eq", byte, nodes.Const("u8", characters[0]))
     for character in characters[1:]:
-        found = ir.Binary("or", found, ir.Compare("eq", byte, ir.Const("u8", character)))
+        found = nodes.Binary("or", found, nodes.Compare("eq", byte, nodes.Const("u8", character)))
     return found
 
 
-def is_between(byte: ir.Expr, low: int, high: int) -> ir.Expr:
+def is_between(byte: nodes.Expr, low: int, high: int) -> nodes.Expr:
     """Whether a byte lies between two, both included."""
-    return ir.Binary("and", ir.Compare("ge", byte, ir.Const("u8", low)), ir.Compare("le", byte, ir.Const("u8", high)))
+    return nodes.Binary("and", nodes.Compare("ge", byte, nodes.Const("u8", low)), nodes.Compare("le", byte, nodes.Const("u8", high)))
 
 
-TRUE = ir.Const("bool", value=True)
+TRUE = nodes.Const("bool", value=True)

@@ -17,7 +17,7 @@ from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.allowed import ForeignCodeError
 from rosetta_jit.runtime.code.lazy import Stubs, is_supported, stubs_text
 from rosetta_jit.runtime.code.native import Library
-from rosetta_jit.runtime.specs import function_of, size_with_weak_list, weak_list_offset
+from rosetta_jit.runtime.type_specs import function_of, size_with_weak_list, weak_list_offset
 
 FILES = (
     *("shared/message.ll", "shared/boxes.ll"),

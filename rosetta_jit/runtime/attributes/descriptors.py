@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from typing import Any
 
-from rosetta_jit.runtime import specs
+from rosetta_jit.runtime import type_specs
 from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.attributes.field_table import PLACE_BYTES, KeptFields
 from rosetta_jit.runtime.attributes.names import Names
@@ -29,7 +29,7 @@ def take_slots(made: type, entries: Sequence[Entry]) -> KeptFields:
     """The offsets of a class's slots, each of which keeps the view of a field. They stop being attributes: only accessors use them."""
     offsets: dict[str, int] = {}
     for slot in slots(entries):
-        offsets[entries[int(slot.rpartition("_")[2])].name] = specs.slot_offset(made.__dict__[slot])
+        offsets[entries[int(slot.rpartition("_")[2])].name] = type_specs.slot_offset(made.__dict__[slot])
         delattr(made, slot)
     records = [entry for entry in entries if isinstance(entry.node, Record)]
     few = sum(map(_records_within, records)) <= MAX_VIEWS
@@ -47,11 +47,15 @@ def assignable(base: type) -> type:
     """A subclass whose objects can assign to members (`describe`), as far as their type lets them."""
     code = library()
     assert code is not None, "there are members for it"
-    created = specs.from_spec(
-        base.__name__, base, base.__basicsize__, specs.DEFAULT | specs.BASETYPE, ((specs.TP_SETATTRO, code["set_attribute"]),)
+    created = type_specs.from_spec(
+        base.__name__,
+        base,
+        base.__basicsize__,
+        type_specs.DEFAULT | type_specs.BASETYPE,
+        ((type_specs.TP_SETATTRO, code["set_attribute"]),),
     )
     names = {"__module__": base.__module__, "__qualname__": base.__qualname__, "__doc__": base.__doc__, "_code": code}
-    return specs.with_attributes(created, names)
+    return type_specs.with_attributes(created, names)
 
 
 def describe(
@@ -63,13 +67,13 @@ def describe(
     numbers = {name: number for number, name in enumerate(entries)}
     members = [name for name in shown if name in kept.members]
     computed = [name for name in shown if name not in kept.members]
-    slots, table = (specs.Member * len(members))(), (specs.GetSet * len(computed))()
+    slots, table = (type_specs.Member * len(members))(), (type_specs.GetSet * len(computed))()
     for definition, name in zip(slots, members, strict=True):
         definition.name, definition.type, definition.offset, definition.flags = (
             _c_name(name),
-            specs.OBJECT,
+            type_specs.OBJECT,
             kept.offsets[name],
-            specs.READONLY,
+            type_specs.READONLY,
         )
     for definition, name in zip(table, computed, strict=True):
         get, set_ = accessors(entries[name], plain_arrays=plain_arrays)
@@ -78,9 +82,9 @@ def describe(
     names = Names({name: (each.get, each.set, each.closure or 0) for name, each in zip(computed, table, strict=True)})
     made._attributes = slots, table, names  # noqa: SLF001 # pyright: ignore[reportAttributeAccessIssue] - the class is ours; they live as long as it
     for name, definition in zip(members, slots, strict=True):
-        setattr(made, name, specs.member_of(made, definition))
+        setattr(made, name, type_specs.member_of(made, definition))
     for name, definition in zip(computed, table, strict=True):
-        setattr(made, name, specs.attribute_of(made, definition))
+        setattr(made, name, type_specs.attribute_of(made, definition))
     names.give(made, reads=not kept.offsets and not has_methods)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
 
-from rosetta_jit.runtime import specs
+from rosetta_jit.runtime import type_specs
 from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.callable import putting
 
@@ -38,10 +38,10 @@ _put = putting(_Handing)
 
 @cache
 def _handing_class() -> type:
-    members = (specs.Member * 2)(specs.Member(b"__vectorcalloffset__", specs.SSIZE_T, ENTRY, specs.READONLY, None))
-    slots = ((specs.TP_MEMBERS, ctypes.addressof(members)), (specs.TP_CALL, specs.address_of("PyVectorcall_Call")))
-    created = specs.from_spec("Handing", _Handing, HANDING_BYTES, specs.DEFAULT | specs.VECTORCALL, slots)
-    return specs.with_attributes(created, {"__module__": __name__, "_members": members, "_code": library()})
+    members = (type_specs.Member * 2)(type_specs.Member(b"__vectorcalloffset__", type_specs.SSIZE_T, ENTRY, type_specs.READONLY, None))
+    slots = ((type_specs.TP_MEMBERS, ctypes.addressof(members)), (type_specs.TP_CALL, type_specs.address_of("PyVectorcall_Call")))
+    created = type_specs.from_spec("Handing", _Handing, HANDING_BYTES, type_specs.DEFAULT | type_specs.VECTORCALL, slots)
+    return type_specs.with_attributes(created, {"__module__": __name__, "_members": members, "_code": library()})
 
 
 def handing(
@@ -81,16 +81,16 @@ def handing(
         _put(made, decode=decode)
     if encode is not None:
         _put(made, encode=encode)
-    specs.write_word(id(made) + ENTRY, code[kind])
+    type_specs.write_word(id(made) + ENTRY, code[kind])
     if in_c is not None:
         _put(made, whose=in_c.object_type)
         functions = (in_c.write, 0) if kind == "hand_in" else (in_c.allocate, in_c.merge)
         for index, word in enumerate((*functions, id(NO_ARGUMENTS))):
-            specs.write_word(id(made) + IN_C + 8 * index, word)
+            type_specs.write_word(id(made) + IN_C + 8 * index, word)
     return made
 
 
 def caller_of(function: Callable[..., Any]) -> int:
     """The address of the function in C that calls a callable, as `PyObject_Vectorcall` does, which it is for all but those made here."""
     is_ours = library() is not None and isinstance(function, _handing_class())
-    return specs.read_word(id(function) + ENTRY) if is_ours else specs.address_of("PyObject_Vectorcall")
+    return type_specs.read_word(id(function) + ENTRY) if is_ours else type_specs.address_of("PyObject_Vectorcall")

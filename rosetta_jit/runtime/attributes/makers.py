@@ -6,12 +6,12 @@ import ctypes
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
-from rosetta_jit.runtime import specs
+from rosetta_jit.runtime import type_specs
 from rosetta_jit.runtime.attributes.code import HEAP_TYPE_BYTES, functions, library
 from rosetta_jit.runtime.callable import is_native, putting
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.plan import Plan
+    from rosetta_jit.runtime.memory_plan import Plan
 
 ENTRY, MAKER_BYTES = 64, 72
 DEALLOC, FLAGS, CLASS_CALL = 48, 168, 400
@@ -38,10 +38,10 @@ _put = putting(_Maker)
 
 @cache
 def _maker_class() -> type:
-    members = (specs.Member * 2)(specs.Member(b"__vectorcalloffset__", specs.SSIZE_T, ENTRY, specs.READONLY, None))
-    slots = ((specs.TP_MEMBERS, ctypes.addressof(members)), (specs.TP_CALL, specs.address_of("PyVectorcall_Call")))
-    created = specs.from_spec("Maker", _Maker, MAKER_BYTES, specs.DEFAULT | specs.VECTORCALL, slots)
-    return specs.with_attributes(created, {"__module__": __name__, "_members": members, "_code": library()})
+    members = (type_specs.Member * 2)(type_specs.Member(b"__vectorcalloffset__", type_specs.SSIZE_T, ENTRY, type_specs.READONLY, None))
+    slots = ((type_specs.TP_MEMBERS, ctypes.addressof(members)), (type_specs.TP_CALL, type_specs.address_of("PyVectorcall_Call")))
+    created = type_specs.from_spec("Maker", _Maker, MAKER_BYTES, type_specs.DEFAULT | type_specs.VECTORCALL, slots)
+    return type_specs.with_attributes(created, {"__module__": __name__, "_members": members, "_code": library()})
 
 
 def maker(holder_type: Any, plan: Plan) -> Any:
@@ -51,7 +51,7 @@ def maker(holder_type: Any, plan: Plan) -> Any:
     maker_class: Any = _maker_class()
     made = maker_class.__new__(maker_class)
     _put(made, holder_type=holder_type, cell=holder_type.family_.cell, plan=plan, slow=_made, recipe=None, seen=None)
-    specs.write_word(id(made) + ENTRY, code["call_maker"])
+    type_specs.write_word(id(made) + ENTRY, code["call_maker"])
     return made
 
 
@@ -73,13 +73,13 @@ def class_of_holder_classes() -> type:
     """A class to derive the class of holder classes from, with room behind each for what compiled code makes its objects of."""
     if not is_native():
         return type("HolderClassBase", (type,), {"__module__": __name__})
-    return specs.from_spec("HolderClassBase", type, HEAP_TYPE_BYTES + 16, specs.DEFAULT | specs.BASETYPE, ())
+    return type_specs.from_spec("HolderClassBase", type, HEAP_TYPE_BYTES + 16, type_specs.DEFAULT | type_specs.BASETYPE, ())
 
 
 def let_call(metaclass: type) -> None:
     """Let CPython call the classes of a metaclass through what each of them has for that, as it calls all whose class is `type`."""
     if is_native():
-        specs.write_word(id(metaclass) + FLAGS, specs.read_word(id(metaclass) + FLAGS) | specs.VECTORCALL)
+        type_specs.write_word(id(metaclass) + FLAGS, type_specs.read_word(id(metaclass) + FLAGS) | type_specs.VECTORCALL)
 
 
 def make_quickly(holder_type: type) -> None:
@@ -87,8 +87,8 @@ def make_quickly(holder_type: type) -> None:
     code = library()
     assert code is not None, "there is code for it"
     if not holder_type.__dictoffset__:  # whose base, which is not ours, has forgotten its slots: CPython lets go of the dict
-        specs.write_word(id(holder_type) + DEALLOC, code["end_holder"])
-    specs.write_word(id(holder_type) + CLASS_CALL, code["call_class"])
+        type_specs.write_word(id(holder_type) + DEALLOC, code["end_holder"])
+    type_specs.write_word(id(holder_type) + CLASS_CALL, code["call_class"])
 
 
 def set_recipe(holder_type: type, recipe: tuple[Any, ...] | None) -> None:
@@ -96,10 +96,10 @@ def set_recipe(holder_type: type, recipe: tuple[Any, ...] | None) -> None:
     call the class as any other.
     """
     if is_native():
-        specs.write_word(id(holder_type) + HEAP_TYPE_BYTES, 0 if recipe is None else id(recipe))
+        type_specs.write_word(id(holder_type) + HEAP_TYPE_BYTES, 0 if recipe is None else id(recipe))
 
 
 def call_as_any(holder_type: type) -> None:
     """Let a class make its objects as Python says from now on: somebody gives it another constructor."""
     if is_native():
-        specs.write_word(id(holder_type) + CLASS_CALL, 0)
+        type_specs.write_word(id(holder_type) + CLASS_CALL, 0)

@@ -12,7 +12,7 @@ from functools import cache
 from types import MethodType
 from typing import Any, Literal, cast
 
-from rosetta_jit.runtime import specs
+from rosetta_jit.runtime import type_specs
 from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.callable import putting
 
@@ -66,12 +66,12 @@ class _BoundMethod(_Method):  # one that is called on an object
 def _class_of(kind: Kind) -> type:
     """The class of methods of a kind."""
     base = _Method if kind in OF_CLASSES else _BoundMethod
-    flags = specs.DEFAULT | specs.VECTORCALL | (0 if kind in OF_CLASSES else specs.METHOD_DESCRIPTOR)
-    members = (specs.Member * 2)(specs.Member(b"__vectorcalloffset__", specs.SSIZE_T, ENTRY, specs.READONLY, None))
-    slots = ((specs.TP_MEMBERS, ctypes.addressof(members)), (specs.TP_CALL, specs.address_of("PyVectorcall_Call")))
-    created = specs.from_spec("Method", base, METHOD_BYTES, flags, slots)
+    flags = type_specs.DEFAULT | type_specs.VECTORCALL | (0 if kind in OF_CLASSES else type_specs.METHOD_DESCRIPTOR)
+    members = (type_specs.Member * 2)(type_specs.Member(b"__vectorcalloffset__", type_specs.SSIZE_T, ENTRY, type_specs.READONLY, None))
+    slots = ((type_specs.TP_MEMBERS, ctypes.addressof(members)), (type_specs.TP_CALL, type_specs.address_of("PyVectorcall_Call")))
+    created = type_specs.from_spec("Method", base, METHOD_BYTES, flags, slots)
     doc = property(lambda method: method.function.__doc__)
-    return specs.with_attributes(created, {"__module__": __name__, "__doc__": doc, "_members": members, "_code": library()})
+    return type_specs.with_attributes(created, {"__module__": __name__, "__doc__": doc, "_members": members, "_code": library()})
 
 
 def method(kind: Kind, function: Any, bind: Callable[[Any], None]) -> Any:
@@ -88,7 +88,7 @@ def method(kind: Kind, function: Any, bind: Callable[[Any], None]) -> Any:
     assert code is not None, "there are methods"
     method_class: Any = _class_of(kind)
     made = method_class.__new__(method_class)
-    specs.write_word(id(made) + ENTRY, code[f"method_{kind}"])
+    type_specs.write_word(id(made) + ENTRY, code[f"method_{kind}"])
     put(made, function=function)
 
     def slow(*arguments: Any, **named: Any) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 
 from rosetta_jit.runtime.attributes.code import HEAP_TYPE_BYTES, library
 from rosetta_jit.runtime.callable import is_native
-from rosetta_jit.runtime.specs import address_of, read_word, write_word
+from rosetta_jit.runtime.type_specs import address_of, read_word, write_word
 
 GETATTRO = 144
 """Where in a class stands what reads attributes: of PyTypeObject, Include/cpython/object.h."""

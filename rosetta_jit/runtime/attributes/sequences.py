@@ -10,7 +10,17 @@ from typing import Any
 
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.callable import is_native
-from rosetta_jit.runtime.specs import BASETYPE, DEFAULT, MP_SUBSCRIPT, SQ_LENGTH, TP_DEALLOC, TP_ITER, TP_ITERNEXT, from_spec, write_word
+from rosetta_jit.runtime.type_specs import (
+    BASETYPE,
+    DEFAULT,
+    MP_SUBSCRIPT,
+    SQ_LENGTH,
+    TP_DEALLOC,
+    TP_ITER,
+    TP_ITERNEXT,
+    from_spec,
+    write_word,
+)
 
 PLACE, SEQUENCE_BYTES, ITERATOR_BYTES = 16, 24, 32
 

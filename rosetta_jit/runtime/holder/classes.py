@@ -17,7 +17,7 @@ from rosetta_jit.runtime.holder.message import Access, Family, Message, View, in
 from rosetta_jit.runtime.holder.objects.foreign import Foreign, Wholes
 from rosetta_jit.runtime.holder.record import Blob, Entry, Items, Numbers, Record, Text
 from rosetta_jit.runtime.lanes import Lanes
-from rosetta_jit.runtime.plan import Plan
+from rosetta_jit.runtime.memory_plan import Plan
 from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
@@ -293,7 +293,7 @@ def settle_lanes(holder: Holder) -> None:
 
 def _contents(holder: Holder) -> tuple[int, int, list[bytes]]:
     """Two words of the state, and the bytes of each lane."""
-    from rosetta_jit.runtime.contents import contents_of  # only pickles need it
+    from rosetta_jit.runtime.pickled_lanes import contents_of  # only pickles need it
 
     lanes, _ = place(holder)
     return lanes.words[VALID], lanes.words[WASTED], contents_of(lanes)

@@ -32,7 +32,7 @@ from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes
 from rosetta_jit.runtime.limits import MAX_RECIPES
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.looks.described import Constructor, Described
-from rosetta_jit.runtime.plan import Plan, plan
+from rosetta_jit.runtime.memory_plan import Plan, plan
 from rosetta_jit.runtime.row_counts import begun_as, initialised, roomier
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.late import Late
@@ -337,7 +337,7 @@ def revived(mark: str, text: str, manners: Manners | str, contents: tuple[int, i
     ValueError
         If another version of rosetta_jit has written this, whose lanes are others.
     """
-    from rosetta_jit.runtime.contents import fill  # only pickles need it
+    from rosetta_jit.runtime.pickled_lanes import fill  # only pickles need it
 
     family = _MARKED.get(mark)
     if family is None:

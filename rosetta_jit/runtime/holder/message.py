@@ -24,8 +24,8 @@ from rosetta_jit.runtime.holder.tree import Tree
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_DEPTH, MAX_ENDED, MAX_ENDED_BYTES
 from rosetta_jit.runtime.memory import ALIGNMENT
-from rosetta_jit.runtime.plan import Plan
-from rosetta_jit.runtime.specs import slot_offset
+from rosetta_jit.runtime.memory_plan import Plan
+from rosetta_jit.runtime.type_specs import slot_offset
 from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:

@@ -67,6 +67,6 @@ def _unknown(record: Record, name: str) -> str:
 
 
 def _meant(record: Record, name: str) -> str | None:
-    from rosetta_jit.catalogue.spelling import closest
+    from rosetta_jit.catalogue.suggestions import closest
 
     return closest(str(name), record.entries)  # the key of a dict may be anything

@@ -4,21 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from rosetta_jit.kernel.ir import (
-    Advance,
-    Binary,
-    Const,
-    Convert,
-    Kernel,
-    Let,
-    Load,
-    Place,
-    Reserve,
-    Return,
-    SetField,
-    Used,
-    Var,
-)
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Advance, Binary, Const, Convert, Let, Load, Place, Reserve, Return, SetField, Used, Var
 from rosetta_jit.kernel.terms import BEGIN, add, index
 from tests.kernel.kernels import compare, expect, i64, kernel, need
 

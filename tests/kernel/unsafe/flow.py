@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.nodes import (
     Advance,
     Assign,
     Binary,

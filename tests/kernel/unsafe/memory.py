@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.ir import Routine
+from rosetta_jit.kernel.nodes import (
     Advance,
     Call,
     Capacity,
@@ -23,7 +24,6 @@ from rosetta_jit.kernel.ir import (
     Require,
     Reserve,
     Return,
-    Routine,
     SetField,
     Store,
     Used,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.ir import Advance, Binary, Compare, Convert, Fill, Let, Load, Reserve, Select, Used, Wire
+from rosetta_jit.kernel.nodes import Advance, Binary, Compare, Convert, Fill, Let, Load, Reserve, Select, Used, Wire
 from rosetta_jit.kernel.terms import BEGIN, add, index
 from tests.kernel.kernels import compare, expect, i64, need
 from tests.kernel.unsafe.cases import AT, TWO, Cases, M, N, both, plus, put, rows, sub

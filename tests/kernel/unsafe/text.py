@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.ir import Kernel, Routine
+from rosetta_jit.kernel.nodes import (
     Advance,
     Binary,
     Call,
@@ -16,14 +17,12 @@ from rosetta_jit.kernel.ir import (
     HostCall,
     HostValue,
     If,
-    Kernel,
     Let,
     Load,
     Local,
     Register,
     Reserve,
     Return,
-    Routine,
     Used,
     Wire,
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rosetta_jit.kernel.decimals import LARGEST_SCALE
-from rosetta_jit.kernel.ir import (
+from rosetta_jit.kernel.nodes import (
     Assign,
     Binary,
     Bits,

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import assert_never
 
-from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.suggestions import closest
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.limits import MAX_REPORTED

@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import MethodDescriptorType, WrapperDescriptorType
 from typing import Any
 
-from rosetta_jit.runtime import specs
+from rosetta_jit.runtime import type_specs
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -45,6 +45,6 @@ def functions_in_c(object_type: Any, module: str, *, write: str, merge: str) -> 
     owners = {each.__objclass__ for each in (writer, merger, begin)}
     if len(owners) != 1 or owners.pop().__module__ != module or type(object_type).__call__ is not type.__call__:
         return None
-    writes = specs.function_behind(writer, specs.VARARGS | specs.KEYWORDS)
-    allocates, merges = specs.allocator_of(object_type), specs.function_behind(merger, specs.ONE_ARGUMENT)
+    writes = type_specs.function_behind(writer, type_specs.VARARGS | type_specs.KEYWORDS)
+    allocates, merges = type_specs.allocator_of(object_type), type_specs.function_behind(merger, type_specs.ONE_ARGUMENT)
     return InC(object_type, writes, allocates, merges) if writes and allocates and merges else None

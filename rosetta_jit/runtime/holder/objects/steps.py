@@ -19,7 +19,7 @@ from rosetta_jit.runtime.attributes.field_table import PLACE_BYTES
 from rosetta_jit.runtime.holder.classes import HolderFamily
 from rosetta_jit.runtime.holder.objects import shapes, unions
 from rosetta_jit.runtime.holder.record import Bit, Blob, Entry, Items, Numbers, Record, Scalar, Text
-from rosetta_jit.runtime.specs import read_word, slot_offset
+from rosetta_jit.runtime.type_specs import read_word, slot_offset
 from rosetta_jit.startup.dataclass import dataclass
 
 LEFT = (AttributeError, LookupError, TypeError, ValueError, OverflowError, RosettaError)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from contextlib import contextmanager
 
-from rosetta_jit.kernel.ir import Binary, Expr, For, Local
+from rosetta_jit.kernel.nodes import Binary, Expr, For, Local
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import inside

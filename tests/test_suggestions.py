@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.catalogue.suggestions import closest
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,8 @@ from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import field
 
-from rosetta_jit.kernel.ir import Advance, Block, For, If, Kernel, Stmt, Switch, While
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Advance, Block, For, If, Stmt, Switch, While
 from rosetta_jit.startup.dataclass import dataclass
 
 MAX_IDENTIFIER = 60

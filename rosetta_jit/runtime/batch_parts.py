@@ -17,7 +17,7 @@ from rosetta_jit.model.initial_values import InitialValue
 from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span, Variant
 from rosetta_jit.runtime.lanes import Lanes, in_use
 from rosetta_jit.runtime.limits import MAX_GENERATIONS
-from rosetta_jit.runtime.plan import plan
+from rosetta_jit.runtime.memory_plan import plan
 from rosetta_jit.runtime.rows import Rows, elements, lent, offsets, picked
 from rosetta_jit.startup.dataclass import dataclass
 
