@@ -28,7 +28,7 @@ OnError: TypeAlias = Literal["raise", "skip", "mask"]
 CLOCKS = ("log_time", "publish_time")
 """The columns of times that a table has beside the fields of messages."""
 
-BYTES, MESSAGES = 4 << 20, 16_384
+BYTES, MESSAGES = 6 << 20, 24_576
 """The most that a part is made of; a longer message is alone."""
 
 LARGE, LARGE_BYTES = 1 << 17, 16 << 20
@@ -97,8 +97,7 @@ class Collector:
         self._on_error: OnError = on_error
         self._batch: Batch | None = None
         self._filling: Filling | None = None
-        self._rows = np.empty((4, MESSAGES), np.int64)
-        self._spans = MessageSpans(self._rows[0], self._rows[1], self._rows.strides[0])
+        self._times = np.empty((2, MESSAGES), np.int64)
         self._bytes = 0
         self._refused: dict[int, Refused] = {}
 
@@ -118,8 +117,16 @@ class Collector:
         """
         if not len(rows):
             return
-        done, sizes = 0, rows.ends - rows.begins
-        ends, size = np.cumsum(sizes), self._size if int(sizes.min()) >= LARGE else min(BYTES, self._size)
+        sizes = rows.ends - rows.begins
+        total, count = int(sizes.sum()), len(sizes)
+        if total < LARGE * count and self._bytes + total <= min(BYTES, self._size) and self._count + count <= MESSAGES:
+            self._take(block, rows)
+            self._bytes += total
+            if borrows(self._decoder):
+                yield from self.rest()
+            return
+        done, ends = 0, np.cumsum(sizes)
+        size = self._size if int(sizes.min()) >= LARGE else min(BYTES, self._size)
         while done < len(rows):
             before = int(ends[done - 1]) if done else 0
             most = max(int(np.searchsorted(ends, size - self._bytes + before, side="right")) - done, 0)
@@ -139,19 +146,19 @@ class Collector:
         filling = self._filling = self._filling or filling_of(self._decoder, self._likely(rows), self._batch, self._on_error)
         self._batch, first = filling.batch, filling.count
         count = first + len(rows)
-        for own, column in zip(self._rows, (rows.begins, rows.ends, rows.log_ns, rows.publish_ns), strict=True):
-            own[first:count] = column
+        spans = MessageSpans(np.ascontiguousarray(rows.begins, np.int64), np.ascontiguousarray(rows.ends, np.int64), first=first)
+        self._times[0, first:count], self._times[1, first:count] = rows.log_ns, rows.publish_ns
         try:
             with filling.batch.lanes as lanes:
-                fill(self._decoder, filling, block.data, self._spans, count)
+                fill(self._decoder, filling, block.data, spans, count)
                 lanes.source[0] = block.data.data if borrows(self._decoder) else None
         except DecodeError as error:
             number, _, path = error.path.removeprefix("[").partition("]")
             raise DecodeError(error.kind, f"[{self._first + int(number)}]{path}", error.detail, error.offset) from None
         for number in filling.batch.errors:
             if number >= first:
-                begin, end = self._spans.span(number)
-                self._refused[number] = Refused(int(self._rows[2, number]), block.data[begin:end].tobytes())
+                begin, end = spans.span(number)
+                self._refused[number] = Refused(int(self._times[0, number]), block.data[begin:end].tobytes())
 
     def _likely(self, rows: Rows) -> int:
         """How many messages a part is going to have that begins with some."""
@@ -165,7 +172,7 @@ class Collector:
         if filling is not None and filling.count:
             with filling.batch.lanes:
                 batch = filling.end()
-            log_ns, publish_ns = self._rows[2:, : filling.count]
+            log_ns, publish_ns = self._times[:, : filling.count]
             if len(batch) < filling.count:
                 log_ns, publish_ns = log_ns[batch.kept], publish_ns[batch.kept]
             part = Part(batch, log_ns, publish_ns, self._first, filling.count, self._refused)

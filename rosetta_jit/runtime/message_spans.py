@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MessageSpans:
-    """Message i is bytes ``begins[i]`` to ``ends[i]``; between messages there may be other bytes.
+    """Message ``first + i`` is bytes ``begins[i]`` to ``ends[i]``; between messages there may be other bytes.
 
     Attributes
     ----------
@@ -23,11 +23,14 @@ class MessageSpans:
         Contiguous in memory, because compiled code reads them. They are not checked against any buffer.
     apart : int
         How many bytes ``ends`` lies behind ``begins``, where both are of one array; 0 where that is not known.
+    first : int
+        The number of the first message.
     """
 
     begins: NDArray[np.int64]
     ends: NDArray[np.int64]
     apart: int = 0
+    first: int = 0
 
     @classmethod
     def of(cls, offsets: NDArray[np.int64]) -> Self:
@@ -52,13 +55,13 @@ class MessageSpans:
 
     @property
     def addresses(self) -> tuple[int, int]:
-        """The addresses of begins and ends, for compiled code."""
-        begins = _address_of(self.begins)
-        return begins, begins + self.apart if self.apart else _address_of(self.ends)
+        """The addresses of begins and ends, for compiled code: where those of message 0 would lie."""
+        before, begins = self.begins.itemsize * self.first, _address_of(self.begins)
+        return begins - before, (begins + self.apart if self.apart else _address_of(self.ends)) - before
 
     def span(self, number: int) -> tuple[int, int]:
         """The first byte of a message, and the one behind its last."""
-        return int(self.begins[number]), int(self.ends[number])
+        return int(self.begins[number - self.first]), int(self.ends[number - self.first])
 
     def are_in(self, number: int, size: int) -> bool:
         """Whether a message lies in a buffer of so many bytes."""

@@ -232,14 +232,15 @@ def together(starts: Indices, counts: Indices, used: int) -> slice | None:
     ValueError
         If a span leaves its lane, of which so many rows are in use.
     """
-    if len(counts) and counts.min() <= 0:
+    least = int(counts.min()) if len(counts) else 0
+    if least == 0:
         filled = counts != 0
         starts, counts = starts[filled], counts[filled]
     if not len(counts):
         return slice(0, 0)
     ends = starts + counts
-    is_whole = bool((starts[1:] == ends[:-1]).all())
+    is_whole = least >= 0 and bool((starts[1:] == ends[:-1]).all())
     first, end = (int(starts[0]), int(ends[-1])) if is_whole else (int(starts.min()), int(ends.max()))
-    if first < 0 or end > used or (counts < 0).any():
+    if first < 0 or end > used or least < 0:
         raise ValueError(f"an array leaves its lane of {used} rows")
     return slice(first, end) if is_whole else None
