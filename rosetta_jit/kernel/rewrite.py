@@ -48,10 +48,8 @@ def _rebuilt(expr: nodes.Expr, parts: list[nodes.Expr]) -> nodes.Expr:  # noqa: 
             return nodes.Compare(op, change(left), change(right))
         case nodes.Fits(op, left, right):
             return nodes.Fits(op, change(left), change(right))
-        case nodes.Convert(type_, operand):
-            return nodes.Convert(type_, change(operand))
-        case nodes.Bits(type_, operand):
-            return nodes.Bits(type_, change(operand))
+        case nodes.Convert(type_, operand) | nodes.Bits(type_, operand):
+            return type(expr)(type_, change(operand))
         case nodes.Select(condition, then, otherwise):
             return nodes.Select(change(condition), change(then), change(otherwise))
         case nodes.IsText(address, size):

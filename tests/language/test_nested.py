@@ -243,3 +243,43 @@ def test_what_elements_may_lack(backend):
     with pytest.raises(rj.DecodeError, match="the required `n` is not there") as error:
         decode(write(write.holder_type.from_dict({"rows": rows})))
     assert (error.value.kind, error.value.path) == ("missing", ".first.n")
+
+
+LEFT_ALONE = (
+    ".parts[].u <-> .parts[].u ignore .parts[].v",
+    ".parts[].u <-> .parts[].u ignore rest",
+    "len(.parts) <-> len(.parts) for each from 0 to len(.parts) .parts[each].u <-> .parts[each].u end ignore .parts[].v",
+    "len(.parts) <-> len(.parts) for i from 0 to len(.parts) .parts[i].u <-> .parts[i].u ignore .parts[i].v end",
+)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("rules", LEFT_ALONE)
+def test_fields_of_elements_that_a_mapping_leaves_alone_wherever_it_is_used(rules, backend):
+    """The elements lie in a message, in a message of a message, or in one of an array's, whose loop no name of a mapping's own hides."""
+    texts = {
+        "lab/Part.msg": "int32 u\nstring v\n",
+        "lab/Row.msg": "Part[] parts\n",
+        "lab/Rows.msg": "Row[] rows\nRow one\n",
+        "own/Part.msg": "int32 u\n",
+        "own/Row.msg": "Part[] parts\n",
+        "own/Rows.msg": "Row[] rows\nRow one\n",
+    }
+    head = "".join(f'import "{name}" ' for name in texts)
+    uses = "".join(f'.{name} <-> .{name} via "row.mapping" ' for name in ("rows", "one"))
+    texts |= {
+        "row.mapping": f"{head} data-holder: own/Row wire-schema: lab/Row rules: {rules}",
+        "m.mapping": f"{head} data-holder: own/Rows wire-schema: lab/Rows rules: {uses}",
+    }
+    decode, encode = (kind("m.mapping", schema=texts, encoding="ros1", backend=backend) for kind in (rj.Decoder, rj.Encoder))
+    own = {"schema": texts, "imports": ["lab/Rows.msg"], "encoding": "ros1", "backend": "interpreter"}
+    write, read = rj.Encoder.of("lab/Rows", **own), rj.Decoder.of("lab/Rows", **own)
+
+    def row(count, text=""):
+        return {"parts": [{"u": 10 * count + number, "v": text} for number in range(count)]}
+
+    found = decode(write(write.holder_type.from_dict({"rows": [row(3, "x"), row(0), row(2, "y")], "one": row(1, "z")})))
+    assert [[part.u for part in each.parts] for each in (*found.rows, found.one)] == [[30, 31, 32], [], [20, 21], [10]]
+    assert read(encode(found)).to_dict() == {"rows": [row(3), row(0), row(2)], "one": row(1)}
+    assert str(decode.mapping.laws.holders) == "exact inverse"
+    assert {loss.place for loss in decode.mapping.laws.messages.losses} == {".rows[].parts[].v", ".one.parts[].v"}

@@ -45,10 +45,13 @@ class Elements:
     field: Names
 
 
-def elements_of(names: Names, message: Message) -> Elements | None:
-    """The innermost array of variable length that a field lies in; None where it lies in none, or in one of fixed length."""
+def elements_of(names: Names, message: Message, within: Names) -> Elements | None:
+    """The innermost array of variable length that a field of a message lies in; None where it lies in none, or in one of fixed length.
+
+    The message may itself lie in another one: all names begin with those ``within``.
+    """
     struct, found = message.root, None
-    for count, name in enumerate(names[:-1], 1):
+    for count, name in enumerate(names[len(within) : -1], len(within) + 1):
         field = next(each for each in struct.fields if each.name == name)
         type_ = message.value_type(field.type)
         inner = value_inside(message, field.type)
@@ -81,7 +84,7 @@ def named_elements(
         names = field_names(place)
         if any(names[: len(each)] == each for each in broken):
             continue
-        elements = elements_of(names, scope.messages[scope.target])
+        elements = elements_of(names, scope.messages[scope.target], field_names(scope.base(scope.target)))
         if elements is not None and elements.array in lengths_in(explicit):
             found.append((elements, rule.span))
         else:

@@ -143,7 +143,7 @@ def _at(use: Use, scope: Scope, rules_of: RulesOf) -> tuple[typed.Rule, ...]:
     if not isinstance(place.type, Array) or not isinstance(origin.type, Array):
         rules = _inside(use.mapping, use.side, place, origin, scope, rules_of)
         return (typed.When(typed.Has(origin), rules, (), span),) if _may_lack(place, scope) and _may_lack(origin, scope) else rules
-    number = typed.Local(f"each{scope.suffix}")
+    number = typed.Local(f"each message{scope.suffix}")  # a blank: no loop of the mapping is called so
     element, source = (_element(end, number, scope) for end in (place, origin))
     rules = _inside(use.mapping, use.side, element, source, scope, rules_of)
     fixed = place.type.fixed

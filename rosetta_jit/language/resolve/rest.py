@@ -41,7 +41,7 @@ def defaulted(
     touched = {field_names(rule.place) for rule in rules_within(rules) if isinstance(rule, Assign | typed.Default)}
     known, elements = lengths_in(rules), dict["Names", "Elements"]()
     for names in untouched(touched, target, target.root, within):
-        inner = elements_of(names, target)
+        inner = elements_of(names, target, within)
         if inner is not None and inner.array in known and not _is_broken(names, broken):
             elements[names] = inner
     _note(rest, [*single, *elements], within, scope)
