@@ -26,7 +26,7 @@ def with_operands(expr: nodes.Expr, change: Callable[[nodes.Expr], nodes.Expr]) 
     return expr if all(map(is_, new, old)) else _rebuilt(expr, new)
 
 
-def _rebuilt(expr: nodes.Expr, parts: list[nodes.Expr]) -> nodes.Expr:  # noqa: C901 - a case for each node
+def _rebuilt(expr: nodes.Expr, parts: list[nodes.Expr]) -> nodes.Expr:
     """An expression of the same kind with other operands."""
     remaining = iter(parts)
 

@@ -5,11 +5,15 @@ from __future__ import annotations
 import re
 
 import pytest
+from llvmlite import ir
 
 from rosetta_jit.backends.entry.link import llvm_text
+from rosetta_jit.backends.llvm.function import MANY, emit
 from rosetta_jit.kernel.nodes import Compare, Const, Expect, For, Load, Local, Require, Return
 from rosetta_jit.kernel.proof.verify import verify
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
+from rosetta_jit.pipeline.build import Build
+from rosetta_jit.pipeline.request import Request
 from tests.backends.engines import outcome
 from tests.backends.holders import rows
 from tests.backends.kernels import failure, kernel
@@ -64,3 +68,16 @@ def test_checks_that_report_the_same_lead_to_one_block():
     for wrong in (None, 0, 300, BYTES - 1):
         message = bytes(9 if place == wrong else 0 for place in range(BYTES))
         assert outcome("llvm", made, message, rows(made)) == outcome("interpreter", made, message, rows(made))
+
+
+def test_a_routine_that_cannot_fail_is_not_asked_whether_it_has():
+    fields = "\n".join(f"  int64 field{number} = {number + 1};" for number in range(MANY))
+    text = f'syntax = "proto3"; package a;\nmessage All {{\n{fields}\n}}'
+    encoder, size = Build(Request("encode", type="a.All", files=(("a.proto", text),), encoding="protobuf")).kernels
+    asked = {}
+    for made in (encoder, size):
+        module = ir.Module("made")
+        emit(module, made, "made", whole=False)
+        asked[made] = len(re.findall(r"extractvalue \{ ?i64, i64 ?\} \S+, 0", str(module)))
+    assert asked[size] == 0
+    assert asked[encoder] >= MANY

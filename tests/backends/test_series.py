@@ -103,6 +103,40 @@ def test_many_messages_at_once(programs):
         assert row == decode(message)
 
 
+def within_itself(count):
+    """A type that is within itself by two of its fields, one of them in another message."""
+    numbers = [f"  int64 number{number} = {number + 1};" for number in range(count)]
+    texts = [f"  repeated string texts{number} = {number + 1 + count};" for number in range(count)]
+    fields = "\n".join((*numbers, *texts, "  All left = 1000;\n  Other other = 1001;"))
+    text = f'syntax = "proto3"; package a;\nmessage Other {{ All right = 1; }}\nmessage All {{\n{fields}\n}}'
+    return "a.All", {"encoding": "protobuf", "schema": {"a.proto": text}}
+
+
+def tree(holder, depth):
+    """A holder whose messages within it differ from one another."""
+    for number in range(depth, 60, 7):
+        setattr(holder, f"number{number}", (number + depth) ** (depth + 2))
+        getattr(holder, f"texts{number}").extend([f"{number} at {depth}"] * (number % 3))
+    if depth:
+        tree(holder.left, depth - 1)
+        tree(holder.other.right, depth - 1)
+    return holder
+
+
+def test_a_type_in_itself_in_two_ways_is_printed_once():
+    """A lane may stand for the row itself in one way, and for what is within it in both."""
+    type_, options = within_itself(60)
+    (name, text), *_ = options["schema"].items()
+    request = Request("encode", type=type_, files=((name, text),), encoding="protobuf")
+    for made in Build(request).kernels:
+        assert max(len(cases.numbers) for each in found(made, made.bodies[0]).switches.values() for cases in each) == 2
+    encode, reference = (rj.Encoder.of(type_, **options, backend=backend) for backend in ("llvm", "interpreter"))
+    message = bytes(encode(tree(encode.new(), 3)))
+    assert message == bytes(reference(tree(reference.new(), 3)))
+    decode = rj.Decoder.of(type_, **options)
+    assert bytes(encode(decode(message))) == message
+
+
 def kernel_of(name):
     type_, options = TYPES[name]
     files = tuple(options["schema"].items())

@@ -211,15 +211,26 @@ def test_memory_is_read_once():
 @pytest.mark.parametrize(
     "write",
     [
-        SetField(Place(0, ROW, 8), Const("i64", 1)),
+        SetField(Place(0, ROW), Const("i64", 1)),
+        SetField(Place(0, ROW, 7), Const("u8", 1)),
+        SetField(Place(0, index(0)), Const("i64", 1)),
         Fill(Place(0, ROW), index(8)),
         If(compare("eq", ROW, 0), (Fill(Place(0, ROW), index(8)),)),
     ],
-    ids=["field", "fill", "in a branch"],
+    ids=["field", "part of it", "field of another row", "fill", "in a branch"],
 )
 def test_what_is_written_is_read_again(write):
     before = kernel((ROW_EXISTS, Let("a", FLAG), write, Let("b", FLAG), SetField(Place(0, ROW, 16), Local("u64", "b")), Return(BEGIN)))
     assert [stmt.value for stmt in found(reuse(before), Let)] == [FLAG, FLAG]
+
+
+@pytest.mark.parametrize("row", [ROW, index(0)], ids=["row", "another row"])
+def test_other_fields_of_a_row_stay_as_they_are(row):
+    write = SetField(Place(0, row, 8), Const("i64", 1))
+    before = kernel((ROW_EXISTS, Let("a", FLAG), write, Let("b", FLAG), SetField(Place(0, ROW, 16), Local("u64", "b")), Return(BEGIN)))
+    after = reuse(before)
+    assert [stmt.value for stmt in found(after, Let)] == [FLAG, Local("u64", "a")]
+    same_outcomes(before, after, [b""], seed=bytes(range(64)))
 
 
 def test_a_loop_that_writes_forgets_before_its_first_round():

@@ -145,18 +145,16 @@ class _Look:
         return (*parts, *block[behind:]) if parts else None
 
     def cases(self, switch: Switch) -> tuple[Cases, ...]:
-        """The cases of a switch that are alike, where they are many."""
-        if len(switch.cases) < ROUNDS:
-            return ()
+        """The cases of a switch that are alike, where they are many, or of very many statements."""
         alike = dict["Hashable", list[tuple[int, "Block", list[Slot]]]]()
         kinds = [tuple(map(type, body)) for _, body in switch.cases]
-        often = {kind for kind, times in Counter(kinds).items() if times >= ROUNDS}
+        times = Counter(kinds)
         for (number, body), kind in zip(switch.cases, kinds, strict=True):
-            if kind not in often:
+            if times[kind] < ROUNDS and (times[kind] == 1 or not _is_vast(body)):
                 continue
             outlines = list(map(self.outline, body))
             alike.setdefault(tuple([each.shape for each in outlines]), []).append((number, body, _joined(each.slots for each in outlines)))
-        made = [_case(group) for group in alike.values() if len(group) >= ROUNDS and len(group[0][1]) > 1]
+        made = [_case(group) for group in alike.values() if len(group[0][1]) > 1 and (len(group) >= ROUNDS or _is_vast(group[0][1]))]
         return tuple(each for each in made if each is not None)
 
 
@@ -204,9 +202,18 @@ def _joined(slots: Iterable[Sequence[Slot]]) -> list[Slot]:
     return [slot for each in slots for slot in each]
 
 
+def _is_vast(body: Block) -> bool:
+    """Whether a case is worth a table where there is but one more like it: a message type that stands in others in several ways."""
+    return sum(1 for _ in statements(body)) >= MANY
+
+
 def _case(group: Sequence[tuple[int, Block, list[Slot]]]) -> Cases | None:
-    series = _series(group[-1][1], [slots for *_, slots in group], None)
-    return None if series is None or series.carried else Cases(tuple(number for number, *_ in group), series)
+    """The series of some cases. A lane of the last one may stand for two where that of the first one does not: it is printed then."""
+    for cases in (group, group[::-1]):
+        series = _series(cases[-1][1], [slots for *_, slots in cases], None)
+        if series is not None and not series.carried:
+            return Cases(tuple(number for number, *_ in cases), series)
+    return None
 
 
 # --- the table -----------------------------------------------------------------------------------------------------------

@@ -163,7 +163,8 @@ class Frame:
     A routine that is printed where it is called has a frame with locals of its own, which knows its ``caller``.
     ``indices`` are the locals that grow with the rounds of a loop. Of a body with series (`alike`),
     ``rows`` is an array of the used lengths of the holder's lanes, and ``stretch`` has the numbers of the stretch that is being printed.
-    ``bases`` are addresses of rows and places in the message, by the block that has computed them.
+    ``bases`` are addresses of rows and places in the message, by the block that has computed them. A body that is no ``counting`` one
+    leaves the used lengths of the holder's lanes as they are.
     """
 
     module: ir.Module
@@ -183,6 +184,7 @@ class Frame:
     rows: ir.Value | None = None
     locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
     used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
+    counting: bool = True
     indices: set[str] = field(default_factory=set[str])
     bases: dict[tuple[object, ...], ir.Value] = field(default_factory=dict[tuple[object, ...], ir.Value])
 
@@ -242,9 +244,12 @@ class Frame:
         return constant(lane) if self.stretch is None else self.stretch.lanes.get(lane, constant(lane))
 
     def used_slot(self, lane: int) -> ir.Value:
-        """The stack slot of the lane's used length."""
-        if self.rows is not None and not self.is_hidden(lane):
-            return state_word(self.builder, self.rows, self.lane_number(lane))
+        """Where the lane's used length is: in the state if it stays there, else in a stack slot."""
+        if not self.is_hidden(lane):
+            if self.rows is not None:
+                return state_word(self.builder, self.rows, self.lane_number(lane))
+            if not self.counting and (self.is_crowded or self.stretch is not None):
+                return self._state_place(lane, USED)
         if lane not in self.used:
             start = constant(0) if self.is_hidden(lane) else self._used_before(self.entry, lane)
             self.used[lane] = self.entry.alloca(I64, name=f"rows{lane}")
@@ -285,15 +290,20 @@ class Frame:
 
     def _word(self, lane: int, word: int, type_: ir.Type, name: str) -> ir.Value:
         if self.stretch is not None and lane in self.stretch.lanes:
-            first = self.builder.mul(self.stretch.lanes[lane], constant(LANE_WORDS))
-            word_of_lane = self.builder.add(first, constant(lane_word(0, word)))
-            return self.builder.load(state_word(self.builder, self.parameters.state, word_of_lane), typ=type_, align=8, name="word")
+            return self.builder.load(self._state_place(lane, word), typ=type_, align=8, name="word")
         if self.is_crowded:
             return self._load(self.builder, lane, word, type_, name)
         key = (lane, word)
         if key not in self.loaded:
             self.loaded[key] = self._load(self.entry, lane, word, type_, name)
         return self.loaded[key]
+
+    def _state_place(self, lane: int, word: int) -> ir.Value:
+        """The address of a word of one of the holder's lanes while the kernel runs."""
+        if self.stretch is None or lane not in self.stretch.lanes:
+            return state_word(self.builder, self.parameters.state, lane_word(lane, word))
+        first = self.builder.mul(self.stretch.lanes[lane], constant(LANE_WORDS))
+        return state_word(self.builder, self.parameters.state, self.builder.add(first, constant(lane_word(0, word))))
 
     def _load(self, builder: ir.IRBuilder, lane: int, word: int, type_: ir.Type, name: str) -> ir.Value:
         if self.is_hidden(lane):

@@ -181,13 +181,14 @@ def _attempt(
     parameters, lanes, emptied = Parameters(*function.args), (kernel.strides, kernel.lanes), emptied_lanes(kernel)
     frame = Frame(function.module, entry, entry.beside(first), parameters, *lanes, {}, done, failed, emptied, routines)
     frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
-    frame.alike = found(kernel, bodies[0])
-    if frame.alike:
+    counted = counted_lanes(kernel, bodies[0])
+    frame.alike, frame.counting = found(kernel, bodies[0]), bool(counted)
+    if frame.alike and counted:
         begin_rows(frame, kernel.direction)
     llvm_checks.body(frame, bodies[0])
     if not frame.builder.block.is_terminated:
         frame.builder.unreachable()  # verified: every path that gets here has ended in a Return before
-    _finish(frame, counted_lanes(kernel, bodies[0]))
+    _finish(frame, counted)
     entry.branch(first)
     if not failed.is_reached:
         _drop(failed)

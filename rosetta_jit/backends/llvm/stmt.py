@@ -231,10 +231,11 @@ def _call(frame: Frame, call: nodes.Call) -> None:
     builder, parameters = frame.builder, frame.parameters
     arguments = [expression(frame, each) for each in call.arguments]
     outcome = builder.call(routine, [parameters.buffer, parameters.begin, parameters.end, parameters.state, *arguments])
-    number, first = builder.extract_value(outcome, 0), builder.extract_value(outcome, 1)
-    good = _cold(frame, builder.icmp_signed("==", number, constant(0)))
-    _fail(frame, call.sites, number, first, call.indices)
-    builder.position_at_end(good)
+    if call.sites:
+        number, first = builder.extract_value(outcome, 0), builder.extract_value(outcome, 1)
+        good = _cold(frame, builder.icmp_signed("==", number, constant(0)))
+        _fail(frame, call.sites, number, first, call.indices)
+        builder.position_at_end(good)
     for position, result in enumerate(call.results, 1):
         frame.locals[result.name] = builder.extract_value(outcome, position)
 

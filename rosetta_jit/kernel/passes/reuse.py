@@ -1,7 +1,8 @@
 """Memory that nothing writes in between is read once.
 
 The lowering reads a field of the holder wherever a rule names it. To the proof each read is a new value, because others may change
-memory; what was checked of one read says nothing of the next, until both are one.
+memory; what was checked of one read says nothing of the next, until both are one. Whoever sets a field leaves the others of its lane
+as they are.
 """
 
 from __future__ import annotations
@@ -40,8 +41,17 @@ from rosetta_jit.startup.dataclass import dataclass
 MESSAGE = -1
 """Stands for the message among the numbers of the lanes."""
 
+EVERYWHERE = -1
+"""Stands for all bytes of a memory among the offsets in the rows of a lane."""
+
+WIDEST = 8
+"""The largest width of a scalar: what lies farther away in a row is another one."""
+
 READS, PLAIN = (Load, Get), (Const, Local)
 """What reads memory, and what has nothing inside."""
+
+_Bytes = tuple[int, int]
+"""What is written: the number of a memory, and at which offset of its rows."""
 
 _Known = dict[int, dict[Expr, Local]]
 """What has been read of each memory, and the locals that hold it."""
@@ -53,7 +63,7 @@ class _Names:
 
     variables: set[str]
     taken: set[str]
-    written: Mapping[str, set[int]]
+    written: Mapping[str, set[_Bytes]]
     made: set[str] = field(default_factory=set[str])
     numbers: Iterator[int] = field(default_factory=lambda: count(1))
 
@@ -67,13 +77,13 @@ class _Names:
 def reuse(kernel: Kernel) -> Kernel:
     """The kernel with a name for what it would read more than once."""
     taken = {name for body in kernel.bodies for stmt, _ in statements(body) for name in bound_names(stmt)}
-    written: dict[str, set[int]] = {}
+    written: dict[str, set[_Bytes]] = {}
     for routine in kernel.routines:
         written[routine.name] = _written_in(routine.body, written)
     return with_bodies(kernel, tuple(_body(body, taken, written) for body in kernel.bodies))
 
 
-def _body(body: Block, taken: set[str], written: Mapping[str, set[int]]) -> Block:
+def _body(body: Block, taken: set[str], written: Mapping[str, set[_Bytes]]) -> Block:
     reads = [part for part in parts_of(stmt for stmt, _ in statements(body)) if isinstance(part, READS)]
     if len(set(reads)) == len(reads):
         return body
@@ -89,7 +99,7 @@ def _body(body: Block, taken: set[str], written: Mapping[str, set[int]]) -> Bloc
 def _block(block: Block, known: _Known, names: _Names) -> Block:
     result: list[Stmt] = []
     for stmt in block:
-        inside = {memory for inner in blocks_of(stmt) for memory in _written_in(inner, names.written)}
+        inside = {each for inner in blocks_of(stmt) for each in _written_in(inner, names.written)}
         _forget(known, inside)
         result.extend(_statement(stmt, known, names))
         _forget(known, _written(stmt, names.written))
@@ -137,23 +147,23 @@ def _source(read: Expr) -> int:
 # --- what is written ---------------------------------------------------------------------------------------------------
 
 
-def _written_in(block: Block, routines: Mapping[str, set[int]]) -> set[int]:
-    return {memory for stmt, _ in statements(block) for memory in _written(stmt, routines)}
+def _written_in(block: Block, routines: Mapping[str, set[_Bytes]]) -> set[_Bytes]:
+    return {each for stmt, _ in statements(block) for each in _written(stmt, routines)}
 
 
-def _written(stmt: Stmt, routines: Mapping[str, set[int]]) -> set[int]:
-    """The memory that a statement itself writes."""
+def _written(stmt: Stmt, routines: Mapping[str, set[_Bytes]]) -> set[_Bytes]:
+    """What a statement itself writes."""
     match stmt:
         case Call(routine):
             return routines[routine]
         case Store():
-            return {MESSAGE}
+            return {(MESSAGE, EVERYWHERE)}
         case SetField(place, _):
-            return {place.lane}
+            return {(place.lane, place.offset)}
         case Copy(target, _, _) | Fill(target, _, _):
-            return {_memory(target)}
+            return {(_memory(target), EVERYWHERE)}
         case HostCall():
-            return set() if stmt.target is None else {_memory(stmt.target.address)}
+            return set() if stmt.target is None else {(_memory(stmt.target.address), EVERYWHERE)}
         case _:
             return set()
 
@@ -162,9 +172,17 @@ def _memory(address: Address) -> int:
     return address.lane if isinstance(address, Place) else MESSAGE
 
 
-def _forget(known: _Known, written: set[int]) -> None:
-    for memory in written:
-        known.pop(memory, None)
+def _forget(known: _Known, written: set[_Bytes]) -> None:
+    """Forget what has been read of bytes that are written. Fields of a row do not overlap, whichever row it is."""
+    for memory, offset in written:
+        if offset == EVERYWHERE:
+            known.pop(memory, None)
+        elif memory in known:
+            known[memory] = {read: local for read, local in known[memory].items() if not _may_overlap(read, offset)}
+
+
+def _may_overlap(read: Expr, offset: int) -> bool:
+    return not isinstance(read, Get) or abs(read.place.offset - offset) < WIDEST
 
 
 # --- names for nothing -------------------------------------------------------------------------------------------------

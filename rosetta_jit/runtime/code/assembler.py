@@ -53,16 +53,16 @@ def run_passes(passes: binding.ModulePassManager, module: binding.ModuleRef, bui
     passes.detach()
 
 
-def run_few_passes(module: binding.ModuleRef, machine: binding.TargetMachine, *, branches: bool = True) -> None:
+def run_few_passes(module: binding.ModuleRef, machine: binding.TargetMachine, *, combining: bool = True) -> None:
     """Run the passes without which code is poor, all of which take time in proportion to it.
 
-    Without ``branches``, that which makes fewer of them is left out.
+    Without ``combining``, instructions and branches stay as they are printed; only variables become registers.
     """
     few = binding.create_new_module_pass_manager()
     few.add_always_inliner_pass()
     few.add_sroa_pass()
-    few.add_instruction_combine_pass()
-    if branches:
+    if combining:
+        few.add_instruction_combine_pass()
         few.add_simplify_cfg_pass()
     run_passes(few, module, binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=0)))
 
