@@ -113,7 +113,7 @@ def _is_covered(block: ir.Block, number: int) -> bool:
         covered = _span(stmt, place)
         if covered is not None:
             free = [each for span in free for each in _without(span, covered)]
-        elif not isinstance(stmt, ir.Require | ir.Expect | ir.Let) or any(map(reads_memory, expressions_of(stmt))):
+        elif not isinstance(stmt, ir.Require | ir.Expect | ir.Let | ir.Var | ir.Assign) or any(map(_reads_lanes, expressions_of(stmt))):
             return False
         if not free:
             return True

@@ -312,7 +312,8 @@ class Trip:
             return None
         source = renamed(write.value, bound)
         assert isinstance(source, Access)
-        return replace(source.place, steps=(*source.place.steps, *place.steps[size:]), type=place.type)
+        type_ = place.type if place.steps[size:] else source.place.type  # its own: types of two frameworks are spelled differently
+        return replace(source.place, steps=(*source.place.steps, *place.steps[size:]), type=type_)
 
     def simple(self, expr: Expr) -> Expr:
         """An expression in place of which something simpler can stand."""
