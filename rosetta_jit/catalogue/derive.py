@@ -10,6 +10,7 @@ from rosetta_jit.diagnostics import Diagnostic, Mistake, error
 from rosetta_jit.source import Span
 
 OTHER_PARTS = "the text has another number of parts than the mapping reads"
+HAS_SEPARATOR = "a part holds the separator of the text"
 """Why a message is refused that would come back with other parts."""
 
 
