@@ -258,7 +258,7 @@ def total_of(data):
 
 
 def test_sum_of_bytes(effort, compare, record):
-    """Integers may be added in any order: by hand without a check, ours with one for each block of 65,536."""
+    """Integers may be added in any order, so that both do it in vectors."""
     what, rules = f"mapping, the sum of {MANY:,} bytes", "  .n = sum(.data[])\n  .x = 0\n  ignore .numbers\n  ignore .names\n"
     decode = rj.Decoder("m.mapping", schema={**REDUCED_FILES, "m.mapping": REDUCED_HEAD + rules}, encoding="ros1")
     data, compiled = np.random.default_rng(1).integers(0, 256, MANY, np.uint8), numba.njit(total_of)

@@ -10,6 +10,7 @@ from rosetta_jit.diagnostics import Diagnostic, Mistake, error
 from rosetta_jit.source import Span
 
 OTHER_PARTS = "the text has another number of parts than the mapping reads"
+HAS_SEPARATOR = "a part holds the separator of the text"
 """Why a message is refused that would come back with other parts."""
 
 
@@ -83,10 +84,11 @@ index_reads = Mistake(
 )
 
 
-def unknown_condition(span: Span | None, place: str) -> Diagnostic:
+def unknown_condition(span: Span | None, place: str, *, is_float: bool) -> Diagnostic:
     message = f"to pack, nothing says what `{shorten(place)}` is"
-    help_ = f"relate `{shorten(place)}` to the holder, or write the rejection in `unpack-rules:`"
-    return error("unknown-condition", message, span, "no relation sets it", help_=help_)
+    notes = ("what a float must be equal to does not say which it is: -0 equals 0",) if is_float else ()
+    help_ = f"relate `{shorten(place)}` to the holder, say in `pack-rules:` what it is, or write the rejection in `unpack-rules:`"
+    return error("unknown-condition", message, span, "no relation sets it", notes=notes, help_=help_)
 
 
 def undetermined(span: Span | None, place: str, *, holds: bool) -> Diagnostic:

@@ -12,7 +12,7 @@ from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.affine_steps import Value
 from rosetta_jit.language.function import SEVERAL, Texts
-from rosetta_jit.language.functions.texts import concatenation, type_texts, without_end
+from rosetta_jit.language.functions.texts import concatenation, separates, type_texts, without_end
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.lowering.evaluation import Evaluation
@@ -21,7 +21,7 @@ from rosetta_jit.lowering.texts.separated import between_separators
 from rosetta_jit.lowering.texts.values import expect, field, placed_of, quoted, text_of
 from rosetta_jit.lowering.texts.views import Quoted, View, joined, placed, sound
 from rosetta_jit.model import expr as model
-from rosetta_jit.model.types import Array
+from rosetta_jit.model.types import Array, Bool, Float, Int
 
 
 class Separated(NamedTuple):
@@ -148,6 +148,35 @@ def _added_again(opening: typed.Call, step: typed.Call, before: Value) -> Value 
     return before if is_there and constants_of(opening) == constants_of(step) else None
 
 
+def _part_again(call: typed.Call) -> typed.Expr | None:
+    """`part(a + "," + b, ",", 1)` is b, and `parts(a + "," + b, ",")` is 2, where neither holds the separator."""
+    text, separator, *numbers = call.arguments
+    pieces = _pieces(text)
+    if not isinstance(separator, typed.Const) or any(piece != separator for piece in pieces[1::2]):
+        return None
+    found = [_without_separator(piece, str(separator.value)) for piece in pieces[::2]]
+    if len(pieces) % 2 == 0 or None in found:
+        return None
+    match numbers:
+        case [typed.Const(int(number))]:
+            return found[number] if 0 <= number < len(found) else None
+        case []:
+            return typed.Const(len(found), INT64)
+        case _:
+            return None
+
+
+def _without_separator(piece: typed.Expr, separator: str) -> typed.Expr | None:
+    """A text that holds no separator where it is not refused."""
+    match piece:
+        case typed.Call("text", (number, *_)) if isinstance(number.type, Bool | Int | Float) and separates(separator):
+            return piece
+        case typed.Choice(((typed.Unary("not", typed.Call("contains", (text, typed.Const(known)))), value),), None) if text == value:
+            return value if known == separator and len(separator.encode()) == 1 else None
+        case _:
+            return None
+
+
 FUNCTIONS = (
     of_texts(
         "+",
@@ -179,6 +208,7 @@ FUNCTIONS = (
         SEVERAL,
         undone_by(),
         row('`part(s, "/", n)`', "the part of that number, from 0, between separators", "`index`"),
+        undoes=_part_again,
     ),
     of_texts(
         "parts",
@@ -187,6 +217,7 @@ FUNCTIONS = (
         SEVERAL,
         undone_by(),
         row('`parts(s, "/")`', "how many parts there are, as int64"),
+        undoes=_part_again,
     ),
     of_texts(
         "join",

@@ -68,7 +68,10 @@ def _zero(elements: Elements) -> Const:
 
 def _lower_sum(elements: Elements) -> Expr:
     """The sum from the first value to the last; of integers it never wraps."""
-    if _has_few_bits(elements.reduce):
+    bits = _bits_of(elements.reduce)
+    if bits <= FEW_BITS:
+        return _lower_unchecked(elements, bits)
+    if bits <= 32:
         return _lower_blocks(elements)
     writer, values = elements.writer, elements.values
     total = writer.var("sum", _zero(elements))
@@ -77,13 +80,28 @@ def _lower_sum(elements: Elements) -> Expr:
     return total
 
 
-def _has_few_bits(reduce: typed.Reduce) -> bool:
-    """Whether values are integers of an array that many of can be added without a check."""
+FEW_BITS = 16
+"""So many integers of these bits that their sum takes more than 64 lie in no memory."""
+
+
+def _bits_of(reduce: typed.Reduce) -> int:
+    """How many bits the values have, where they are the integers of an array; else 64."""
     match reduce:
         case typed.Reduce(count=typed.LenOf(), value=typed.Convert(operand=typed.Access(type=Int(bits)), type=Int(), rule="widen")):
-            return bits <= 32
+            return bits
         case _:
-            return False
+            return 64
+
+
+def _lower_unchecked(elements: Elements, bits: int) -> Expr:
+    """The sum, without a check of what it grows to: what is computed of some of its bits needs no others then."""
+    writer, values = elements.writer, elements.values
+    is_in_memory = Compare("le", elements.count, index((1 << 63 - bits) - 1))
+    writer.expect(is_in_memory, "range", values.where, "a number grows beyond 64 bits", line=values.line)
+    total = writer.var("sum", index(0))
+    with elements.each() as value:
+        writer.assign(total, Binary("add", total, value))
+    return total
 
 
 def _lower_blocks(elements: Elements) -> Expr:

@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 from rosetta_jit.kernel.ir import Routine
 from rosetta_jit.kernel.nodes import (
     Advance,
+    Assign,
+    Compare,
     Copy,
     Expect,
     Fill,
@@ -23,12 +25,14 @@ from rosetta_jit.kernel.nodes import (
     Load,
     Local,
     Place,
+    Register,
     Require,
     Reserve,
     Return,
     SetField,
     Store,
     Used,
+    Var,
     Wire,
 )
 from rosetta_jit.kernel.passes import order as passes
@@ -238,6 +242,21 @@ def test_a_row_is_emptied_where_it_is_read_before_it_is_set():
         *(SetField(Place(0, ROW, 8 * number), Load("f64", add(BEGIN, 8 * number))) for number in range(3)),
     )
     assert len(checks(join(kernel((*body, Return(BEGIN)), strides=(24,))), Fill)) == 1
+
+
+def test_a_row_is_not_emptied_where_the_message_alone_is_looked_at_before_it_is_set():
+    """What is between may check the message, and keep a value for a register; a row that is read is emptied."""
+
+    def run(seen):
+        between = (expect(Compare("eq", seen, index(1)), 1), Var("kept", Register(0)), Assign("kept", seen))
+        sets = (SetField(Place(0, ROW, 8 * number), Load("f64", add(BEGIN, 8 * number))) for number in range(3))
+        body = (ROW_EXISTS, need(BEGIN, 24), Fill(Place(0, ROW), index(24)), *between, *sets)
+        return replace(kernel((*body, Return(BEGIN, ((0, i64("kept")),))), strides=(24,)), registers=1)
+
+    of_message, of_row = join(run(Load("i64", BEGIN))), join(run(Get("i64", Place(0, ROW))))
+    assert not checks(of_message, Fill)
+    assert len(checks(of_row, Fill)) == 1
+    verify(of_message)
 
 
 def test_a_long_run_is_cut_for_processors_and_a_vast_one_is_one_loop():

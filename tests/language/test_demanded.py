@@ -104,3 +104,66 @@ def test_what_is_related_or_does_not_fit_is_not_taken_from_a_rejection():
     assert made.refused(n=255).path == ".size"
     with pytest.raises(rj.MappingError, match=r"nothing says what `\.other` is"):
         pair('("n" :int) ("size" :int) ("other" :int)', holder, 'rules:\n  .n <-> .n\n  reject "no" when .size != .other + 1\n')
+
+
+FRAMES = {
+    "lab/msg/Frame.msg": "uint8[] data\nuint8 id\nuint8 number\nuint8 check\n",
+    "lab/msg/Log.msg": "Frame[] frames\n",
+    "h.proto": 'syntax = "proto2"; message Part { required bytes data = 1; } message Held { repeated Part frames = 1; }',
+}
+FRAMES_HEAD = 'import "lab/msg/Log.msg"\nimport "h.proto"\ndata-holder: Held\nwire-schema: lab/msg/Log\nrules:\n'
+BY_ELEMENT = """  .frames[].data <-> .frames[].data
+  reject "id" when .frames[].id != 7
+  reject "number" when .frames[].number != index()
+  reject "damaged" when .frames[].check != crc(.frames[].data, "CRC-8")
+"""
+IN_LOOP = """  len(.frames) <-> len(.frames)
+  for i from 0 to len(.frames)
+    .frames[i].data <-> .frames[i].data
+    reject "id" when .frames[i].id != 7
+    reject "number" when .frames[i].number != i
+    reject "damaged" when .frames[i].check != sum(.frames[i].data[]) & 255
+  end
+"""
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(("rules", "checks"), [(BY_ELEMENT, (27, 217, 0)), (IN_LOOP, (3, 1, 0))], ids=["elements", "loop"])
+def test_a_rejection_of_each_element_says_what_is_packed(rules, checks, backend):
+    files = {**FRAMES, "m.mapping": FRAMES_HEAD + rules}
+    decode, encode = (each("m.mapping", schema=files, encoding="ros1", backend=backend) for each in (rj.Decoder, rj.Encoder))
+    of = {"schema": files, "imports": ["lab/msg/Log.msg"], "encoding": "ros1"}
+    write, read = rj.Encoder.of("lab/msg/Log", **of), rj.Decoder.of("lab/msg/Log", **of)
+    octets = (b"\1\2", b"\xff\2", b"")
+    held = {"frames": [{"data": each} for each in octets]}
+    frames = [
+        {"data": data, "id": 7, "number": number, "check": check} for number, (data, check) in enumerate(zip(octets, checks, strict=True))
+    ]
+    assert read(encode(encode.holder_type.from_dict(held))).to_dict() == {"frames": frames}
+    assert decode(write(write.holder_type.from_dict({"frames": frames}))).to_dict() == held
+    assert str(decode.mapping.laws.holders) == "exact inverse"
+    for wrong in ({"id": 8}, {"number": 0}, {"check": 5}):
+        message = write(write.holder_type.from_dict({"frames": [frames[0], {**frames[1], **wrong}]}))
+        with pytest.raises(rj.DecodeError, match=r"id|number|damaged") as error:
+            decode(message)
+        assert error.value.kind == "rejected"
+
+
+@pytest.mark.parametrize(
+    ("rule", "field"),
+    [
+        ('reject "no" when .frames[].id != 7', r"\.frames\[\]\.id"),
+        ('for i from 1 to len(.other) reject "no" when .other[i].id != 7 end', r"\.other\[i\]\.id"),
+    ],
+)
+def test_elements_of_which_nothing_says_how_many_there_are_are_not_packed(rule, field):
+    wire = {**FRAMES, "lab/msg/Log.msg": "Frame[] frames\nFrame[] other\nuint8 n\n"}
+    holder = {"h.proto": 'syntax = "proto2"; message Held { required int32 n = 1; }'}
+    with pytest.raises(rj.MappingError, match=rf"nothing says what `{field}` is|unknown-bound"):
+        rj.Encoder("m.mapping", schema={**wire, **holder, "m.mapping": f"{FRAMES_HEAD}  .n <-> .n\n  {rule}\n"}, encoding="ros1")
+
+
+def test_a_float_that_nothing_says_has_a_note():
+    rules = 'rules:\n  .a <-> .a\n  reject "no" when .x != .a\n'
+    with pytest.raises(rj.MappingError, match=r"-0 equals 0[^$]*say in `pack-rules:` what it is"):
+        pair('("x" :double) ("a" :double)', HOLDER, rules)

@@ -270,6 +270,12 @@ def test_many_integers_are_added_in_blocks(backend):
         assert run(i=numbers, d=octets.tobytes())["n"] == int(numbers.sum(dtype=np.int64)) - 255 * count
 
 
+def test_small_integers_are_added_without_a_check():
+    """So that LLVM computes a checksum in as many bits as it has."""
+    files = {**SCHEMAS, "m.mapping": HEAD + "unpack-rules:\n  ignore rest\n  default rest\n  .n = sum(.d[]) & 255\n"}
+    assert "fits(sum" not in rj.Decoder("m.mapping", schema=files, encoding="ros1").stage("kernel")
+
+
 BOTH = """rules:
   .a[] <-> .a[] * 2
   .n <-> count(.a[] > 3)

@@ -101,6 +101,10 @@ def _uncovered(block: nodes.Block) -> nodes.Block:
     return tuple(stmt for number, stmt in enumerate(block) if not _is_covered(block, number))
 
 
+_WITHOUT_LANES = nodes.Require | nodes.Expect | nodes.Let | nodes.Var | nodes.Assign
+"""Statements that have to do with lanes where their expressions read them, and nowhere else."""
+
+
 def _is_covered(block: nodes.Block, number: int) -> bool:
     """Whether a statement is one that empties bytes, all of which are set behind it."""
     match block[number]:
@@ -113,7 +117,7 @@ def _is_covered(block: nodes.Block, number: int) -> bool:
         covered = _span(stmt, place)
         if covered is not None:
             free = [each for span in free for each in _without(span, covered)]
-        elif not isinstance(stmt, nodes.Require | nodes.Expect | nodes.Let) or any(map(reads_memory, expressions_of(stmt))):
+        elif not isinstance(stmt, _WITHOUT_LANES) or any(map(_reads_lanes, expressions_of(stmt))):
             return False
         if not free:
             return True

@@ -54,7 +54,10 @@ def derive(mapping: model.Mapping, type_of: TypeOf, constant_of: ConstantOf, pro
     problems.extend((*found, *(words.too_many_blocks(span, MAX_CONDITIONS) for span in conditional)))
     return replace(
         mapping,
-        unpack_rules=(*_unpacking(rules, packing.known.beside, bits.written), *(mapping.unpack_rules or ())),
+        unpack_rules=(
+            *_unpacking(rules, {**packing.known.beside, **packing.known.unpacked}, bits.written),
+            *(mapping.unpack_rules or ()),
+        ),
         pack_rules=(*pack_rules, *own),
     )
 

@@ -25,6 +25,7 @@ from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.both_ways.inverse import CONVERSIONS, NoInverseError, Solution, fields_in, nearest, solve, undone_group
 from rosetta_jit.language.folding import folded
 from rosetta_jit.language.function import Function, functions, written
+from rosetta_jit.language.functions.texts import separates
 from rosetta_jit.language.groups import component, function_of
 from rosetta_jit.model.expr import Binary, Call, Choice, Expr, Len, List, Literal, Path
 from rosetta_jit.model.types import Float, Int
@@ -142,15 +143,6 @@ def _numbers_of(spelt: _Spelt, value: Expr, type_of: TypeOf) -> Parted:
     count = Binary("==", Call("parts", (value, spelt.separator), span), Literal(len(found), span), span)
     checked = replace(first, value=Choice(((count, first.value),), None, words.OTHER_PARTS, span))
     return Parted((checked, *rest), ())
-
-
-SPELT = frozenset("0123456789+-.einfa")
-"""Characters of numbers as text: none of them separates numbers."""
-
-
-def separates(text: str) -> bool:
-    """Whether a text can stand between numbers."""
-    return bool(text) and not SPELT & set(text)
 
 
 def _digits(expr: Binary, value: Expr, type_of: TypeOf) -> Parted:

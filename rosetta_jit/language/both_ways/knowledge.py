@@ -69,6 +69,8 @@ class Knowledge:
     sizes: dict[Key, int] = field(default_factory=dict["Key", int])
     budget: Budget = field(default_factory=Budget)
     beside: dict[int, Beside] = field(default_factory=dict[int, "Beside"])
+    unpacked: dict[int, Beside] = field(default_factory=dict[int, "Beside"])
+    """What must hold of messages alone: packing takes the field from another relation."""
     unsolved: dict[int, str] = field(default_factory=dict[int, str])
     """Why a relation is not solved together with others, of which there are as many as fields."""
     flags: dict[Key, Expr] = field(default_factory=dict["Key", "Expr"])
@@ -80,7 +82,7 @@ class Knowledge:
         """The same, for a block that may know more."""
         shapes = {shape: list(keys) for shape, keys in self.shapes.items()}
         known = dict(self.setters), dict(self.values), shapes, dict(self.sizes)
-        return Knowledge(self.type_of, *known, self.budget, self.beside, self.unsolved, dict(self.flags), dict(self.signals))
+        return Knowledge(self.type_of, *known, self.budget, self.beside, self.unpacked, self.unsolved, dict(self.flags), dict(self.signals))
 
     def learn(self, place: Field, value: Expr, loops: Loops) -> None:
         """That a field has a value, unless that is known."""

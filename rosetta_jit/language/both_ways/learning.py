@@ -14,7 +14,7 @@ from rosetta_jit.language.both_ways.knowledge import Beside, Knowledge, Loop, Lo
 from rosetta_jit.language.both_ways.linear_relations import related, solve_together
 from rosetta_jit.language.both_ways.presence import flag_of, is_kept
 from rosetta_jit.language.both_ways.signal_relations import frames_of, told_in_all
-from rosetta_jit.language.both_ways.text_parts import numbers_of_texts
+from rosetta_jit.language.both_ways.text_parts import parts_of_texts
 from rosetta_jit.language.function import Affine, written
 from rosetta_jit.language.operators import form_of
 from rosetta_jit.model.expr import Binary, Call, Choice, Expr, Len, Literal, Name, Path, Unary
@@ -38,8 +38,9 @@ def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops, is_assigned: 
         if isinstance(rule, When) and not loops:
             known.signals |= told_in_all(rule, known.type_of)
     relations = [each for each in _relations(rules, loops) if not _is_left(each[0], is_assigned)]
-    groups = (*numbers_of_texts(relations), *frames_of(relations), *images_of(relations), *digits_of(relations))
-    done = _together(known, groups, is_assigned)
+    groups = (*parts_of_texts(relations), *frames_of(relations), *images_of(relations), *digits_of(relations))
+    wholes = {(rule.value, around) for rule, around in relations if isinstance(rule.value, Path)}
+    done = _together(known, groups, lambda place, around: is_assigned(place) or (place, around) in wholes)
     done |= _pairs(known, [each for each in relations if id(each[0]) not in done])
     done |= {id(rule) for rule, around in sorted(relations, key=_loss) if id(rule) not in done and _solve(known, rule, around)}
     later = [each for each in relations if id(each[0]) not in done]
@@ -192,12 +193,17 @@ def _put_together(known: Knowledge, rule: Relation, other: Relation, loops: Loop
     return True
 
 
-def _together(known: Knowledge, groups: Iterable[Together], is_assigned: Callable[[Field], bool]) -> set[int]:
-    """Relations that together say what a value is set it, the first of them for all; gives the relations for which that is so."""
+def _together(known: Knowledge, groups: Iterable[Together], is_told: Callable[[Field, Loops], bool]) -> set[int]:
+    """Relations that together say what a value is set it, the first of them for all; gives the relations for which that is so.
+
+    What another rule tells, all of it, is left to that.
+    """
     done: set[int] = set()
     for group in groups:
         (first, loops), *others = group.relations
-        if any(map(is_assigned, fields_in(group.whole))):
+        if any(is_told(each, loops) for each in fields_in(group.whole)):
+            if all(rule.span == first.span for rule, _ in others):  # one rule for several places says how many parts there are
+                known.unpacked[id(first)] = Beside(first, "wire", (), group.refused)
             continue
         try:
             solution, length = group.solved(known.type_of), group.length(known.type_of)

@@ -48,6 +48,7 @@ from rosetta_jit.model.mapping import (
     When,
 )
 from rosetta_jit.model.printer import show_expr
+from rosetta_jit.model.types import Float
 from rosetta_jit.model.walk import Field, fields_of, parts, path_of
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
@@ -320,7 +321,8 @@ class Packing:
         missing = fields_of(known, "wire")
         unknown = next((each for each in missing if not self.is_completed(each)), None)
         if unknown is not None:
-            self.problems.append(words.unknown_condition(written.span, show_expr(unknown)))
+            is_float = isinstance(self.known.type_of(unknown), Float)
+            self.problems.append(words.unknown_condition(written.span, show_expr(unknown), is_float=is_float))
         return bool(missing)
 
     def is_completed(self, place: Field) -> bool:

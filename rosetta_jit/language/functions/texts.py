@@ -27,6 +27,14 @@ if TYPE_CHECKING:
 TEXT, BYTES = String(), Bytes()
 ENCODINGS = ("utf-8", "ascii", "latin-1", "utf-16le", "utf-16be")
 
+SPELT = frozenset("0123456789+-.einfa")
+"""Characters of numbers as text: none of them separates numbers."""
+
+
+def separates(text: str) -> bool:
+    """Whether a text can stand between numbers."""
+    return bool(text) and not SPELT & set(text)
+
 
 def is_textual(type_: Type) -> bool:
     """Whether a value is bytes that lie one after another."""

@@ -114,8 +114,19 @@ def _inner(expr: Expr) -> Expr | None:
 
 def _why_lost(expr: Expr) -> Lost:
     """Why no part of a value of several comes back, where that is known."""
-    law = functions()[expr.function].law if isinstance(expr, Call) else None
-    return Lost(law.of_several) if isinstance(law, Undone) and law.of_several is not None else UNSHOWN
+    if not isinstance(expr, Call):
+        return UNSHOWN
+    law = functions()[expr.function].law
+    if isinstance(law, Undone) and law.of_several is not None:
+        return Lost(law.of_several)
+    return next((why for part in expr.arguments if (why := _why_part_lost(part, expr)) != UNSHOWN), UNSHOWN)
+
+
+def _why_part_lost(part: Expr, whole: Call) -> Lost:
+    """Why one of several parts does not come back, where that is known."""
+    source = source_of(part)
+    found = come_back(part, source)
+    return found if isinstance(found, Lost) and found != UNSHOWN else UNSHOWN if source == whole else _why_lost(source)
 
 
 def _done(step: Expr, value: Value) -> Value:

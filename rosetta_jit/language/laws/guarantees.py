@@ -19,8 +19,9 @@ from rosetta_jit.language.laws.writes import FILTERED
 from rosetta_jit.language.limits import MAX_WORK
 from rosetta_jit.language.places import field_names, shown_names, shown_place
 from rosetta_jit.language.scope import Message
-from rosetta_jit.language.typed import Access, Const, For, IndexStep, LenOf, Local, Rule
+from rosetta_jit.language.typed import Access, Const, For, Given, IndexStep, LenOf, Listed, Local, Rule, Search
 from rosetta_jit.language.untouched import untouched
+from rosetta_jit.language.walk import parts
 from rosetta_jit.model.walk import every_rule
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
@@ -163,6 +164,10 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
             return Lost("a filter drops some elements, and which it keeps is not followed")
         case Local("?"):
             return Lost("it cannot be shown by which block of a `when` it comes back")
+        case _ if any(isinstance(part, Search) for part in parts(value)):
+            return Lost("it becomes that of the element which a key tells")
+        case Listed() | Given(_, (_,)) if not reads_other(value, place.side):
+            return Lost("it becomes an item of a list")
         case Access(other) | LenOf(other) if other.side != place.side:
             is_element = any(isinstance(step, IndexStep) for step in other.steps)
             return None if value in trip.equal_to(goal) else UNSHOWN if is_element else Lost("nothing of it is kept")

@@ -23,9 +23,11 @@ from rosetta_jit.language.algebra.equality import (
     unify,
 )
 from rosetta_jit.language.algebra.quotients import Facts
+from rosetta_jit.language.laws.key_lookup import number_found
 from rosetta_jit.language.laws.loop_orders import round_of
 from rosetta_jit.language.laws.refusals import may_refuse
 from rosetta_jit.language.laws.simplest import simplest
+from rosetta_jit.language.laws.whole_texts import whole_text
 from rosetta_jit.language.laws.writes import Write, changed, is_left_absent, is_part_of, is_within, union_depths, writes_of
 from rosetta_jit.language.limits import MAX_LOOKED, MAX_ORDERED
 from rosetta_jit.language.places import field_names
@@ -35,6 +37,7 @@ from rosetta_jit.language.typed import (
     Access,
     Assign,
     Binary,
+    Call,
     Const,
     Default,
     Expr,
@@ -47,6 +50,7 @@ from rosetta_jit.language.typed import (
     Place,
     Reject,
     Rule,
+    Search,
     SetLength,
     Unary,
     When,
@@ -198,6 +202,8 @@ class Trip:
                 return self.read(replace(expr, place=placed(place, self.of)), length=True)
             case Has(place) if (is_there := self.is_there(placed(place, self.of))) is not None:
                 return Const(is_there, BOOL)
+            case Search(place) if (number := number_found(expr, self.of(LenOf(place)), self.of, self.setters)) is not None:
+                return number
             case _:
                 return self.simple(rebuilt(expr, self.of))
 
@@ -217,6 +223,10 @@ class Trip:
             if len(inner) == 1:
                 return LenOf(inner[0]) if length else Access(inner[0], place.type)
         return expr
+
+    def setters(self, place: Place) -> int:
+        """How many rules of the first direction set a field, in whichever elements."""
+        return sum(not write.is_length for write in self.writes.get(field_names(place), []))
 
     def is_there(self, place: Place) -> bool | None:
         """Whether the first direction sets a place, or a number or text in it, or leaves it absent; None where that does not follow."""
@@ -312,12 +322,15 @@ class Trip:
             return None
         source = renamed(write.value, bound)
         assert isinstance(source, Access)
-        return replace(source.place, steps=(*source.place.steps, *place.steps[size:]), type=place.type)
+        type_ = place.type if place.steps[size:] else source.place.type  # its own: types of two frameworks are spelled differently
+        return replace(source.place, steps=(*source.place.steps, *place.steps[size:]), type=type_)
 
     def simple(self, expr: Expr) -> Expr:
         """An expression in place of which something simpler can stand."""
-        known = self.truth(expr)
-        return simplest(expr, self.own_part) if known is None else Const(known, BOOL)
+        if (known := self.truth(expr)) is not None:
+            return Const(known, BOOL)
+        found = simplest(expr, self.own_part)
+        return (isinstance(found, Call) and found.function == "+" and whole_text(found, self.equal_to)) or found
 
     def own_part(self, expr: Expr) -> Expr | None:
         """The part of an integer that it is the same as."""

@@ -8,7 +8,7 @@ from dataclasses import replace
 from rosetta_jit.language.conversions import adapt, same
 from rosetta_jit.language.function import functions
 from rosetta_jit.language.laws.chain import come_back, source_of
-from rosetta_jit.language.typed import BOOL, Binary, Call, Choice, Const, Convert, Expr, Nearest, Unary
+from rosetta_jit.language.typed import BOOL, Binary, Call, Choice, Const, Convert, Expr, Listed, Nearest, Unary
 from rosetta_jit.model.types import Float
 
 
@@ -31,6 +31,8 @@ def simplest(expr: Expr, own_part: Callable[[Expr], Expr | None]) -> Expr:
             return _logic(operator == "and", left, right, expr)
         case Choice(cases, otherwise):
             return _decided(cases, otherwise, expr)
+        case Listed(items, Const(int(number))) if 0 <= number < len(items):
+            return items[number]
         case Convert() | Unary() | Nearest():
             return _before(expr) or expr
         case Binary() | Call():
