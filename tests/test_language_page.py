@@ -12,9 +12,9 @@ import rosetta_jit as rj
 from rosetta_jit.errors import Kind
 from rosetta_jit.explain.content import explanation
 from rosetta_jit.language.arrays import layouts
-from rosetta_jit.language.function import names, shipped
 from rosetta_jit.language.functions import calls
 from rosetta_jit.language.groups import group_functions
+from rosetta_jit.language.installed import names, shipped
 from rosetta_jit.language.laws.chain import UNSHOWN
 from tests.golden import check_golden
 

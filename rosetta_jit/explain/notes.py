@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from rosetta_jit.explain.walk import nodes, places
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe, rounded_constant
-from rosetta_jit.language.function import functions
+from rosetta_jit.language.installed import functions
 from rosetta_jit.language.typed import Change, ConversionRule, Rule
 from rosetta_jit.language.units.conversion import shown, unit_of
 from rosetta_jit.language.units.unit_at import Unit, unit_at

@@ -14,8 +14,9 @@ from rosetta_jit.explain.walk import names_of, nodes, places
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.mapping import check
-from rosetta_jit.language.function import Operation, functions
+from rosetta_jit.language.function import Operation
 from rosetta_jit.language.imports.search import SearchPath
+from rosetta_jit.language.installed import functions
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.language.typed import Expr, Place, Rule
 from rosetta_jit.model.expr import COMPARISONS, LOGIC

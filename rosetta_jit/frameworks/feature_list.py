@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 from rosetta_jit.model import types
 from rosetta_jit.model.expr import Literal
-from rosetta_jit.model.layout import recursive_structs
+from rosetta_jit.model.recursive_structs import recursive_structs
 
 Arrived = Callable[[types.Struct, types.Schema], bool]
 """Whether a model shows the feature that its struct was written for."""

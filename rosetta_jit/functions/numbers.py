@@ -12,8 +12,9 @@ from rosetta_jit.kernel.nodes import Binary, Compare, Const, Expr, Unary
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import FLOAT64
-from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Reduction, Row, Units, written
+from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Reduction, Row, Units
 from rosetta_jit.language.functions.calls import type_numbers
+from rosetta_jit.language.installed import written
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import BOOL, INT64, Call
 from rosetta_jit.lowering.arithmetic import binary

@@ -20,7 +20,8 @@ from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.language.function import GROUPS, Function, family_of
+from rosetta_jit.language.function import Function
+from rosetta_jit.language.installed import GROUPS, family_of
 from rosetta_jit.model.expr import Call, Choice, Coerced, Expr, Item, List, Literal
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported

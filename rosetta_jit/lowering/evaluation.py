@@ -11,7 +11,7 @@ from typing import Protocol
 
 from rosetta_jit.kernel.nodes import Address, Expr, Local, Scalar, Stmt
 from rosetta_jit.language import typed
-from rosetta_jit.language.function import functions
+from rosetta_jit.language.installed import functions
 from rosetta_jit.lowering.writer import Where, Writer
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -27,8 +27,8 @@ from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError
 from rosetta_jit.kernel.traits import asks_host, our_functions
 from rosetta_jit.language.check.mapping import Checked, check
-from rosetta_jit.language.function import GROUP as FUNCTIONS
 from rosetta_jit.language.imports.search import Reading, SearchPath
+from rosetta_jit.language.installed import GROUP as FUNCTIONS
 from rosetta_jit.language.parse.mapping import parse as parse_mapping
 from rosetta_jit.language.typed import Rule
 from rosetta_jit.lowering.lower import Mapped, lower

@@ -9,7 +9,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from rosetta_jit.frameworks.installed import installed
-from rosetta_jit.language.function import Function, offered
+from rosetta_jit.language.function import Function
+from rosetta_jit.language.installed import offered
 from rosetta_jit.pipeline.limits import MAX_RECENT, MAX_RECENT_BYTES
 from rosetta_jit.pipeline.request import Request, here
 from rosetta_jit.startup.dataclass import dataclass

@@ -9,7 +9,8 @@ from importlib import import_module
 
 import pytest
 
-from rosetta_jit.language.function import GROUPS, OURS, SEVERAL, Affine, NotFollowed, Numbers, Texts, Undone, functions, shipped
+from rosetta_jit.language.function import SEVERAL, Affine, NotFollowed, Numbers, Texts, Undone
+from rosetta_jit.language.installed import GROUPS, OURS, functions, shipped
 
 RECORDS = pytest.mark.parametrize("function", shipped(), ids=lambda each: each.name)
 
@@ -65,7 +66,7 @@ def test_the_table_says_which_module_has_which_functions(family):
 def test_a_family_is_imported_when_one_of_its_functions_is_looked_up():
     program = """
 import sys
-from rosetta_jit.language.function import functions, written
+from rosetta_jit.language.installed import functions, written
 def imported():
     return {name.rpartition(".")[2] for name in sys.modules if name.startswith("rosetta_jit.functions.")}
 assert written("sine") is None and "nothing" not in functions() and not imported()

@@ -9,8 +9,8 @@ from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.fingerprint import fingerprint
 from rosetta_jit.frameworks.lcm.limits import MAX_DEPTH
 from rosetta_jit.model import expr
-from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.limits import MAX_SLOTS
+from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Blob, Codec, Constant, Count, Encoding, Number, Path, Recursion, Repeat, Seq, Table

@@ -13,7 +13,7 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.limits import MAX_DEPTH, MAX_WAYS
 from rosetta_jit.frameworks.lcm.shape import shape_of, written_sizes
-from rosetta_jit.model.layout import recursive_structs
+from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Enum, Field, Ref, Schema, Struct
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.omg import diagnostics as words
-from rosetta_jit.model.layout import map_entry, recursive_structs, scalar_of
+from rosetta_jit.model.layout import map_entry, scalar_of
+from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire import codec as wire

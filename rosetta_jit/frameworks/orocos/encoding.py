@@ -17,7 +17,8 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.layout import UNDERLYING, Layouts
 from rosetta_jit.frameworks.orocos.limits import MAX_FIELDS
-from rosetta_jit.model.layout import recursive_structs, scalar_of
+from rosetta_jit.model.layout import scalar_of
+from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Blob, Codec, Count, Encoding, Number, Padding, Path, Recursion, Repeat, Seq, Table

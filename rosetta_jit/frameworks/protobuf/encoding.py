@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.model.layout import map_entry, recursive_structs
+from rosetta_jit.model.layout import map_entry
+from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Blob, Codec, Count, Encoding, Entry, Number, Path, Recursion, Tagged, Varint, WireType

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp.bottle_codec import Bottles
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4, YARP2012, Dialect
-from rosetta_jit.model.layout import recursive_structs
+from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Array, Map, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Codec, Encoding

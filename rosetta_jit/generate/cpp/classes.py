@@ -9,7 +9,7 @@ from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.generate.inner_types import reached_types
-from rosetta_jit.model.layout import recursive_structs
+from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
 
 if TYPE_CHECKING:

@@ -22,7 +22,7 @@ from rosetta_jit.language.arrays.layouts import ARGUMENTS, NUMBER_BYTES, PADDED,
 from rosetta_jit.language.arrays.orders import is_of_image
 from rosetta_jit.language.arrays.parts import has_each, is_many, open_parts, sources_in, substituted
 from rosetta_jit.language.conversions import is_single, same, widens
-from rosetta_jit.language.function import functions
+from rosetta_jit.language.installed import functions
 from rosetta_jit.language.limits import MAX_MADE
 from rosetta_jit.language.scope import Scope, element_type, members_of
 from rosetta_jit.language.typed import INT64, Const, FieldStep, IndexStep, Local, Place, Step

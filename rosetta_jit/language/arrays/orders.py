@@ -10,8 +10,8 @@ from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.language.arrays.counts import LayoutError
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, NUMBER_BYTES, NUMBERS, PADDED, view_of
 from rosetta_jit.language.conversions import as_int64
-from rosetta_jit.language.function import written
 from rosetta_jit.language.image_orders import COLOURS, COUNT, ORDERED
+from rosetta_jit.language.installed import written
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import INT64, Call, Const, Expr
 from rosetta_jit.model import expr as model

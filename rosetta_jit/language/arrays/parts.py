@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS
-from rosetta_jit.language.function import written
+from rosetta_jit.language.installed import written
 from rosetta_jit.model.expr import Call, Coerced, Each, Expr, Index, Len, Path, Pick, Slice
 from rosetta_jit.model.walk import parts, rebuilt
 

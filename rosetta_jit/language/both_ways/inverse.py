@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, put_back, rounded_bytes
 from rosetta_jit.language.folding import folded, is_constant
-from rosetta_jit.language.function import SEVERAL, Affine, ByType, Function, written
+from rosetta_jit.language.function import SEVERAL, Affine, ByType, Function
 from rosetta_jit.language.groups import GroupFunction, arguments_of, component, function_of
+from rosetta_jit.language.installed import written
 from rosetta_jit.language.operators import form_of, rounds, why_lost
 from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Expr, Given, Item, Len, List, Literal, Name, Nearest, Path, Unary
 from rosetta_jit.model.types import Float, Int, String, Type

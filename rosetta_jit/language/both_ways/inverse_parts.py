@@ -24,9 +24,10 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.both_ways.inverse import CONVERSIONS, NoInverseError, Solution, fields_in, nearest, solve, undone_group
 from rosetta_jit.language.folding import folded
-from rosetta_jit.language.function import Function, functions, written
+from rosetta_jit.language.function import Function
 from rosetta_jit.language.functions.texts import separates
 from rosetta_jit.language.groups import component, function_of
+from rosetta_jit.language.installed import functions, written
 from rosetta_jit.model.expr import Binary, Call, Choice, Expr, Len, List, Literal, Path
 from rosetta_jit.model.types import Float, Int
 from rosetta_jit.model.walk import parts, rebuilt

@@ -15,7 +15,8 @@ from rosetta_jit.language.both_ways.linear_relations import related, solve_toget
 from rosetta_jit.language.both_ways.presence import flag_of, is_kept
 from rosetta_jit.language.both_ways.signal_relations import frames_of, told_in_all
 from rosetta_jit.language.both_ways.text_parts import parts_of_texts
-from rosetta_jit.language.function import Affine, written
+from rosetta_jit.language.function import Affine
+from rosetta_jit.language.installed import written
 from rosetta_jit.language.operators import form_of
 from rosetta_jit.model.expr import Binary, Call, Choice, Expr, Len, Literal, Name, Path, Unary
 from rosetta_jit.model.mapping import Arranged, For, Relation, Rule, When

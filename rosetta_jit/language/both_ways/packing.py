@@ -25,8 +25,8 @@ from rosetta_jit.language.both_ways.learning import learn
 from rosetta_jit.language.both_ways.named_fields import fields_in_rules, is_among, set_by
 from rosetta_jit.language.both_ways.presence import asks_presence, flag_of, presence_between, told_by_setting
 from rosetta_jit.language.folding import folded
-from rosetta_jit.language.function import written
 from rosetta_jit.language.groups import group_of
+from rosetta_jit.language.installed import written
 from rosetta_jit.language.limits import MAX_BLOCKS
 from rosetta_jit.model.element_rules import ignored_elements, ignoring
 from rosetta_jit.model.expr import Binary, Call, Coerced, Expr, Item, Len, List, Literal, Path

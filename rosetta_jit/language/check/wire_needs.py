@@ -17,7 +17,7 @@ from rosetta_jit.language.scope import Message
 from rosetta_jit.language.typed import Assign, Default, Expr, FieldStep, For, Ignore, Place, Rule, SetLength, When
 from rosetta_jit.language.walk import expressions_of
 from rosetta_jit.model.expr import Side
-from rosetta_jit.model.layout import recursive_structs
+from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Ref, Struct
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -21,9 +21,10 @@ from rosetta_jit.language import conversions
 from rosetta_jit.language.arrays.layouts import ARGUMENTS
 from rosetta_jit.language.arrays.orders import is_of_image, is_order, takes_orders, type_order
 from rosetta_jit.language.conversions import as_int64, as_single, convert, describe, in_single, is_single, same, wrap
-from rosetta_jit.language.function import Function, Numbers, Texts, names, written
+from rosetta_jit.language.function import Function, Numbers, Texts
 from rosetta_jit.language.functions.texts import constant_named, is_textual, type_texts
 from rosetta_jit.language.groups import function_of, group_functions
+from rosetta_jit.language.installed import names, written
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import Call, Const, ConversionRule, Convert, Expr
 from rosetta_jit.language.units.conversion import check_arguments

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import functions as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.conversions import convert, describe, word_for
-from rosetta_jit.language.function import names
 from rosetta_jit.language.functions.calls import FLOATS, INTEGERS, named_type
 from rosetta_jit.language.groups import group_functions
+from rosetta_jit.language.installed import names
 from rosetta_jit.language.limits import MAX_PARAMETERS
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import Expr, HostCall

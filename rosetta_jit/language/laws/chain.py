@@ -17,7 +17,8 @@ from typing import Literal as OneOf
 from rosetta_jit.language.affine_steps import LARGEST, PRECISION, LostError, Value, rounded, scaled
 from rosetta_jit.language.affine_steps import UNSHOWN as NOT_SHOWN
 from rosetta_jit.language.conversions import EXACT_BITS, bounds
-from rosetta_jit.language.function import Affine, NotFollowed, Undone, functions
+from rosetta_jit.language.function import Affine, NotFollowed, Undone
+from rosetta_jit.language.installed import functions
 from rosetta_jit.language.operators import form_of, why_lost
 from rosetta_jit.language.typed import Binary, Call, Choice, Const, Convert, Expr, Given, Nearest, Unary
 from rosetta_jit.model.types import Float, Int, Type

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from rosetta_jit.language.conversions import adapt, same
-from rosetta_jit.language.function import functions
+from rosetta_jit.language.installed import functions
 from rosetta_jit.language.laws.chain import come_back, source_of
 from rosetta_jit.language.typed import BOOL, Binary, Call, Choice, Const, Convert, Expr, Listed, Nearest, Unary
 from rosetta_jit.model.types import Float

@@ -17,9 +17,10 @@ from rosetta_jit.language.arrays.element_loops import element_of
 from rosetta_jit.language.arrays.layouts import View, view_of
 from rosetta_jit.language.arrays.parts import sources_in, substituted
 from rosetta_jit.language.conversions import as_int64
-from rosetta_jit.language.function import Function, Reduction, written
+from rosetta_jit.language.function import Function, Reduction
 from rosetta_jit.language.functions.calls import type_numbers
 from rosetta_jit.language.functions.decisions import is_condition, type_condition
+from rosetta_jit.language.installed import written
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import INT64, Call, Choice, Const, Expr, Local, Reduce
 from rosetta_jit.model import expr as model

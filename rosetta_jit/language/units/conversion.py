@@ -15,7 +15,8 @@ from rosetta_jit.catalogue import units as words
 from rosetta_jit.catalogue.resolve import written_at
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.conversions import FLOAT64, describe
-from rosetta_jit.language.function import Function, functions
+from rosetta_jit.language.function import Function
+from rosetta_jit.language.installed import functions
 from rosetta_jit.language.places import field_names
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import Access, Binary, Call, Choice, Convert, Expr, IndexStep, Nearest, Place, Reduce, Unary

@@ -11,7 +11,7 @@ from typing import cast
 from rosetta_jit.kernel.nodes import Compare, Const, Expr, For, If, Local, Select
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
-from rosetta_jit.language.function import functions
+from rosetta_jit.language.installed import functions
 from rosetta_jit.language.places import shown_fields
 from rosetta_jit.lowering.codec.fields import scalar_name
 from rosetta_jit.lowering.evaluation import Evaluation

@@ -12,7 +12,7 @@ from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe
-from rosetta_jit.language.function import functions
+from rosetta_jit.language.installed import functions
 from rosetta_jit.language.walk import parts
 from rosetta_jit.lowering.arithmetic import COMPARISONS, binary, differ
 from rosetta_jit.lowering.codec.fields import converted
