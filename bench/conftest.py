@@ -102,11 +102,14 @@ def effort(request):
 
 @pytest.fixture
 def record(request, found):
-    """Call it with the fields of a `Row`: the row joins the report, and its target is demanded unless only a report is wanted."""
+    """Call it with the fields of a `Row`: the row joins the report, and its target is demanded unless only a report is wanted.
 
-    def record_row(what, measured, at_most, unit, detail="", against=""):
+    ``messages`` are told where nothing was compared by `compare`, which knows them.
+    """
+
+    def record_row(what, measured, at_most, unit, detail="", against="", *, messages=None):
         family = request.node.path.stem.removeprefix("test_")
-        row = Row(what, measured, at_most, unit, detail, against, request.node.stash.get(MESSAGES, None), family)
+        row = Row(what, measured, at_most, unit, detail, against, request.node.stash.get(MESSAGES, messages), family)
         found("rows", row)
         if not request.config.getoption("--bench-report"):
             assert row.met, f"{what}: {measured.median:.3g} {unit}, at most {at_most:.3g} wanted"

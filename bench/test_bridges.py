@@ -102,14 +102,15 @@ def test_latency(effort, record):
     found, is_first = latencies(rounds * count)
     added = [float(np.subtract(*np.percentile(each, 99, axis=0))) for each in np.split(found, rounds)]
     said = f"median {np.subtract(*np.median(found, axis=0)):.0f} us" + ("" if is_first else ", other programs had their turns")
-    record("a running bridge, latency added (p99)", Spread.of(added), 50, "us over a copy from socket to socket", said)
+    record("a running bridge, latency added (p99)", Spread.of(added), 50, "us over a copy from socket to socket", said, messages=1)
 
 
 def test_topics(effort, record):
     found = topics(seconds=2.0 if effort.quick else 10.0)
     assert (found["lost"], found["not_taken"]) == (0, 0)
     said = f"{found['carried_per_s']:.0f} a second of 100 topics at 1 kHz; a core at 10"
-    record("a running bridge, 200 bytes, YARP 4 to 3", Spread.of([found["cpu_us_a_message"]]), 10, "us of a core a message", said)
+    measured = Spread.of([found["cpu_us_a_message"]])
+    record("a running bridge, 200 bytes, YARP 4 to 3", measured, 10, "us of a core a message", said, messages=1)
 
 
 @pytest.mark.parametrize("way", [images, shared], ids=["TCP", "shared memory"])
@@ -120,4 +121,4 @@ def test_images(way, effort, record, request):
     assert found["lost"] == 0
     said = f"{found['gigabytes_per_s']:.2f} GB/s; a GB/s and core at 1"
     what = f"a running bridge, images of 1 MB, {request.node.callspec.id}"
-    record(what, Spread.of([found["cpu_us_an_image"] / 1000]), 1, "ms of a core an image", said)
+    record(what, Spread.of([found["cpu_us_an_image"] / 1000]), 1, "ms of a core an image", said, messages=1)

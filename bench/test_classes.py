@@ -37,7 +37,8 @@ def against(tmp_path, effort, found, record):
             contenders = [Contender(who, "ours" if each == "ours" else "peer", makes, lambda: 0.0) for who, each in whose.items()]
             found("comparisons", comparison(CHAPTER, f"{name}, {job}d", contenders, outcome))
             mine, other = (words.time(outcome.took(who).median) for who in whose)
-            record(f"{name}, generated C++, {job}d", outcome.ratio(*whose), at_most, f"x {PEERS[holder]}", f"{mine} against {other}")
+            what, said = f"{name}, generated C++, {job}d", f"{mine} against {other}"
+            record(what, outcome.ratio(*whose), at_most, f"x {PEERS[holder]}", said, messages=1)
 
     return measure
 

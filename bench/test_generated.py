@@ -100,4 +100,4 @@ def test_against_pure_protobuf(name, effort, record):
     rounds = str(max(5, effort.rounds))
     said = processes.run("-c", TIMED, name, rounds, PROTOCOL_BUFFERS_PYTHON_IMPLEMENTATION="python")
     for job, ratios in json.loads(said).items():
-        record(f"{name}, generated Python, {job}d", Spread.of(tuple(ratios)), AT_MOST, f"x {PURE}")
+        record(f"{name}, generated Python, {job}d", Spread.of(tuple(ratios)), AT_MOST, f"x {PURE}", messages=1)

@@ -24,6 +24,7 @@ CPP, ADDS, RESIZES = "rosetta_jit, generated C++", "C++ by hand, add_angles", "C
 INTO_PROTOBUF = {CPP: "codec", ADDS: "add", RESIZES: "resize"}
 LISP = "rosetta_jit, generated Lisp"
 MESSAGES, SERIES = 1_000_000, 20
+HERE = {"loop": "C++ by hand, loop, for this machine", "tagged": "C++ by hand, tagged, for this machine"}
 OURS, BUILTIN, MANY, LEN, LOOP, COPY, TAGGED, GENERATED = (
     "rosetta_jit",
     "rosetta_jit, `builtin`",
@@ -140,7 +141,7 @@ def test_one_call(tmp_path, effort, record):
     count = 5 if effort.quick else 15
     found = [json.loads(run("-m", "bench.one_call", str(tmp_path), ROSETTA_JIT_CACHE_DIR=str(tmp_path))) for _ in range(count)]
     for what, message, called, at_most in ONE_CALL:
-        record(what, Spread.of([each[message][called] for each in found]), at_most, "x len()", f"of {count} processes")
+        record(what, Spread.of([each[message][called] for each in found]), at_most, "x len()", f"of {count} processes", messages=1)
 
 
 def test_24_specialised_doubles(decoders, effort, compare, record, tmp_path):
@@ -155,6 +156,14 @@ def test_24_specialised_doubles(decoders, effort, compare, record, tmp_path):
             *bottle_contenders(effort, decoder, message, peers),
             *yarp_vector(peers, message, count),
             in_cpp(LOOP, "an array of float32 radians, used again", peers.loop(message, 266, angles), angles, np.radians(wanted), count),
+            in_cpp(
+                HERE["loop"],
+                "an array of float32 radians, used again",
+                peers.loop(message, 266, angles, here=True),
+                angles,
+                np.radians(wanted),
+                count,
+            ),
             in_cpp(COPY, "an array of float64 degrees, used again", peers.copy(message, 266, degrees), degrees, wanted, count),
             in_cpp(GENERATED, HOLDER, compiled, in_c, np.radians(wanted), count),
             by_struct(effort, message, "a tuple of degrees, anew"),
@@ -167,6 +176,8 @@ def test_24_specialised_doubles(decoders, effort, compare, record, tmp_path):
     loop, copy = (outcome.took(who).median for who in (LOOP, COPY))
     detail = f"loop {loop:.1f} ns, header check and memcpy {copy:.1f} ns"
     record("24 specialised doubles, against a C++ loop by hand, inside C++", outcome.ratio(OURS, LOOP), None, "x", detail)
+    here = f"loop {outcome.took(HERE['loop']).median:.1f} ns, g++ -O3 -march=native"
+    record("24 specialised doubles, against that loop compiled for this machine", outcome.ratio(OURS, HERE["loop"]), None, "x", here)
 
 
 @pytest.mark.skipif(shutil.which("sbcl") is None, reason="SBCL is not installed")
@@ -226,6 +237,14 @@ def test_16_tagged_doubles(decoders, effort, compare, record):
                 np.radians(degrees_of(message)),
                 series(effort),
             ),
+            in_cpp(
+                HERE["tagged"],
+                "an array of float32 radians, used again",
+                peers.tagged_loop(message, 10, angles, here=True),
+                angles,
+                np.radians(degrees_of(message)),
+                series(effort),
+            ),
             by_struct(effort, message, "a tuple of tags and degrees, anew"),
         ],
         rounds=SERIES,
@@ -233,6 +252,8 @@ def test_16_tagged_doubles(decoders, effort, compare, record):
     against_dynamic(record, outcome, peers, "16 tagged doubles, against a dynamic C++ decoder", None)
     loop = outcome.took(TAGGED).median
     record("16 tagged doubles, against a C++ loop by hand", outcome.ratio(OURS, TAGGED), None, "x", f"loop {loop:.1f} ns")
+    here = f"loop {outcome.took(HERE['tagged']).median:.1f} ns, g++ -O3 -march=native"
+    record("16 tagged doubles, against that loop compiled for this machine", outcome.ratio(OURS, HERE["tagged"]), None, "x", here)
 
 
 def against_dynamic(record, outcome, peers, what, at_most, *, ours=OURS):

@@ -48,8 +48,8 @@ JOBS = (
 def test_image_against_memmove(job, effort, compare, record):
     decode, message, peers = rj.Decoder(MAPPINGS / f"{job.mapping}.mapping", encoding="yarp3"), image(job.width), Peers()
     by_numpy = numpy_decoder(job)
-    by_cpp, pixels = native(peers, job, message)
-    assert bytes(decode(message).data) == by_numpy(message).tobytes() == pixels.tobytes()
+    (by_cpp, pixels), (for_this_machine, same) = (native(peers, job, message, here=here) for here in (False, True))
+    assert bytes(decode(message).data) == by_numpy(message).tobytes() == pixels.tobytes() == same.tobytes()
 
     def decoded():
         return effort.call(rj.Decoder(MAPPINGS / f"{job.mapping}.mapping", encoding="yarp3"), anew(message))
@@ -71,6 +71,7 @@ def test_image_against_memmove(job, effort, compare, record):
             ),
             *yarp(peers, message, effort),
             Contender("C++ by hand", "peer", "an array, used again", rounds_of(by_cpp, effort.round_s)),
+            Contender("C++ by hand, for this machine", "peer", "an array, used again", rounds_of(for_this_machine, effort.round_s)),
             Contender("numpy, unchecked", "peer", "an array, anew", effort.call(by_numpy, message)),
         ],
     )
@@ -90,10 +91,10 @@ def test_borrowed_image_against_len(effort, compare, record):
     record("image, borrowed", outcome.ratio(OURS, LEN), 4, "x len()", f"{outcome.took(OURS).median:.0f} ns")
 
 
-def native(peers, job, message):
-    """The decoder by hand in C++, and what it makes of the message."""
+def native(peers, job, message, *, here):
+    """The decoder by hand in C++, compiled for this machine or for all of its kind, and what it makes of the message."""
     pixels = np.zeros(job.width * HEIGHT * 3, np.uint8)
-    decode = peers.image(job.native, message, pixels)
+    decode = peers.image(job.native, message, pixels, here=here)
     decode(1)
     return decode, pixels
 

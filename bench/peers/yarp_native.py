@@ -1,4 +1,7 @@
-"""The native peers of bottles and images: real YARP or the model of it, and decoders written by hand in C++."""
+"""The native peers of bottles and images: real YARP or the model of it, and decoders written by hand in C++.
+
+These are compiled with `-O2`, as packages of distributions are, and once more for this machine, with `-O3 -march=native`.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from bench.peers.native import FOLDER
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-LIBRARY = FOLDER / "libpeers.so"
+LIBRARY, FOR_THIS_MACHINE = FOLDER / "libpeers.so", FOLDER / "libpeers_here.so"
 
 
 class Peers:
@@ -22,6 +25,7 @@ class Peers:
     def __init__(self) -> None:
         self.library = ctypes.CDLL(str(LIBRARY))
         self.library.dynamic_decoder.restype = ctypes.c_char_p
+        self.here = ctypes.CDLL(str(FOR_THIS_MACHINE))
 
     @property
     def dynamic_decoder(self) -> str:
@@ -44,29 +48,30 @@ class Peers:
         name = f"yarp_{class_}_ns"
         return self._timed(name, message) if hasattr(self.library, name) else None
 
-    def loop(self, message: bytes, tag: int, angles: np.ndarray) -> Callable[[int], float]:
-        return self._timed("loop_decode_ns", message, tag, angles.ctypes)
+    def loop(self, message: bytes, tag: int, angles: np.ndarray, *, here: bool = False) -> Callable[[int], float]:
+        return self._timed("loop_decode_ns", message, tag, angles.ctypes, here=here)
 
-    def tagged_loop(self, message: bytes, tag: int, angles: np.ndarray) -> Callable[[int], float]:
-        return self._timed("tagged_decode_ns", message, tag, angles.ctypes)
+    def tagged_loop(self, message: bytes, tag: int, angles: np.ndarray, *, here: bool = False) -> Callable[[int], float]:
+        return self._timed("tagged_decode_ns", message, tag, angles.ctypes, here=here)
 
     def copy(self, message: bytes, tag: int, degrees: np.ndarray) -> Callable[[int], float]:
         return self._timed("copy_decode_ns", message, tag, degrees.ctypes)
 
-    def image(self, job: str, message: bytes, pixels: np.ndarray) -> Callable[[int], float]:
+    def image(self, job: str, message: bytes, pixels: np.ndarray, *, here: bool = False) -> Callable[[int], float]:
         """``job``: ``unpad``, ``swap`` or ``planar``."""
-        return self._timed(f"image_{job}_ns", message, pixels.ctypes)
+        return self._timed(f"image_{job}_ns", message, pixels.ctypes, here=here)
 
     def memmove(self, size: int) -> Callable[[int], float]:
         function = self._function("memmove_ns")
         target, source = ctypes.create_string_buffer(size), ctypes.create_string_buffer(size)
         return lambda iterations: function(target, source, ctypes.c_int64(size), ctypes.c_int64(iterations))
 
-    def _timed(self, name: str, message: bytes, *arguments: Any) -> Callable[[int], float]:
-        return partial(nanoseconds, self._function(name), (message, ctypes.c_int64(len(message)), *arguments))
+    def _timed(self, name: str, message: bytes, *arguments: Any, here: bool = False) -> Callable[[int], float]:
+        """``here`` is for what is compiled for this machine."""
+        return partial(nanoseconds, self._function(name, here=here), (message, ctypes.c_int64(len(message)), *arguments))
 
-    def _function(self, name: str) -> Any:
-        function = self.library[name]
+    def _function(self, name: str, *, here: bool = False) -> Any:
+        function = (self.here if here else self.library)[name]
         function.restype = ctypes.c_double
         return function
 

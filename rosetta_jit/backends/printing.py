@@ -7,8 +7,9 @@ from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import field
 
+from rosetta_jit.kernel import walk
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.nodes import Advance, Block, For, If, Stmt, Switch, While
+from rosetta_jit.kernel.nodes import Advance, Block, Stmt
 from rosetta_jit.startup.dataclass import dataclass
 
 MAX_IDENTIFIER = 60
@@ -63,12 +64,7 @@ class Namespace:
 
 def statements(block: Block) -> Iterator[Stmt]:
     """All statements of a block, those of inner blocks included."""
-    pending = list(reversed(block))
-    while pending:
-        statement = pending.pop()
-        yield statement
-        for inner in inner_blocks(statement):
-            pending += reversed(inner)
+    return (statement for statement, _ in walk.statements(block))
 
 
 def counted_lanes(kernel: Kernel, body: Block) -> list[int]:
@@ -80,16 +76,3 @@ def counted_lanes(kernel: Kernel, body: Block) -> list[int]:
 def emptied_lanes(kernel: Kernel) -> frozenset[int]:
     """The holder's lanes that decoding into row 0 empties: all behind lane 0, but for those that the kernel keeps."""
     return frozenset(range(1, kernel.lanes)) - frozenset(kernel.kept) if kernel.direction == "decode" else frozenset()
-
-
-def inner_blocks(statement: Stmt) -> tuple[Block, ...]:
-    """The blocks that a statement governs."""
-    match statement:
-        case For(_, _, body) | While(_, body, _, _):
-            return (body,)
-        case If(_, then, otherwise):
-            return (then, otherwise)
-        case Switch(_, cases, default):
-            return (*(body for _, body in cases), default)
-        case _:
-            return ()

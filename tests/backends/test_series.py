@@ -14,6 +14,7 @@ from rosetta_jit.kernel.nodes import (
     Copy,
     Expect,
     For,
+    If,
     Let,
     Load,
     Local,
@@ -163,21 +164,23 @@ def test_cases_of_a_switch_are_found():
     assert len(texts.numbers) == COUNTS["protobuf"]
 
 
-def repeated(*, last):
-    """A kernel that reads forty numbers in as many stretches; in the end it uses the name of one of them again."""
+def repeated(*, last, inside=False):
+    """A kernel that reads forty numbers in as many stretches; in the end it uses the name of one of them again, perhaps inside a branch."""
     one = Const("i64", 1)
     body = [Require(BEGIN, Const("i64", 8 * 40), failure(1))]
     for number in range(40):
         read, place = Local("i64", f"read{number}"), Place(1, Const("i64", number))
         body += [Reserve(1, one), Let(read.name, Load("i64", add(BEGIN, 8 * number))), Expect(Compare("ge", read, one), failure(2))]
         body += [*[SetField(place, read)] * 12, Advance(1, one)]
-    body += [SetField(Place(0, ROW), Local("i64", f"read{last}")), Return(END)]
+    use = SetField(Place(0, ROW), Local("i64", f"read{last}"))
+    body += [If(Compare("eq", ROW, index(0)), (use,)) if inside else use, Return(END)]
     return kernel(tuple(body), strides=(8, 8), name="repeated")
 
 
+@pytest.mark.parametrize("inside", [False, True])
 @pytest.mark.parametrize(("last", "count"), [(39, 1), (7, 0)])
-def test_names_that_others_use_belong_to_no_series(last, count):
-    made = repeated(last=last)
+def test_names_that_others_use_belong_to_no_series(last, count, inside):
+    made = repeated(last=last, inside=inside)
     assert sum(isinstance(each, Series) for each in found(made, made.bodies[0]).parts(made.bodies[0])) == count
 
 

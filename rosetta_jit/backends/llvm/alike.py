@@ -14,9 +14,9 @@ from typing import Any
 from rosetta_jit.backends.llvm.alike_names import Carried, carried_names, stay_inside
 from rosetta_jit.backends.llvm.outline import Outline, Slot, is_number
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.nodes import Block, Call, Const, Copy, Expr, Fill, For, If, Local, Reserve, Scalar, Stmt, Switch, While
+from rosetta_jit.kernel.nodes import Assign, Block, Call, Const, Copy, Expr, Fill, For, If, Local, Reserve, Scalar, Stmt, Switch, While
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
-from rosetta_jit.kernel.walk import statements
+from rosetta_jit.kernel.walk import blocks_of, parts_of, statements
 from rosetta_jit.startup.dataclass import dataclass
 
 MANY = 512
@@ -123,18 +123,20 @@ class _Look:
 
     def parts(self, block: Block) -> tuple[Stmt | Series, ...] | None:
         """The statements of a block, with series in their places; None if there are none."""
-        outlines = list(map(self.outline, block))
+        outlines = self._outlines(block)
         known = dict["Hashable", int]()
-        numbers = [known.setdefault(each.shape, len(known)) for each in outlines]
-        slots = [each.slots for each in outlines]
-        uses = Counter([slot.name for each in slots for slot in each if slot.is_use])
+        numbers = [known.setdefault(object() if each is None else each.shape, len(known)) for each in outlines]
+        slots = [[] if each is None else each.slots for each in outlines]
         parts, at, behind, following = list["Stmt | Series"](), 0, 0, _following(numbers)
+        uses: Counter[str] | None = None
         while at < len(block):
             period = following[at] - at
             end = _end(numbers, at, period) if 0 < period <= LONGEST else at
             if not period or end - at < ROUNDS * period:
                 at += 1
                 continue
+            if uses is None:
+                uses = Counter(_used_names(block))
             made = _best(block, slots, range(at, end), period, uses)
             if made is None:
                 at = end - period + 1
@@ -143,6 +145,12 @@ class _Look:
             parts += [*block[behind:begin], series]
             behind = at
         return (*parts, *block[behind:]) if parts else None
+
+    def _outlines(self, block: Block) -> list[Outline | None]:
+        """The outlines of a block's statements, but for those of a kind of which there are too few for a series."""
+        kinds = [(type(stmt), *(tuple(map(type, inner)) for inner in blocks_of(stmt))) for stmt in block]
+        times = Counter(kinds)
+        return [self.outline(stmt) if times[kind] >= ROUNDS else None for stmt, kind in zip(block, kinds, strict=True)]
 
     def cases(self, switch: Switch) -> tuple[Cases, ...]:
         """The cases of a switch that are alike, where they are many, or of very many statements."""
@@ -156,6 +164,12 @@ class _Look:
             alike.setdefault(tuple([each.shape for each in outlines]), []).append((number, body, _joined(each.slots for each in outlines)))
         made = [_case(group) for group in alike.values() if len(group[0][1]) > 1 and (len(group) >= ROUNDS or _is_vast(group[0][1]))]
         return tuple(each for each in made if each is not None)
+
+
+def _used_names(block: Block) -> list[str]:
+    """The names that a block reads or sets, at any depth, each as often as it does."""
+    every = [stmt for stmt, _ in statements(block)]
+    return [part.name for part in parts_of(every) if isinstance(part, Local)] + [stmt.name for stmt in every if isinstance(stmt, Assign)]
 
 
 def _following(numbers: Sequence[int]) -> list[int]:

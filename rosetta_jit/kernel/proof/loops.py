@@ -145,6 +145,16 @@ def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Con
     What grows in each round is tried all the same: a loop around this one may grow by it. ``reads`` keeps the names that statements read,
     by their ids: those of a loop are asked for again by each loop around it.
     """
+    variables = {name for name in changed_names(body) if name in known}
+    named = {name for expr in said for name in locals_in(expr)} - (set[str]() if measure is None else locals_in(measure))
+    found = variables & named
+    if variables - named:
+        found |= _not_made_of_themselves(body, variables - named, reads)
+    return {Guess(name, 2, 1) for name in found}
+
+
+def _not_made_of_themselves(body: Block, names: set[str], reads: dict[int, set[str]]) -> set[str]:
+    """Of some variables those that a loop sets to what is not computed from them."""
     users: dict[str, set[str]] = {}
     assigned: dict[str, list[set[str]]] = {}
     for stmt, _ in statements(body):
@@ -155,9 +165,7 @@ def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Con
             assigned.setdefault(stmt.name, []).append(read)
         for name in read:
             users.setdefault(name, set()).update((stmt.name,) if isinstance(stmt, Assign) else bound_names(stmt))
-    named = {name for expr in said for name in locals_in(expr)} - (set[str]() if measure is None else locals_in(measure))
-    variables = [name for name in assigned if name in known]
-    return {Guess(name, 2, 1) for name in variables if name in named or not all(map(_made_of(name, users).intersection, assigned[name]))}
+    return {name for name in names if not all(map(_made_of(name, users).intersection, assigned[name]))}
 
 
 def _made_of(name: str, users: Mapping[str, set[str]]) -> set[str]:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
+from rosetta_jit.kernel.walk import statements
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields, span_of
 from rosetta_jit.lowering.codec.varint import VARINT_BYTES
@@ -49,7 +50,7 @@ def write_message(writer: Writer, fields: HolderFields, tagged: Tagged, lengths:
             writer.assign(after, writer.position)
         writer.emit(nodes.If(there, block(body)))
         writer.position = after
-        _settle(writer, fields, lengths)
+        _say_again(writer, fields, lengths, body)
     _write_unknown(writer, fields)
 
 
@@ -67,16 +68,16 @@ def _write_unknown(writer: Writer, fields: HolderFields) -> None:
     writer.advance(size)
 
 
-def _settle(writer: Writer, fields: HolderFields, lengths: Lengths) -> None:
-    """Behind an optional field: say again what holds whether it was there or not, for the proof."""
-    writer.settle()
+def _say_again(writer: Writer, fields: HolderFields, lengths: Lengths, body: list[nodes.Stmt]) -> None:
+    """Behind an optional field, which ``body`` writes: what holds whether it was there or not, where the proof may not follow by itself."""
     if writer.direction == "encode":
         inside = nodes.Binary("and", nodes.Compare("ge", writer.position, BEGIN), nodes.Compare("le", writer.position, END))
         writer.expect(inside, "length", fields.where, "the holder changed while it was written")
-    known = nodes.Binary(
-        "and", nodes.Compare("ge", lengths.next, index(0)), nodes.Compare("le", lengths.next, nodes.Capacity(lengths.lane))
-    )
-    writer.expect(known, "length", fields.where, "the holder changed while it was written")
+    if any(isinstance(each, nodes.Assign) and each.name == lengths.next.name for each, _ in statements(block(body))):
+        known = nodes.Binary(
+            "and", nodes.Compare("ge", lengths.next, index(0)), nodes.Compare("le", lengths.next, nodes.Capacity(lengths.lane))
+        )
+        writer.expect(known, "length", fields.where, "the holder changed while it was written")
 
 
 def present(fields: HolderFields, entry: Entry) -> nodes.Expr | None:
@@ -135,10 +136,12 @@ def _write_value(writer: Writer, fields: HolderFields, entry: Entry, cell: Cell,
             write_varint(writer, to_varint(varint, _number(cell)), where)
         case Blob():
             start, size = fields.read_span(cell, where)
+            if writer.direction == "size":
+                writer.advance(add(size_of_varint(writer, nodes.Convert("u64", size), where), size))
+                return
             write_varint(writer, nodes.Convert("u64", size), where)
             writer.require(size, where, "no room for the message")
-            if writer.direction == "encode":
-                writer.emit(nodes.Copy(nodes.Wire(writer.position), nodes.Place(span_of(cell).lane, start), size))
+            writer.emit(nodes.Copy(nodes.Wire(writer.position), nodes.Place(span_of(cell).lane, start), size))
             writer.advance(size)
         case Tagged(group=int(number)) as tagged:
             write_message(writer, HolderFields(writer, fields.layout, cell, where), tagged, lengths)
@@ -170,7 +173,7 @@ def _write_perhaps(writer: Writer, fields: HolderFields, cell: Cell, recursion: 
         writer.assign(after, writer.position)
     writer.emit(nodes.If(nodes.Compare("gt", count, index(0)), block(there), block(empty)))
     writer.position = after
-    _settle(writer, fields, lengths)
+    _say_again(writer, fields, lengths, there)
 
 
 def _child(fields: HolderFields, cell: Cell, where: Where) -> Cell:
@@ -250,7 +253,7 @@ def _write_packed(writer: Writer, fields: HolderFields, entry: Entry, where: Whe
         writer.assign(after, writer.position)
     writer.emit(nodes.If(nodes.Compare("gt", count, index(0)), block(body)))
     writer.position = after
-    _settle(writer, fields, lengths)
+    _say_again(writer, fields, lengths, body)
 
 
 def _packed_fixed(
