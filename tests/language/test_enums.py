@@ -43,3 +43,20 @@ def test_names_that_are_suggested_can_be_written():
         rj.Decoder("m.mapping", schema={**FILES, "m.mapping": HEAD + wrong}, encoding="cdr", backend="interpreter")
     assert "did you mean `RTC::OFF`?" in str(error.value)
     assert "did you mean `lab.Command.ACTIVE`?" in str(error.value)
+
+
+@pytest.mark.parametrize("package", ["", "lab"])
+def test_an_enum_of_no_package_is_turned_round_too(package):
+    name = f"{package}." if package else ""
+    files = {
+        "lab/msg/Goal.msg": "uint8 status\nstring word\n",
+        "h.proto": f'syntax = "proto2"; {f"package {package};" if package else ""} enum Kind {{ LOW = 0; HIGH = 5; }}\n'
+        "message Held { required Kind kind = 1; required Kind named = 2; }",
+        "m.mapping": f'import "lab/msg/Goal.msg"\nimport "h.proto"\ndata-holder: {name}Held\nwire-schema: lab/msg/Goal\n'
+        f"rules:\n  .kind <-> {name}Kind(.status)\n  .named <-> {name}Kind(.word)\n",
+    }
+    encode, decode = (each("m.mapping", schema=files, encoding="ros1", backend="interpreter") for each in (rj.Encoder, rj.Decoder))
+    held = {"kind": "HIGH", "named": "LOW"}
+    message = encode(encode.holder_type.from_dict(held))
+    assert message == b"\x05\x03\0\0\0LOW"
+    assert decode(message).to_dict() == held

@@ -24,7 +24,7 @@ from rosetta_jit.language.groups import GroupFunction, arguments_of, component, 
 from rosetta_jit.language.installed import written
 from rosetta_jit.language.operators import form_of, rounds, why_lost
 from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Expr, Given, Item, Len, List, Literal, Name, Nearest, Path, Unary
-from rosetta_jit.model.types import Float, Int, String, Type
+from rosetta_jit.model.types import Enum, Float, Int, String, Type
 from rosetta_jit.model.walk import Field, parts, rebuilt, side_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -163,6 +163,8 @@ def step(expr: Expr, value: Expr, type_of: TypeOf) -> tuple[Expr, Expr]:
             raise NoInverseError(expr, f"`{name}` does not say what else `{function}` gives")
         case Call("has"):
             raise NoInverseError(expr, f"`has` {SEVERAL}")
+        case Call(_, (argument,)) if isinstance(type_of(expr), Enum):
+            return argument, value
         case Call(function):
             raise NoInverseError(expr, f"nothing says what the opposite of `{function}` is")
         case Choice():

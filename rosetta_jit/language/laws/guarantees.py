@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal
 
-from rosetta_jit.language.algebra.equality import given_back, has_state, is_of_digits, is_part, reads_other, same_number
+from rosetta_jit.language.algebra.equality import given_back, has_local, has_state, is_of_digits, is_part, reads_other, same_number
 from rosetta_jit.language.algebra.normal_form import normal
 from rosetta_jit.language.laws.chain import UNSHOWN, Lost, Outcome, Rounding, come_back
 from rosetta_jit.language.laws.execution_paths import ExecutionPath, UnfollowedError, execution_paths
@@ -179,6 +179,9 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
             return None
         case Const(constant):
             return Lost(f"it becomes {constant!r}")
+        case Access(other) | LenOf(other) if not has_local(value):
+            name = shown_place(other.steps)
+            return Lost(f"it becomes that of `{name}`" if isinstance(value, Access) else f"it becomes `len({name})`")
         case _ if reads_other(value, place.side):
             return Lost("it comes back as something that does not follow from it")
         case _:
