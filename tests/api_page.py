@@ -17,7 +17,8 @@ from rosetta_jit.frameworks.ros2.manners import Ros2Message
 from rosetta_jit.frameworks.yarp.manners import BottleMessage
 from rosetta_jit.logs.channel import Channel
 from rosetta_jit.logs.log import Log
-from rosetta_jit.runtime.columns import Ragged
+from rosetta_jit.runtime.nested_columns import Columns, Ragged
+from rosetta_jit.runtime.text_columns import Texts
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.transports.base import Caller, Message, Server, Sink, Source
 
@@ -32,7 +33,7 @@ line is described by `rosetta-jit --help`.
 """
 CHAPTERS = {
     "Programs": (rj.Decoder, rj.Encoder, rj.Bridge, rj.Decoders, rj.Encoders, Options, WireOptions, BridgeOptions, rj.check, rj.infer),
-    "Messages": (rj.Holder, rj.Batch, Ragged),
+    "Messages": (rj.Holder, rj.Batch, Columns, Ragged, Texts),
     "Logs": (rj.open, Log, Channel),
     "Transports": (rj.subscribe, rj.publish, rj.call, rj.serve, Message, Source, Sink, Caller, Server),
     "What holders of a framework have besides": (ProtobufMessage, RosMessage, Ros2Message, LcmMessage, Structure, BottleMessage),

@@ -116,6 +116,8 @@ def _from_descriptors(type_: str | type, schema: bytes | None) -> str:
         name = type_ if isinstance(type_, str) else type_.__name__
     else:
         message: Any = type_
+        if not hasattr(message, "DESCRIPTOR"):
+            raise TypeError(f"a type is a name, or a message class of protobuf's package, not {type_!r}")
         declared, name = from_message_class(message), message.DESCRIPTOR.full_name
     if name not in declared.types:
         from rosetta_jit.catalogue.pipeline import unknown_type

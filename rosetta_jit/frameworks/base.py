@@ -80,6 +80,8 @@ class Framework:
     several
         For suffixes of files that declare several types: how the names of those end, behind that of the file. They lie in a folder that is
         called like their suffix.
+    homes
+        For types whose file is not called as they are: the name of the file.
     leniencies
         For each encoding, what it can be asked to forgive: a name, and the peer that needs it.
     byte_orders
@@ -107,6 +109,7 @@ class Framework:
     manners: str = ""
     files: tuple[str, ...] = ()
     several: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, "tuple[str, ...]"])
+    homes: Mapping[str, str] = field(default_factory=dict[str, str])
     leniencies: Mapping[str, Mapping[str, str]] = field(default_factory=dict[str, "Mapping[str, str]"])
     byte_orders: tuple[str, ...] = ()
     features: str = ""
@@ -155,6 +158,8 @@ class Framework:
 
     def files_of(self, parts: tuple[str, ...]) -> Iterator[str]:
         """The files of several types of which one has that name."""
+        if ".".join(parts) in self.homes:
+            yield self.homes[".".join(parts)]
         for suffix in self.several:
             yield from self.files_of_kind(parts, suffix)
 

@@ -14,8 +14,8 @@ from rosetta_jit.errors import LogError
 from rosetta_jit.logs.limits import MAX_LISTED_DEPTH
 from rosetta_jit.model.units import Context
 from rosetta_jit.runtime.batch import Batch, family_in
-from rosetta_jit.runtime.columns import Ragged
 from rosetta_jit.runtime.holder.record import Child, Items, Node, Record
+from rosetta_jit.runtime.nested_columns import Columns, Ragged
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def _numbers(batch: Batch, steps: list[str | int]) -> Floats:
 
 def _part(columns: object, name: str) -> Any:
     """The column of a name of a struct's."""
-    return cast("dict[str, Any]", columns)[name] if isinstance(columns, dict) else _no_number()
+    return columns[name] if isinstance(columns, Columns) else _no_number()
 
 
 def _dimensions(value: object) -> int:

@@ -10,7 +10,7 @@ import numpy as np
 from rosetta_jit.errors import DecodeError, InUse
 from rosetta_jit.kernel.state import EPOCH, VALID
 from rosetta_jit.runtime.batch_parts import contents, errors_of_part, errors_together, joined, revived
-from rosetta_jit.runtime.columns import Origin, column, of_batch, presence_mask
+from rosetta_jit.runtime.columns import column, presence_mask
 from rosetta_jit.runtime.holder import Holder, Manners
 from rosetta_jit.runtime.holder.classes import HolderFamily
 from rosetta_jit.runtime.holder.family import family_of
@@ -18,6 +18,7 @@ from rosetta_jit.runtime.holder.paths import entries_to
 from rosetta_jit.runtime.lanes import Lanes, in_use
 from rosetta_jit.runtime.memory_for_arrow import Handed
 from rosetta_jit.runtime.memory_plan import plan
+from rosetta_jit.runtime.nested_columns import Origin, of_batch
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -120,7 +121,7 @@ class Batch:
     def __getitem__(self, index: int | np.integer[Any] | slice | ArrayLike) -> Any:
         """A view of one message; or a new batch with copies of those that a slice, a mask or an array of numbers chooses."""
         match index:
-            case int() | np.integer():
+            case int() | np.integer() if not isinstance(index, bool):
                 return self._row(int(index))
             case _:
                 part = Batch(self._family, joined([(self.lanes, index)]))
@@ -227,7 +228,9 @@ class Batch:
     def _column(self, name: str) -> Any:
         self._check()
         entries_to(self._family.tree.root, name)
-        return of_batch(column(self._family.tree.root, self.lanes, len(self), name.split(".")), Origin(self._column_to_arrow, name))
+        return of_batch(
+            column(self._family.tree.root, self.lanes, len(self), name.split(".")), Origin(self._column_to_arrow, self.to_arrow, name)
+        )
 
     def _column_to_arrow(self, name: str) -> pa.Array:
         from rosetta_jit.runtime.arrow.column import column_array
@@ -351,13 +354,10 @@ class Batch:
         TypeError
             If another type than ``object`` is asked for.
         """
-        from rosetta_jit.runtime.arrow.records import records
+        from rosetta_jit.runtime.arrow import records
 
-        if dtype is not None and np.dtype(cast("Any", dtype)) != np.object_:
-            raise TypeError("a batch is no array of numbers: take a column of it, or `to_pandas()`, `to_arrow()`")
-        if copy is False:
-            raise ValueError("records of messages are made: there is nothing to show without a copy")
-        return records(self.to_arrow(flatten=True))
+        records.check_asked(dtype, copy=copy)
+        return records.records(self.to_arrow())
 
     def _check(self) -> None:
         if not self.lanes.words[VALID]:

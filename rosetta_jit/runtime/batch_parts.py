@@ -88,8 +88,9 @@ def chosen_rows(index: Index, count: int) -> Rows:
         span = range(*index.indices(count))
         return Rows(slice(span.start, span.start + len(span)) if span.step == 1 else np.array(span, np.int64), len(span))
     numbers = np.asarray(index)
-    if numbers.ndim != 1 or (numbers.size and numbers.dtype.kind not in "biu"):
-        raise TypeError("messages are chosen by a number, a slice, a mask or an array of numbers")
+    if isinstance(index, tuple) or numbers.ndim != 1 or (numbers.size and numbers.dtype.kind not in "biu"):
+        columns = ", and columns by `batch.column(name)`, or `batch.to_pandas([names])`" if numbers.dtype.kind == "U" else ""
+        raise TypeError(f"messages are chosen by a number, a slice, a mask or a list or array of numbers{columns}")
     if numbers.dtype == np.bool_:
         if len(numbers) != count:
             raise IndexError(f"a mask of {len(numbers)} for {count} messages")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Self
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 
@@ -84,20 +85,36 @@ def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | 
     Raises
     ------
     TypeError
-        There are no offsets, and the messages are one buffer.
+        There are no offsets, and the messages are one buffer; there are, and they are several; or one of them has no bytes.
     ValueError
         The offsets are of another type or shape.
     """
+    is_buffer = _is_buffer(messages)
     if offsets is not None:
-        return source_of(messages), MessageSpans.of(offsets)
-    try:
-        memoryview(messages)
-    except TypeError:
-        pieces = list(messages)
-    else:
+        if is_buffer:
+            return source_of(messages), MessageSpans.of(offsets)
+        raise TypeError(
+            f"offsets are places in one buffer, and not in a {type(messages).__name__}; the batch that is to be filled is `into=…`"
+        )
+    if is_buffer:
         raise TypeError("messages in one buffer take offsets, which say where each begins; without them, give a list of messages")
-    sizes = [len(each) if type(each) is bytes else memoryview(each).nbytes for each in pieces]
+    if isinstance(messages, str) or not isinstance(messages, Iterable):
+        raise TypeError(f"a list of messages is needed, or a buffer and offsets, not {type(messages).__name__}")
+    pieces = list(cast("Iterable[Any]", messages))
+    try:
+        sizes = [len(each) if type(each) is bytes else memoryview(each).nbytes for each in pieces]
+    except TypeError:
+        number, strange = next((number, each) for number, each in enumerate(pieces) if not _is_buffer(each))
+        raise TypeError(f"message {number} is no bytes-like object, but of the type {type(strange).__name__}") from None
     return b"".join(pieces), MessageSpans.of(np.cumsum([0, *sizes], dtype=np.int64))
+
+
+def _is_buffer(value: Any) -> bool:
+    """Whether a value has bytes; an array of objects has none, but what refers to them."""
+    try:
+        return memoryview(value).format != "O"
+    except TypeError:
+        return False
 
 
 def source_of(message: Any) -> bytes | memoryview:

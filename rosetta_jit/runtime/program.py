@@ -295,7 +295,8 @@ class Program(ProgramBase):
     def _checked(self, holder: object) -> Holder:
         expected = self._loaded.holder_type
         if not isinstance(holder, expected) or type(holder) is not expected:
-            raise TypeError(f"a holder of {expected.__module__}.{expected.__qualname__} is needed, not {type(holder).__name__}")
+            what = f"a holder of {expected.__module__}.{expected.__qualname__} is needed, not {type(holder).__name__}"
+            raise TypeError(f"{what}: many messages are encoded by `many`" if hasattr(holder, "__arrow_c_stream__") else what)
         if not hasattr(holder, "lanes_"):
             raise TypeError(f"a holder of {expected.__qualname__} that was never made: its __init__ has not run")
         return holder

@@ -201,3 +201,38 @@ def test_many_rows_have_memory_of_their_own(decode, broken):
     again = decode.many(broken[:1], into=many)
     assert len(again) == 1
     assert again[0].to_dict() == few[0].to_dict()
+
+
+def test_what_is_no_list_of_messages_is_said(decode, messages):
+    batch = decode.many(messages[:2])
+    for given, words in (
+        ((None,), "a list of messages is needed, or a buffer and offsets, not NoneType"),
+        (("text",), "a list of messages is needed, or a buffer and offsets, not str"),
+        (([messages[0], None],), "message 1 is no bytes-like object, but of the type NoneType"),
+        ((messages, batch), "not in a list; the batch that is to be filled is `into=…`"),
+        ((np.array(messages, object), [0, 8]), "not in a ndarray"),
+        ((messages[0],), "messages in one buffer take offsets"),
+    ):
+        with pytest.raises(TypeError, match=words):
+            decode.many(*given)
+    assert read(decode.many(np.array(messages, object))) == read(decode.many(messages))
+
+
+def test_many_messages_are_not_one(encode, decode, messages):
+    pandas = pytest.importorskip("pandas")
+    batch = decode.many(messages)
+    for source in (batch, batch.to_arrow(), pandas.DataFrame({"n": [1]})):
+        with pytest.raises(TypeError, match=f"not {type(source).__name__}: many messages are encoded by `many`"):
+            encode(source)
+    with pytest.raises(TypeError, match="a batch, a list of messages, or a table or frame"):
+        encode.many(5)
+
+
+def test_columns_and_types_are_named(decode, messages):
+    batch = decode.many(messages)
+    for ask in (batch.column, batch.mask, batch[0].column):
+        with pytest.raises(TypeError, match=r"a field is named by a str, not by \['n'\]"):
+            ask(["n"])
+    for type_ in (5, dict, decode.holder_type):
+        with pytest.raises(TypeError, match="a type is a name, or a message class of protobuf's package"):
+            rj.Decoder.of(type_)

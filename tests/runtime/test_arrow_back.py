@@ -202,7 +202,7 @@ def test_encoders_take_tables():
         written, offsets = encode.many(source)
         assert bytes(written) == message * 5
         assert offsets.tolist() == [len(message) * number for number in range(6)]
-    with pytest.raises(TypeError, match="a batch, or a table or frame"):
+    with pytest.raises(TypeError, match="a batch, a list of messages, or a table or frame"):
         encode.many(message)
 
 

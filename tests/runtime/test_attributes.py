@@ -388,6 +388,32 @@ def test_an_element_is_asked_for_again():
         array.poses[3]
 
 
+def test_parts_of_an_element_follow_it_when_the_message_changes():
+    """The view of an element that is asked for again stays, and its parts look for its row."""
+    decode, encode, holder = poses(4)
+    own = decode(encode(holder))
+    for turn in range(1, 4):
+        own.poses[2].position.x = 10.0 * turn
+        assert own.poses[2].orientation.w == turn - 1
+        own.poses[2].orientation.w = turn
+        assert (own.poses[2].position.x, own.poses[1].position.x, own.poses[2].orientation.w) == (10 * turn, 1, turn)
+    part = own.poses[2].position
+    own.poses.insert(0, {"position": {"x": -1.0}})
+    assert (own.poses[2].position.x, own.poses[3].position.x, own.poses[3].orientation.w, part.x) == (1, 30, 3, 1)
+    own.poses.extend([{"position": {"x": 50.0}}] * 1000)  # the lane lies elsewhere
+    assert (own.poses[3].position.x, own.poses[3].orientation.w) == (30, 3)
+    assert decode(encode(holder)) is own
+    assert (own.poses[3].position.x, own.poses[3].orientation.w) == (3, 0)
+    own.poses[3].orientation.w = 8.0
+    own.header.frame_id = "base"
+    assert [(each.position.x, each.orientation.w) for each in own.poses] == [(0, 0), (1, 0), (2, 0), (3, 8)]
+    own.poses = []
+    with pytest.raises(IndexError):
+        own.poses[3]
+    with pytest.raises(InvalidHolder):
+        _ = part.x
+
+
 @needs_code
 def test_integers_of_every_size_stay_as_they_are():
     """As of floats; CPython's own small ones are the same objects everywhere."""

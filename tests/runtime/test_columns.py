@@ -14,7 +14,7 @@ import pytest
 
 from rosetta_jit.kernel.state import VALID
 from rosetta_jit.runtime.batch import Batch
-from rosetta_jit.runtime.columns import Columns, Ragged
+from rosetta_jit.runtime.nested_columns import Columns, Ragged
 
 sys.path.insert(0, str(Path(__file__).parent))
 from schemas import flat, whole
@@ -221,5 +221,121 @@ def test_parts_of_columns_are_arrays_of_their_values():
     batch[2].part, batch[1].parts = {"name": "n"}, [{"x": 5}]
     assert pa.array(batch.part.name[1:]).to_pylist() == ["", "n"]
     assert pa.array(copy.copy(batch.part.name)).to_pylist() == ["", "", "n"]
-    with pytest.raises(TypeError, match="columns of a whole batch"):
-        pa.array(batch.parts.values)
+    assert pa.array(batch.parts.values).to_pylist() == [{"x": 5, "name": "", "values": []}]
+    assert pa.array(batch.parts[1:]).to_pylist() == [[{"x": 5, "name": "", "values": []}], []]
+    batch[0].by_name = {"k": {"x": 7}}
+    assert pa.array(batch.by_name[:1]).to_pylist() == [[("k", {"x": 7, "name": "", "values": []})]]
+    assert pa.table(batch[1].column("parts")).to_pylist() == [{"x": 5, "name": "", "values": []}]
+    with pytest.raises(TypeError, match="fields of one message"):
+        pa.array(batch[1].column("part"))
+
+
+def named():
+    """Six messages of which one has all kinds of texts, and one elements."""
+    batch = Batch.new(all_kinds(), 4)
+    for row, text in enumerate(("base", "arm", "base", "a\0")):
+        batch[row].text, batch[row].data = text, text.encode()
+    batch[1].names = ["x", "y"]
+    return batch
+
+
+def test_texts_are_compared_one_by_one():
+    batch = named()
+    assert (batch.text == "base").tolist() == [True, False, True, False]
+    assert (batch.text != "base").tolist() == [False, True, False, True]
+    assert (batch.text == ["base", "x", "base", "x"]).tolist() == [True, False, True, False]
+    assert (batch.data == b"arm").tolist() == [False, True, False, False]
+    assert (batch.text == batch.text).all()
+    assert len(batch[batch.text == "base"]) == 2
+    assert batch.text != None  # noqa: E711 - as of any object
+    with pytest.raises(ValueError, match="4 texts are compared with one, or with as many, not with 2"):
+        _ = batch.text == ["base", "arm"]
+    with pytest.raises(TypeError, match="compared row by row"):
+        _ = batch.names == "base"
+    with pytest.raises(TypeError, match="compared field by field"):
+        _ = batch.part == batch.part
+
+
+def test_a_truth_value_chooses_no_message():
+    """``batch[False]`` was message 0, which a comparison gave that was none."""
+    batch = named()
+    for index in (True, False, np.bool_(True), (1, 2)):
+        with pytest.raises(TypeError, match="messages are chosen by"):
+            _ = batch[index]
+    for index in (True, False):
+        with pytest.raises(TypeError, match="messages are chosen by"):
+            _ = batch.text[index]
+    with pytest.raises(TypeError, match=r"column\[1\]\[2\]"):
+        _ = batch.names[1, 0]
+    for name in ("text", ["text", "data"]):
+        with pytest.raises(TypeError, match=r"columns by `batch.column\(name\)`"):
+            _ = batch[name]
+
+
+def test_texts_are_arrays_of_numpy_with_the_zeros_at_their_end():
+    pandas = pytest.importorskip("pandas")
+    batch = named()
+    assert np.asarray(batch.text).tolist() == batch.text.to_numpy().tolist() == batch.text.tolist() == ["base", "arm", "base", "a\0"]
+    assert np.asarray(batch.data)[3] == b"a\0"
+    assert np.asarray(batch.text, dtype="U4")[0] == "base"
+    assert np.isin(batch.text, ["arm"]).tolist() == [False, True, False, False]
+    assert pandas.Series(batch.data)[3] == b"a\0"
+    assert pandas.Series(batch.text)[3] == "a\0"
+    assert batch.text[1:].to_numpy().tolist() == ["arm", "base", "a\0"]
+
+
+def test_fields_of_elements_are_attributes_of_their_column():
+    batch = Batch.new(flat(), 3)
+    batch[1].parts = [{"x": 5, "name": "a"}, {"x": 6, "name": "b"}]
+    batch[2].by_name = {"k": {"x": 7}}
+    assert batch.parts.x.to_list() == batch.column("parts.x").to_list() == [[], [5, 6], []]
+    assert batch.parts.name[1].to_list() == ["a", "b"]
+    assert pa.array(batch.parts.x).type == pa.array(batch.column("parts.x")).type
+    assert batch.by_name.key.to_list() == [[], [], ["k"]]
+    assert batch.by_name.value.x.to_list() == [[], [], [7]]
+    assert pa.array(batch.by_name.key).to_pylist() == [[], [], ["k"]]
+    assert {"x", "name"} <= set(dir(batch.parts))
+    with pytest.raises(AttributeError, match="a column of arrays has no 'nothing'"):
+        _ = batch.parts.nothing
+
+
+def test_columns_of_messages_are_frames_of_pandas():
+    pandas = pytest.importorskip("pandas")
+    batch = filled(20, 5)
+    whole = pandas.DataFrame(batch)
+    part = pandas.DataFrame(batch.part)
+    assert [f"part.{name}" for name in part] == [name for name in whole if name.startswith("part.")]
+    for name in part:
+        assert part[name].isna().tolist() == whole[f"part.{name}"].isna().tolist()
+    holder = flat()()
+    holder.parts = [{"x": 1, "name": "a", "values": [1.0]}, {"x": 2, "name": "b"}]
+    frame = pandas.DataFrame(holder.column("parts"))
+    assert (frame["x"].tolist(), frame["name"].tolist()) == ([1, 2], ["a", "b"])
+    with pytest.raises(TypeError, match="fields of one message"):
+        pandas.DataFrame(holder.column("part"))
+
+
+def test_tables_of_a_message_that_is_absent():
+    """Its numbers were zeros there, and its enums numbers."""
+    batch = filled(20, 6)
+    wanted = batch.to_arrow(["part"], flatten=True)
+    found = pa.table(batch.part)
+    for name in found.schema.names:
+        if f"part.{name}" in wanted.schema.names:
+            assert found[name].to_pylist() == wanted[f"part.{name}"].to_pylist()
+            assert found.schema.field(name).type == wanted.schema.field(f"part.{name}").type
+
+
+def test_columns_are_read_as_a_dictionary():
+    batch = Batch.new(flat(), 2)
+    columns = batch.part
+    assert [*columns] == [*columns.keys()] == [*dict(columns)] == ["x", "name", "values"]
+    assert len(columns) == 3
+    assert "x" in columns
+    assert columns.get("nothing") is None
+    assert columns.get("x").tolist() == next(value for name, value in columns.items() if name == "x").tolist() == [0, 0]
+    assert repr(columns) == "{'x': [0, 0], 'name': <Ragged of 2 texts: '', ''>, 'values': <Ragged of 2 arrays: [], []>}"
+    with pytest.raises(AttributeError, match=r"a column is written into: `.x\[:\] = …`"):
+        columns.x = 5
+    with pytest.raises(AttributeError, match="no column 'y' among"):
+        columns.y = 5

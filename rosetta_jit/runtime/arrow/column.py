@@ -5,9 +5,10 @@ path = field of the message or of one within it, and, where that is an array, of
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pyarrow as pa
 from pyarrow import types
 
@@ -15,6 +16,9 @@ from rosetta_jit.runtime.arrow.arrays import Form
 from rosetta_jit.runtime.arrow.tables import record_batch
 from rosetta_jit.runtime.holder.record import Node, Record
 from rosetta_jit.runtime.lanes import Lanes
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 def column_array(root: Record, lanes: Lanes, count: int, path: str) -> pa.Array:
@@ -27,9 +31,34 @@ def column_array(root: Record, lanes: Lanes, count: int, path: str) -> pa.Array:
     return _within(whole.column(0), names[depth:])[0]
 
 
-def values_array(values: list[Any]) -> Any:
-    """An array of Python's own values."""
-    return pa.array(values)
+def texts(values: list[Any], kind: str) -> pa.Array:
+    """An array of texts, or of bytes."""
+    return pa.array(values, pa.large_string() if kind == "text" else pa.large_binary())
+
+
+def numbers(values: NDArray[Any]) -> pa.Array:
+    """An array of numbers, one a row."""
+    return pa.array(np.ascontiguousarray(values))
+
+
+def lists(offsets: NDArray[np.int64], elements: pa.Array) -> pa.Array:
+    """An array of lists, of which each begins at an offset."""
+    return pa.LargeListArray.from_arrays(pa.array(offsets), elements)
+
+
+def maps(offsets: NDArray[np.int64], pairs: pa.StructArray) -> pa.Array:
+    """An array of maps."""
+    return pa.MapArray.from_arrays(pa.array(offsets, pa.int32()), pairs.field("key"), pairs.field("value"))
+
+
+def structs(fields: Mapping[str, pa.Array]) -> pa.StructArray:
+    """An array of structs."""
+    return pa.StructArray.from_arrays([*fields.values()], [*fields])
+
+
+def table_of_structs(array: pa.Array) -> pa.Table:
+    """The fields of structs as a table."""
+    return pa.Table.from_arrays(array.flatten(), [array.type.field(index).name for index in range(array.type.num_fields)])
 
 
 def _within(array: Any, names: Sequence[str]) -> tuple[pa.Array, bool]:

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields, make_dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from pyarrow.types import is_dictionary
+
+from rosetta_jit.runtime.arrow.tables import flat
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -28,11 +30,24 @@ class _Record:
         return f"Record({vars(self)})"
 
 
+def check_asked(dtype: object, *, copy: bool | None) -> None:
+    """Refuse an array of another type than ``object``, and one that is no copy: TypeError, ValueError."""
+    if dtype is not None and np.dtype(cast("Any", dtype)) != np.object_:
+        raise TypeError("messages are no array of numbers: take one column of them, or `to_pandas()`, `to_arrow()` of the batch")
+    if copy is False:
+        raise ValueError("records of messages are made: there is nothing to show without a copy")
+
+
 def records(table: pa.Table) -> NDArray[np.object_]:
     """The rows of a table, shape (n,)."""
-    names, columns = table.schema.names, [_values(table.column(name)) for name in table.schema.names]
+    flattened = flat(table)
+    return of_values(flattened.schema.names, [_values(flattened.column(name)) for name in flattened.schema.names])
+
+
+def of_values(names: Sequence[str], columns: Sequence[Sequence[Any]]) -> NDArray[np.object_]:
+    """Rows of Python's own values, shape (n,)."""
     make = _class(names)
-    found = np.empty(table.num_rows, np.object_)
+    found = np.empty(len(columns[0]) if columns else 0, np.object_)
     for index, values in enumerate(zip(*columns, strict=True)):
         found[index] = make(names, values)
     return found

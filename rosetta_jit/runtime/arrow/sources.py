@@ -72,7 +72,7 @@ def _table_of(source: Any) -> pa.Table:
             return pa.table(source)
     except (pa.ArrowInvalid, pa.ArrowNotImplementedError) as error:
         raise ValuesError("", f"a column has a type that pyarrow does not know: {error}") from None
-    raise TypeError(f"a batch, or a table or frame with Arrow's interface is needed, not {type(source).__name__}")
+    raise TypeError(f"a batch, a list of messages, or a table or frame with Arrow's interface is needed, not {type(source).__name__}")
 
 
 def _sound(name: str, column: Any) -> Any:

@@ -29,7 +29,11 @@ def entries_to(record: Record, path: str, *, through_arrays: bool = True) -> Seq
     ------
     KeyError
         If there is no such field; or if it lies in an array or a map, and is to be one of a message.
+    TypeError
+        If it is no name.
     """
+    if not isinstance(path, str):  # pyright: ignore[reportUnnecessaryIsInstance] - what users give
+        raise TypeError(f"a field is named by a str, not by {path!r}; several are a table: `batch.to_pandas([…])`")
     found: list[Entry] = []
     for name in path.split("."):
         if found:

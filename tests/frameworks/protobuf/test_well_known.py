@@ -6,6 +6,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.frameworks.protobuf.idl import parse
+from rosetta_jit.model.types import Struct
 from rosetta_jit.source import Source, shipped_folders
 
 FOLDER = "google/protobuf"
@@ -39,6 +40,17 @@ def test_mappings_import_them():
     assert decode(b"\x08\x05\x10\x07").stamp.to_dict() == {"secs": 5, "nsecs": 7}
     named = rj.Decoder.of("google.protobuf.Timestamp", imports=[f"{FOLDER}/timestamp.proto"], backend="interpreter")
     assert named(b"\x08\x05\x10\x07").seconds == 5
+
+
+def test_they_are_found_by_their_names():
+    for file in FILES:
+        importing = Source("a.proto", f'syntax = "proto3";\nimport "{FOLDER}/{file}";\n')
+        for name in (each for each, declared in parse(importing, lambda _: None).types.items() if isinstance(declared, Struct)):
+            decode = rj.Decoder.of(name, backend="interpreter")
+            assert decode.holder_type is rj.Decoder.of(name, imports=[f"{FOLDER}/{file}"], backend="interpreter").holder_type
+    assert rj.Decoder.of("google.protobuf.Timestamp")(b"\x08\x05\x10\x07").seconds == 5
+    with pytest.raises(rj.SchemaError, match=r"no file declares a message `google\.protobuf\.Foo`"):
+        rj.Decoder.of("google.protobuf.Foo")
 
 
 def test_types_of_descriptors_alone_need_an_encoding():

@@ -25,7 +25,8 @@ def is_message_like(value: object) -> bool:
 def has_messages(object_type: type[Any]) -> bool:
     """The same for all objects of a class."""
     kind: Any = object_type
-    return not issubclass(kind, (*NO_MESSAGES, type)) and kind is not object and not hasattr(kind, "__array_interface__")
+    has_many = hasattr(kind, "__array_interface__") or hasattr(kind, "__arrow_c_stream__")
+    return not issubclass(kind, (*NO_MESSAGES, type)) and kind is not object and not has_many
 
 
 def declared(object_type: type) -> frozenset[str]:
