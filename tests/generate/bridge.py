@@ -115,6 +115,7 @@ class InC:
         ]
         self.scratch = texts["unit.h"].count("} scratch[") and int(texts["unit.h"].split("} scratch[")[1].split("]")[0])
         self.sites = []
+        self.memory: list[np.ndarray] = []  # of the last call: the words of a rejection lie there
 
     def call(self, function, lanes, row, *arguments, fill):
         """Call with the room that the library's holder has. Gives the status, the error, and the holder's memory."""
@@ -133,8 +134,8 @@ class InC:
             words[at : at + 3] = array.ctypes.data, room, count
             at += 3
         sizes = self.scratch_sizes(lanes)
-        memory = [np.zeros(max(1, size), np.uint8) for size in sizes]
-        for array, size in zip(memory, sizes, strict=True):
+        self.memory = [np.zeros(max(1, size), np.uint8) for size in sizes]
+        for array, size in zip(self.memory, sizes, strict=True):
             words[at : at + 2] = array.ctypes.data, size
             at += 2
         words[at:] = lanes.words[NOW], lanes.words[NUMBER] + row

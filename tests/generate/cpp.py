@@ -32,3 +32,11 @@ def program(folder: Path, name: str, *sources: str, compiler: str = "g++", optio
     assert done.returncode == 0, done.stderr
     assert not done.stderr
     return made
+
+
+def compiled(compiler: str, folder: Path, name: str, *options: str) -> None:
+    """A unit, without a warning."""
+    command = [compiler, *STRICT, *options, "-I.", "-c", f"{name}.cpp", "-o", f"{name}.{compiler}.o"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert not done.stderr

@@ -18,7 +18,8 @@ static void show(const OF(error) *error, int is_read)
     if (is_read) {
         printf("%lld ", (long long)error->offset);
     }
-    printf("[%s] %.*s", path, (int)error->detail_size, error->detail);
+    printf("[%s] ", path);
+    fwrite(error->detail, 1, error->detail_size, stdout); /* it may have a text of the message, and that a NUL */
     printf(error->line[0] != 0 ? " (%s)\n" : "\n", error->line);
 }
 

@@ -11,7 +11,8 @@ static void show(const rosetta_jit::error &error, bool is_read)
     if (is_read) {
         std::printf("%lld ", static_cast<long long>(error.offset));
     }
-    std::printf("[%s] %s", error.path.c_str(), error.detail.c_str());
+    std::printf("[%s] ", error.path.c_str());
+    std::fwrite(error.detail.data(), 1, error.detail.size(), stdout); // it may have a text of the message, and that a NUL
     std::printf(error.line.empty() ? "\n" : " (%s)\n", error.line.c_str());
 }
 

@@ -67,7 +67,7 @@ def answers(program: Path, messages: list[bytes], *runner: str) -> list[str]:
     given = b"".join(struct.pack("<I", len(message)) + message for message in messages)
     done = subprocess.run([*runner, program], input=given, capture_output=True, check=False)
     assert done.returncode == 0, done.stderr.decode()
-    return done.stdout.decode().splitlines()
+    return done.stdout.decode("utf-8", "replace").split("\n")[:-1]
 
 
 def harmed(messages: list[bytes], rounds: int, seed: str) -> list[bytes]:

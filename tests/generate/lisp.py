@@ -50,7 +50,7 @@ def answers(folder: Path, asked: list[tuple[object, list[bytes]]]) -> list[list[
         package = write(folder, generated(request, "lisp", BOTH, f"unit_{number}"))
         (folder / f"{package}.messages").write_bytes(b"".join(struct.pack("<I", len(message)) + message for message in messages))
         forms += [f'(unit "{folder}/" "{package}")', f'(answers "{package}" "{package}.messages")']
-    lines = iter(run(*forms, cwd=folder).splitlines())
+    lines = iter(run(*forms, cwd=folder).split("\n")[:-1])
     return [list(islice(lines, len(messages))) for _, messages in asked]
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).parents[2] / "mappings"
 SHIPPED = [path.relative_to(ROOT).as_posix() for path in sorted(ROOT.rglob("*.mapping")) if path.parent.name != "joined"]
 """But for those of several wires: tests/frameworks/ros/test_joined.py has them."""
-ENCODINGS = {"ros1": "ros1", "ros2": "cdr", "packed": "ros1", "yarp": "yarp3"}
+ENCODINGS = {"drives": "ros1", "ros1": "ros1", "ros2": "cdr", "packed": "ros1", "yarp": "yarp3"}
 SIZES = st.integers(0, 3)
 
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Optional, String, Struct, Type
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Optional, String, Struct, Type, Union
 from rosetta_jit.runtime.run import ELEMENTS_A_BYTE, GRACE_BYTES
-from tests.language.test_shipped_laws import ENCODINGS, ROOT, SHIPPED
+from tests.language.test_shipped_laws import ENCODINGS, ROOT, SHIPPED, is_of_wire
 
 if TYPE_CHECKING:
     from rosetta_jit.model.types import Schema
@@ -54,6 +54,7 @@ def likely(type_: Type, schema: Schema, texts: list[str], rng: random.Random, de
             return [likely(element, schema, texts, rng, depth - 1) for _ in range(length if isinstance(length, int) else size)]
         case Struct(fields=fields):
             own = [each for each in fields if each.constant is None and not (isinstance(each.type, Optional) and depth <= 0)]
+            own = [rng.choice(found.cases) if isinstance(found := schema.resolve(each.type), Union) else each for each in own]
             return {each.name: likely(each.type, schema, texts, rng, depth - 1) for each in own}
         case Optional(value):
             return likely(value, schema, texts, rng, depth)
@@ -76,7 +77,7 @@ def messages(name: str, rounds: int, rng: random.Random) -> list[bytes]:
     checked = rj.check(name).checked
     text = (ROOT / name).read_text("utf-8")
     texts = ["x", "", *re.findall(r'"([^"\n]*)"', text)]
-    imports = [each.path for each in checked.mapping.imports if not each.path.endswith(".units")]
+    imports = [each.path for each in checked.mapping.imports if not each.path.endswith(".units") and is_of_wire(each.path, name)]
     write = rj.Encoder.of(checked.wire.root.name, imports=imports, encoding=encoding(name), backend="python")
     found: list[bytes] = []
     for _ in range(10 * rounds):

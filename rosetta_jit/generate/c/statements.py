@@ -5,13 +5,15 @@ What a message cannot be ends a function with a negative result: `fail` notes th
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.printing import Writer
+from rosetta_jit.generate.c.aligned import aligned
 from rosetta_jit.generate.c.expressions import expression, location, store, written
+from rosetta_jit.generate.c.positions import NONE, Positions, after_binding, after_require, bound_in, forget, is_position, said_by
 from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import C_TYPES
@@ -22,7 +24,6 @@ from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import END, add, type_of
-from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -45,8 +46,8 @@ class Function:
 
     ``read`` are the locals whose values anything needs; ``finish`` are the lines before a return of success. ``is_routine``: it
     returns the numbers of its own sites. ``numbers`` are the rows of the file's table that sites of the kernel have got, ``origins`` what
-    rules of the mapping name. ``role`` is what its kernel is for. ``within`` are the variables known to be positions of the message, or its
-    end, at what is printed next: loops say so, and are proven to.
+    rules of the mapping name. ``role`` is what its kernel is for. ``known`` are positions of the message where the next statement
+    stands, ``aligned`` other forms of values that the block's locals have.
     """
 
     scope: Scope
@@ -58,7 +59,8 @@ class Function:
     numbers: dict[int, int] = field(default_factory=lambda: {0: 0})
     origins: Sequence[Origin] = ()
     role: Role = "decode"
-    within: frozenset[str] = frozenset()
+    known: Positions = NONE
+    aligned: Mapping[str, ir.Expr] = field(default_factory=dict[str, ir.Expr])
     writer: Writer = field(default_factory=lambda: Writer(depth=1))
 
     def line(self, text: str) -> None:
@@ -78,10 +80,11 @@ class Function:
 
 def print_block(function: Function, block: nodes.Block) -> None:
     """The statements of a block; what they say of positions holds in there alone."""
-    within = function.within
+    known, others = function.known, function.aligned
+    function.aligned = aligned(block)
     for stmt in block:
         _statement(function, stmt)
-    function.within = within
+    function.known, function.aligned = known, others
 
 
 def _statement(function: Function, stmt: nodes.Stmt) -> None:
@@ -89,6 +92,7 @@ def _statement(function: Function, stmt: nodes.Stmt) -> None:
     match stmt:
         case nodes.Require(at, size, failure):
             _fail_if(function, _lacks(function, at, size), failure)
+            function.known = after_require(function.known, at, size)
         case nodes.Expect(condition, failure):
             if condition == FALSE:
                 _fail(function, failure)
@@ -96,7 +100,7 @@ def _statement(function: Function, stmt: nodes.Stmt) -> None:
                 _fail_if(function, expression(scope, folded(nodes.Unary("not", condition))), failure)
         case nodes.Let() | nodes.Var() | nodes.Assign():
             _bind(function, stmt)
-            function.within -= {stmt.name}
+            function.known = after_binding(function.known, stmt.name, stmt.value)
         case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             function.line(f"{_effect(scope, stmt)}{_origin(function, stmt)}")
         case nodes.Reserve() | nodes.Advance():
@@ -112,8 +116,10 @@ def _statement(function: Function, stmt: nodes.Stmt) -> None:
             _nested(function, stmt)
         case nodes.Call():
             _call(function, stmt)
+            function.known = forget(function.known, bound_in(stmt))
         case nodes.HostCall():
             _host_call(function, stmt)
+            function.known = forget(function.known, bound_in(stmt))
         case _:
             assert_never(stmt)
 
@@ -122,7 +128,7 @@ def _bind(function: Function, stmt: nodes.Let | nodes.Var | nodes.Assign) -> Non
     """A local, if anything reads it."""
     if stmt.name not in function.read:
         return
-    name, value = function.scope.locals.identifier(stmt.name), bare(expression(function.scope, stmt.value))
+    name, value = function.scope.locals.identifier(stmt.name), bare(expression(function.scope, function.aligned.get(stmt.name, stmt.value)))
     declared = "" if isinstance(stmt, nodes.Assign) else f"{C_TYPES[type_of(stmt.value)]} "
     function.line(f"{'const ' if isinstance(stmt, nodes.Let) else ''}{declared}{name} = {value};{_origin(function, stmt)}")
 
@@ -160,14 +166,13 @@ def _copy(scope: Scope, target: nodes.Address, source: nodes.Address, size: str)
 def _lacks(function: Function, at: nodes.Expr, size: nodes.Expr) -> str:
     """Whether some of ``size`` bytes from ``at`` are missing."""
     scope = function.scope
-    match at, size:
-        case nodes.Const(_, start), nodes.Const(_, length) if start >= 0 and length >= 0:
-            return f"({expression(scope, END)} < {expression(scope, add(at, size))})"
-        case nodes.Local(_, name), nodes.Const(_, length) if name in function.within and length >= 0:
+    is_known = is_position(function.known, at)
+    match size:
+        case nodes.Const(_, length) if is_known and length >= 0:
             return f"({expression(scope, END)} < {bare(expression(scope, add(at, size)))})"
         case _:
             arguments = [bare(expression(scope, each)) for each in (at, size, END)]
-            return f"{scope.calls('lacks')}({', '.join(arguments)})"
+            return f"{scope.calls('lacks_behind' if is_known else 'lacks')}({', '.join(arguments)})"
 
 
 def _fail_if(function: Function, condition: str, failure: nodes.Failure) -> None:
@@ -231,26 +236,12 @@ def moved(lanes: Lanes, lane: int) -> str:
 
 def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
     """A statement with blocks: behind it and, in a loop, within it, what any of them changes is not known but for what a loop says."""
-    after = function.within - {each.name for each, _ in statements((stmt,)) if isinstance(each, nodes.Assign)}
+    after = forget(function.known, bound_in(stmt))
     if isinstance(stmt, nodes.For | nodes.While):
-        after |= _positions(stmt.invariant) if isinstance(stmt, nodes.While) else frozenset()
-        function.within = after
+        after |= said_by(stmt.invariant) if isinstance(stmt, nodes.While) else NONE
+        function.known = after
     _print_nested(function, stmt)
-    function.within = after
-
-
-def _positions(invariant: Iterable[nodes.Expr]) -> frozenset[str]:
-    """The variables that a loop says are positions of the message, or its end."""
-    low, high = set[str](), set[str]()
-    for each in invariant:
-        match each:
-            case nodes.Compare("ge", nodes.Local(_, name), nodes.Const(_, bound)) if bound >= 0:
-                low.add(name)
-            case nodes.Compare("le", nodes.Local(_, name), bound) if bound == END:
-                high.add(name)
-            case _:
-                pass
-    return frozenset(low & high)
+    function.known = after
 
 
 def _print_nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:

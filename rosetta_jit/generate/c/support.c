@@ -41,6 +41,13 @@ static inline bool lacks(int64_t at, int64_t size, int64_t end)
     return (uint64_t)at > (uint64_t)end || (uint64_t)size > (uint64_t)end - (uint64_t)at;
 }
 
+/* == lacks_behind == */
+/* The same where `at` is known to lie in the message, or to be its end. */
+static inline bool lacks_behind(int64_t at, int64_t size, int64_t end)
+{
+    return (uint64_t)size > (uint64_t)(end - at);
+}
+
 /* == bytes_of == */
 static inline int64_t bytes_of(int64_t rows, int64_t stride)
 {

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Literal, assert_never
 import numpy as np
 
 from rosetta_jit.kernel import nodes
-from rosetta_jit.kernel.arithmetic import FLOATS, SIGNED, to_bytes
+from rosetta_jit.kernel.arithmetic import FLOATS, SIGNED, binary, to_bytes, unary
+from rosetta_jit.kernel.arithmetic import constant as of_type
 from rosetta_jit.kernel.terms import END, is_wider, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -74,10 +75,8 @@ def expression(scope: Scope, expr: nodes.Expr) -> str:
             return got(scope, type_, place)
         case nodes.Used() | nodes.Capacity() | nodes.HostValue() | nodes.Register():
             return _known(scope, expr)
-        case nodes.Unary(function, operand):
-            return _unary(function, type_of(operand), expression(scope, operand))
-        case nodes.Binary(op, left, right):
-            return _binary(op, type_of(left), expression(scope, left), expression(scope, right))
+        case nodes.Unary() | nodes.Binary():
+            return _operation(scope, expr)
         case nodes.Compare(op, left, right):
             return _compare(op, type_of(left), expression(scope, left), expression(scope, right))
         case nodes.Fits(op, left, right):
@@ -97,6 +96,31 @@ def expression(scope: Scope, expr: nodes.Expr) -> str:
             return f"(aref {_table(type_, values)} {expression(scope, index)})"
         case _:
             assert_never(expr)
+
+
+def _operation(scope: Scope, expr: nodes.Unary | nodes.Binary) -> str:
+    known = _of_constants(expr)
+    if known is not None and math.isnan(known):
+        return constant(type_of(expr), known)  # SBCL warns where it computes one itself
+    match expr:
+        case nodes.Unary(function, operand):
+            return _unary(function, type_of(operand), expression(scope, operand))
+        case nodes.Binary(op, left, right):
+            return _binary(op, type_of(left), expression(scope, left), expression(scope, right))
+        case _:
+            assert_never(expr)
+
+
+def _of_constants(expr: nodes.Unary | nodes.Binary) -> float | None:
+    """What an operation on constant floats gives; None where there are others."""
+    with np.errstate(all="ignore"):
+        match expr:
+            case nodes.Unary(function, nodes.Const(type_, value)) if type_ in FLOATS:
+                return float(unary(type_, function, of_type(type_, value)))
+            case nodes.Binary(op, nodes.Const(type_, left), nodes.Const(_, right)) if type_ in FLOATS:
+                return float(binary(type_, op, of_type(type_, left), of_type(type_, right)))
+            case _:
+                return None
 
 
 def _table(type_: nodes.Scalar, values: tuple[int, ...]) -> str:

@@ -347,8 +347,14 @@ inline void copy_few(void *target, std::int64_t to, const void *source, std::int
     unsigned char *const at = static_cast<unsigned char *>(target) + to;
     const unsigned char *const begin = static_cast<const unsigned char *>(source) + from;
     const unsigned char *const end = begin + size;
-    if (size > 16) {
+    if (size > 32) {
         std::memcpy(at, begin, static_cast<std::size_t>(size));
+    } else if (size >= 16) {
+        unsigned char first[16], last[16];
+        std::memcpy(first, begin, 16);
+        std::memcpy(last, end - 16, 16);
+        std::memcpy(at, first, 16);
+        std::memcpy(at + size - 16, last, 16);
     } else if (size >= 8) { /* the first ones and the last ones, which may be the same */
         std::uint64_t first, last;
         std::memcpy(&first, begin, 8);
