@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import reduce
+
 import pytest
 
 import rosetta_jit as rj
@@ -106,15 +108,17 @@ def test_many_messages_at_once(programs):
 
 def within_itself(count):
     """A type that is within itself by two of its fields, one of them in another message."""
-    numbers = [f"  int64 number{number} = {number + 1};" for number in range(count)]
+    numbers = [f"  optional int64 number{number} = {number + 1};" for number in range(count)]
     texts = [f"  repeated string texts{number} = {number + 1 + count};" for number in range(count)]
-    fields = "\n".join((*numbers, *texts, "  All left = 1000;\n  Other other = 1001;"))
-    text = f'syntax = "proto3"; package a;\nmessage Other {{ All right = 1; }}\nmessage All {{\n{fields}\n}}'
+    ends = ("  required int32 needed = 999;", "  optional All left = 1000;", "  optional Other other = 1001;")
+    fields = "\n".join((*numbers, *texts, *ends))
+    text = f'syntax = "proto2"; package a;\nmessage Other {{ optional All right = 1; }}\nmessage All {{\n{fields}\n}}'
     return "a.All", {"encoding": "protobuf", "schema": {"a.proto": text}}
 
 
 def tree(holder, depth):
     """A holder whose messages within it differ from one another."""
+    holder.needed = depth
     for number in range(depth, 60, 7):
         setattr(holder, f"number{number}", (number + depth) ** (depth + 2))
         getattr(holder, f"texts{number}").extend([f"{number} at {depth}"] * (number % 3))
@@ -136,6 +140,20 @@ def test_a_type_in_itself_in_two_ways_is_printed_once():
     assert message == bytes(reference(tree(reference.new(), 3)))
     decode = rj.Decoder.of(type_, **options)
     assert bytes(encode(decode(message))) == message
+
+
+@pytest.mark.parametrize("where", [(), ("left",), ("other", "right"), ("left", "other", "right"), ("other", "right", "left")])
+def test_what_is_missing_in_it_is_told_in_the_same_words(where):
+    type_, options = within_itself(60)
+    told = []
+    for backend in ("llvm", "interpreter"):
+        encode = rj.Encoder.of(type_, **options, backend=backend)
+        holder = tree(encode.new(), 2)
+        reduce(getattr, where, holder).ClearField("needed")
+        with pytest.raises(rj.EncodeError, match="required") as error:
+            encode(holder)
+        told.append(str(error.value))
+    assert told[0] == told[1]
 
 
 def kernel_of(name):
