@@ -178,14 +178,15 @@ same_order = Mistake(
 )
 
 
-def one_value(span: Span | None, called: str = "", reductions: Sequence[str] = ()) -> Diagnostic:
-    """Many elements for a place that holds one value; what is ``called`` with them may be a reduction, misspelt."""
+def one_value(span: Span | None, called: str = "", reductions: Sequence[str] = (), array: str = "") -> Diagnostic:
+    """Many elements for a place that holds one value, those of an ``array``; what is ``called`` may be a reduction, misspelt."""
     meant = closest(called, reductions) if called else None
     misspelt = f"did you mean `{meant}`?" if meant else for_function(called)
     if misspelt:
         notes = (f"reductions: {', '.join(sorted(reductions))}",)
         return error("many-elements", f"there is no reduction `{shorten(called)}`", span, "no array", notes=notes, help_=misspelt)
-    help_ = "take one of them, `.n = .a[0]`, or one value of all: `.n = sum(.a[])`"
+    place, array = (".n", ".a") if not array or span is None else (shorten(span.source.text[span.start : span.end]), shorten(array))
+    help_ = f"take one of them, `{place} = {array}[0]`, or one value of all: `{place} = sum({array}[])`"
     return error("many-elements", "many elements are assigned to one value", span, "no array", help_=help_)
 
 

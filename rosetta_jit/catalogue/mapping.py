@@ -76,11 +76,12 @@ def _second_value(span: Span, kind: str, expected: frozenset[str]) -> Diagnostic
         return None
     place = Span(span.source, start + found.start(1), start + found.end(1))
     cast = re.search(r"\(([A-Za-z]\w*)\)[ \t]*$", line[start : place.start])
-    help_ = (
-        f"a number becomes one of another type so: `{CALLED.get(cast[1], cast[1])}({found[1]})`"
-        if cast
-        else "an operator, or a line, is missing before it"
-    )
+    called = re.search(r"(?<![\w.])([A-Za-z]\w*)[ \t]*$", line[start : place.start])
+    help_ = "an operator, or a line, is missing before it"
+    if cast:
+        help_ = f"a number becomes one of another type so: `{CALLED.get(cast[1], cast[1])}({found[1]})`"
+    elif called:
+        help_ = f"what a function takes stands in brackets: `{called[1]}({found[1]})`"
     return error("syntax", f"expected an operator or a rule, found `{shorten(found[1])}`", place, "a second value", help_=help_)
 
 

@@ -190,8 +190,19 @@ def written_at(span: Span | None) -> str:
 
 
 def type_clash(span: Span | None, source: str, target: str, how: str = "") -> Diagnostic:
-    help_ = how.replace("(...)", f"({written_at(span)})", 1) or _of_elements(written_at(span), source, target)
+    value = written_at(span)
+    help_ = how.replace("(...)", f"({value})", 1)
+    if not help_ and value.startswith(".") and source == f"an array of {target}" and _sets_each(span):
+        help_ = f"each element is written with `[]`: `{value}[]`"
+    help_ = help_ or _of_elements(value, source, target)
     return error("type-clash", f"{source} cannot become {target}", span, f"this is {source}", help_=help_)
+
+
+def _sets_each(span: Span | None) -> bool:
+    """Whether the rule in whose line a value stands is one for each element."""
+    before = "" if span is None else span.source.text[: span.start].rpartition("\n")[2]
+    place, sign, _ = before.partition("<->" if "<->" in before else "=")
+    return bool(sign) and place.rstrip().endswith("[]")
 
 
 NUMBERS = ("int", "uint", "float")

@@ -55,7 +55,7 @@ class _Place:
 def instead(span: Span, kind: str, expected: frozenset[str]) -> str:
     """What to write instead of a token that is not expected; empty where nothing explains it."""
     place = _place(span, kind, expected)
-    found = (_of_character(place), *(each(place) for each in (_of_sign, _of_number, _of_bracket, _of_statement, _of_word)))
+    found = (_of_character(place), *(each(place) for each in (_of_sign, _of_bracket, _of_number, _of_statement, _of_word)))
     return next((each for each in found if each), "")
 
 
@@ -116,7 +116,7 @@ def _of_number(place: _Place) -> str:
 
 
 def _of_bracket(place: _Place) -> str:
-    found, expected, before = place.found, place.expected, place.before
+    found, ahead, expected, before = place.found, place.ahead, place.expected, place.before
     open_ = next((each for kind, each in BRACKETS.items() if kind in expected), "")
     if open_ and not before and place.kind in ("START", "NAME", "IGNORE", "DEFAULT", "REJECT", "FOR", "WHEN", "LEN", "_SAME", "$END"):
         return f"a bracket is not closed: `{open_}` is missing before"
@@ -126,7 +126,7 @@ def _of_bracket(place: _Place) -> str:
         return f"no bracket is open that `{found}` closes: leave it out"
     if found in BRACKETS.values() and before.endswith(","):
         return "leave out the comma before it"
-    if "RSQB" in expected and found == ":":
+    if "RSQB" in expected and (found == ":" or ahead.startswith("..")):
         return "`.a[0 to 3]` are the first three elements"
     if "RSQB" in expected and found == "=" and (key := re.search(r"\[\s*([A-Za-z_]\w*)$", before)):
         return f"a field begins with a dot: `.{shorten(key[1])}`"
@@ -166,7 +166,22 @@ def _of_statement(place: _Place) -> str:
         return "rules stand behind `rules:`, or behind `unpack-rules:` or `pack-rules:`"
     if found == "state" and "IMPORT" in expected:
         return "a state variable has a type: `state n: int64 = 0`"
+    if found == "if" and before == "else":
+        return "`else when condition`; each `when` has an `end`"
+    rule = place.line + (found if place.kind == "$END" and place.touches else "")
+    if "EQUAL" in expected and (called := re.search(r"=\s*([a-z]\w*)\s+(\.[\w.]+)$", rule)):
+        return f"what a function takes stands in brackets: `{called[1]}({shorten(called[2])})`"
+    if not before and (declared := re.match(r"(state \w+: (\w+)|parameter \w+: list)$", place.line)):
+        return _of_declaration(declared[1], declared[2])
     return _of_colon(place) if expected == frozenset(("COLON",)) or place.ahead.startswith("[") else ""
+
+
+def _of_declaration(declared: str, type_: str | None) -> str:
+    """What a state variable or a parameter lacks at the end of its line."""
+    if type_ is None:
+        return f"a list says of what it is: `{declared} of float64`"
+    first = {"bool": "false", "float32": "0.0", "float64": "0.0"}.get(type_, "0")
+    return f"it has a first value: `{declared} = {first}`"
 
 
 def _of_colon(place: _Place) -> str:

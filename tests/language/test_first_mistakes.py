@@ -64,6 +64,16 @@ def syntax(text: str, help_: str, head: str = HEAD + UNPACK, tail: str = REST) -
 
 
 MISTAKES = [
+    # words of other languages in ours
+    syntax("  when .ok\n    .total = 1\n  else if .mode == 1\n    .total = 2\n  end\n", "`else when condition`; each `when` has an `end`"),
+    syntax("  .total = cos .angle\n", "`cos(.angle)`"),
+    syntax("  .total = cos .angle\n", "`cos(.angle)`", tail=""),
+    syntax("  .data = .data[0..4]\n", "`.a[0 to 3]` are the first three elements"),
+    syntax("state count: int64\n", "it has a first value: `state count: int64 = 0`", HEAD, UNPACK + REST),
+    syntax("state last: float64\n", "`state last: float64 = 0.0`", HEAD, UNPACK + REST),
+    syntax("parameter names: list\n", "`parameter names: list of float64`", HEAD, UNPACK + REST),
+    Mistake("  .total = .position[]\n", "many-elements", "`.total = .position[0]`, or one value of all: `.total = sum(.position[])`"),
+    Mistake("  .position[] = .position where .velocity[] > 1\n", "type-clash", "each element is written with `[]`: `.position[]`"),
     # brackets, commas, quotes
     syntax("  .total = .position[0\n", "a bracket is not closed: `]` is missing before"),
     syntax("  .total = sqrt(.angle\n  .label = .frame\n", "a bracket is not closed: `)` is missing before"),

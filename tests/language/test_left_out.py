@@ -171,6 +171,19 @@ def test_what_is_left_out_of_elements(rule):
     assert [loss.place for loss in meant.laws.holders.losses] == [".parts[].memo"]
 
 
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_other_cases_of_a_union_are_no_rest(backend):
+    files = {
+        "wire.bottle-schema": '"wire" (("n" :int))',
+        "holder.proto": 'syntax = "proto2"; message H { optional int32 a = 1; oneof kind { int32 number = 2; string text = 3; } }',
+        "m.mapping": 'import "wire.bottle-schema"\nimport "holder.proto"\ndata-holder: H\nwire-schema: wire\nunpack-rules:\n'
+        "  .number = .n\n  default rest\n",
+    }
+    decode = rj.Decoder("m.mapping", schema=files, encoding="yarp3", backend=backend)
+    write = rj.Encoder.of("wire", schema=files, imports=["wire.bottle-schema"], encoding="yarp3")
+    assert decode(write(write.holder_type.from_dict({"n": 3}))).to_dict() == {"number": 3}
+
+
 def test_a_length_that_is_read_alone():
     text = f"{OF_ELEMENTS.partition('rules:')[0]}unpack-rules:\n  .count = uint32(len(.parts))\n  len(.parts) = 0\n  ignore .count\n"
     found = rj.check("m.mapping", schema={**ELEMENTS, "m.mapping": text})

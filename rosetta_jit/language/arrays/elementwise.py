@@ -364,4 +364,6 @@ def _joined_elements(value: Expr) -> Expr | None:
 def _many(rule: Assignment) -> Diagnostic:
     """Why the elements that a rule names cannot be assigned to one value: perhaps what makes one of them is misspelt."""
     called = rule.value.function if isinstance(rule.value, Call) and rule.value.function not in functions() else ""
-    return words.one_value(rule.place.span, called, [name for name, each in functions().items() if each.reduction is not None])
+    reductions = [name for name, each in functions().items() if each.reduction is not None]
+    arrays = [show_expr(part).partition("[]")[0] for part in parts(rule.value) if isinstance(part, Path) and has_each(part)]
+    return words.one_value(rule.place.span, called, reductions, arrays[0] if arrays else "")

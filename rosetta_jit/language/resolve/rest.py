@@ -37,7 +37,7 @@ def defaulted(
     side = scope.target
     target, within = scope.messages[side], field_names(scope.base(side))
     single = [names for names in never_set(rules, target, within) if not _is_broken(names, broken)]
-    single = [names for names in single if not _is_in_array(names[len(within) :], target)]
+    single = [names for names in single if not _is_in_array(names[len(within) :], target) and not _is_case(names[len(within) :], target)]
     touched = {field_names(rule.place) for rule in rules_within(rules) if isinstance(rule, Assign | typed.Default)}
     known, elements = lengths_in(rules), dict["Names", "Elements"]()
     for names in untouched(touched, target, target.root, within):
@@ -98,6 +98,12 @@ def _place(names: Names, base: Place, message: Message, span: Span | None) -> Pl
         steps.append(FieldStep(field))
         type_ = value_inside(message, field.type)
     return Place(base.side, tuple(steps), type_, span)
+
+
+def _is_case(names: Names, message: Message) -> bool:
+    """Whether a field is a case of a union of which rules set another case, or lies in one."""
+    around = (_place(names[:count], Place(side="wire", steps=(), type=message.root), message, None) for count in range(1, len(names)))
+    return any(isinstance(place.type, Union) for place in around)
 
 
 def _is_in_array(names: Names, message: Message) -> bool:
