@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 from rosetta_jit.errors import EncodeError
 from rosetta_jit.frameworks.protobuf.introspection import EnumClass, FieldDescriptor, MessageDescriptor, nested_names
 from rosetta_jit.frameworks.protobuf.objects import OBJECTS
-from rosetta_jit.frameworks.protobuf.presence import missing, requires, set_entries
+from rosetta_jit.frameworks.protobuf.presence import known, missing, requires, set_entries
 from rosetta_jit.frameworks.protobuf.repeated import MapField, NumberArray, repeated
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import Family, Holder, Manners
@@ -69,6 +69,12 @@ class ProtobufMessage(Holder):
         lanes, row = place(self)
         return arena.present(lanes, entry.presence, row)
 
+    def __contains__(self, name: object) -> bool:
+        """``name in message``, as `HasField` says it."""
+        if not isinstance(name, str):
+            raise ValueError(f"Expected a field name, but got non-string argument {name!r}.")  # noqa: TRY004 - as protobuf has it
+        return ProtobufMessage.HasField(self, name)
+
     def ClearField(self, name: str) -> None:  # noqa: N802
         """Make a field absent, or whichever field of a oneof is set. The message itself is present in the one around it from then on."""
         if isinstance(self, View):
@@ -117,6 +123,13 @@ class ProtobufMessage(Holder):
             make_present(self)
             clear(self, None)
             merge.merge(self, values)
+
+    def DiscardUnknownFields(self) -> None:  # noqa: N802
+        """Forget the fields that the schema does not know, and those of messages within."""
+        values = access.raw(self)
+        make_present(self)
+        clear(self, None)
+        merge.merge(self, known(self.access_.record, values))
 
     def IsInitialized(self) -> bool:  # noqa: N802
         """Whether all required fields are set."""

@@ -1,10 +1,11 @@
-"""Which fields of a message are set, and which are missing: asked of raw values, as `rosetta_jit.runtime.holder.values` reads them."""
+"""Which fields of a message are set, missing, or unknown: asked of raw values, as `rosetta_jit.runtime.holder.values` reads them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.model.layout import UNKNOWN
 from rosetta_jit.runtime.holder.record import Child, Entry, Items, Node, Pairs, Record
 from rosetta_jit.startup.late import Late
 
@@ -70,3 +71,22 @@ def _missing_in(node: Node, value: Any, path: str) -> Iterator[str]:
                 yield from _missing_in(entry.node, each, f"{path}[{key}]")
         case _:
             pass
+
+
+def known(record: Record, values: Mapping[str, Any]) -> dict[str, Any]:
+    """The values without unknown fields, those of messages within included."""
+    return {name: _known_in(record.entries[name].node, value) for name, value in values.items() if name != UNKNOWN}
+
+
+def _known_in(node: Node, value: Any) -> Any:
+    match node:
+        case Record():
+            return known(node, value)
+        case Child():
+            return known(node.record, value)
+        case Items(_, _, Record() as element, _):
+            return [known(element, each) for each in value]
+        case Pairs(_, _, _, _, entry):
+            return {key: _known_in(entry.node, each) for key, each in value.items()}
+        case _:
+            return value

@@ -1,7 +1,9 @@
 """Writing into lanes: spans that grow, presence, and the emptiness of what is absent.
 
-A span is extended in place where it ends its lane, and moves to the end otherwise. Rows of a recursive lane that have moved may lie behind
-their children, which encoders do not accept: such lanes are unsettled, and `rosetta_jit.runtime.holder.values.settle` orders them.
+A span is extended in place where it ends its lane, and moves to the end otherwise. It gives rows at the end back where it is the only
+one of its lane: others, though empty, may begin behind these rows, and none may begin behind the used rows. Rows of a recursive lane
+that have moved may lie behind their children, which encoders do not accept: such lanes are unsettled, and
+`rosetta_jit.runtime.holder.values.settle` orders them.
 """
 
 from __future__ import annotations
@@ -57,7 +59,7 @@ def resize(lanes: Lanes, node: Spanned, row: int, count: int) -> int:
     at_end = start + old == lanes.used(lane)
     if count <= old:
         _waste_in(lanes, node, start + count, old - count, whole=count == 0)
-        if at_end:
+        if at_end and _is_alone(lanes, node):
             lanes.give_back(lane, start + count)
         elif count < old:
             lanes.waste(lane, old - count)
@@ -80,8 +82,6 @@ def _waste_in(lanes: Lanes, node: Node, start: int, rows: int, *, whole: bool = 
     match node:
         case Items(element=Text() as text) if whole and rows == lanes.used(text.span.lane):
             lanes.give_back(text.lane, 0)  # none but these rows refer to it
-        case Items(element=Text() as text) if whole and _is_last(lanes, text, start, rows):
-            lanes.give_back(text.lane, int(lanes.row_words(text.span.lane, start, rows)[:, text.span.index].min()))
         case Items(element=element):
             _waste_of(lanes, element, start, rows)
         case Pairs(record=record) | Child(record=record):
@@ -90,11 +90,9 @@ def _waste_in(lanes: Lanes, node: Node, start: int, rows: int, *, whole: bool = 
             pass
 
 
-def _is_last(lanes: Lanes, text: Text, row: int, rows: int) -> bool:
-    """Whether the texts of these rows, none of which is empty, are all that stands in their lane from the first of them on."""
-    words = lanes.row_words(text.span.lane, row, rows)[:, text.span.index : text.span.index + 2]
-    starts, counts = words[:, 0], words[:, 1]
-    return bool((counts > 0).all()) and int(starts.min() + counts.sum()) == lanes.used(text.lane)
+def _is_alone(lanes: Lanes, node: Spanned) -> bool:
+    """Whether no other span refers to a span's lane: only lanes of messages that contain each other have spans of several fields."""
+    return lanes.used(node.span.lane) == 1 and lanes.plan.layout.lanes[node.lane].links is None
 
 
 def _waste_of(lanes: Lanes, node: Node, row: int, rows: int) -> None:

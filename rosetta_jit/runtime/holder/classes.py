@@ -268,6 +268,8 @@ def clear(holder: Holder, name: str | None) -> None:
         if lanes is holder.lanes_:
             for entry in entries:
                 arena.clear(lanes, entry, row)
+            if name is None and record.unknown is not None:
+                arena.replace(lanes, record.unknown, row, b"")
 
 
 def filled(holder: _Holder, plain: Any) -> _Holder:

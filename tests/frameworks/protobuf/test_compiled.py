@@ -184,6 +184,64 @@ def test_unknown_fields_are_copied_where_there_are_any():
     assert lines[at - 1].strip().startswith("if (")
 
 
+STRANGE = """
+syntax = "proto3";
+message Inner { int32 x = 1; Outer outer = 2; }
+message Outer {
+  Inner inner = 1; repeated Inner inners = 2; map<string, Inner> by_name = 3; map<string, int32> counts = 4; Outer child = 5;
+  repeated int32 numbers = 6; oneof either { Inner left = 7; string right = 8; }
+}
+"""
+
+
+@pytest.fixture(scope="module", params=["theirs", "ours"])
+def strange_class(request, tmp_path_factory):
+    """The same class twice."""
+    from grpc_tools import protoc
+
+    folder = tmp_path_factory.mktemp("strange")
+    (folder / "a.proto").write_text(STRANGE)
+    assert protoc.main(["protoc", f"-I{folder}", f"--descriptor_set_out={folder}/a.fds", "a.proto"]) == 0
+    schema = (folder / "a.fds").read_bytes()
+    return classes(schema)("Outer") if request.param == "theirs" else programs("Outer", "llvm", schema=schema)[0].holder_type
+
+
+UNKNOWN, INNER = b"\xfa\x7c\x01x", b"\x08\x01\xfa\x7c\x01x"
+"""Field 1999, which no type has; and a message with it."""
+
+
+def test_messages_that_are_emptied_forget_unknown_fields(strange_class):
+    data = b"\x0a\x06" + INNER + b"\x12\x06" + INNER
+    other = strange_class(inner={"x": 5})
+    for change, wanted in (
+        (lambda message: message.inner.Clear(), b"\x0a\x00" + data[8:]),
+        (lambda message: message.inners[0].Clear(), data[:8] + b"\x12\x00"),
+        (lambda message: message.inner.CopyFrom(other.inner), b"\x0a\x02\x08\x05" + data[8:]),
+        (lambda message: message.inners[0].CopyFrom(other.inner), data[:8] + b"\x12\x02\x08\x05"),
+        (lambda message: message.inner.ParseFromString(b"\x08\x05"), b"\x0a\x02\x08\x05" + data[8:]),
+        (lambda message: message.inner.MergeFrom(other.inner), b"\x0a\x06\x08\x05" + UNKNOWN + data[8:]),
+    ):
+        message = strange_class.FromString(data)
+        change(message)
+        assert message.SerializeToString() == wanted
+
+
+def test_unknown_fields_are_discarded(strange_class):
+    """A message has them, and so have those in it, in an array, a map and a oneof."""
+    parts = [b"\x0a\x06" + INNER, b"\x12\x06" + INNER, b"\x1a\x0b\x0a\x01k\x12\x06" + INNER, b"\x22\x0d\x0a\x09(unknown)\x10\x01"]
+    message = strange_class.FromString(b"".join([*parts, b"\x32\x02\x07\x08", b"\x3a\x06" + INNER, UNKNOWN]))
+    sizes = [message.ByteSize()]
+    message.inner.DiscardUnknownFields()
+    sizes.append(message.ByteSize())
+    message.DiscardUnknownFields()
+    assert [sizes[0] - sizes[1], sizes[0] - message.ByteSize()] == [4, 20]
+    assert (message.inner.x, [each.x for each in message.inners], message.by_name["k"].x) == (1, [1], 1)
+    assert (dict(message.counts), list(message.numbers)) == ({"(unknown)": 1}, [7, 8])
+    assert (message.left.x, message.WhichOneof("either"), message.HasField("child")) == (1, "left", False)
+    message.child.DiscardUnknownFields()
+    assert message.HasField("child")
+
+
 def test_fields_in_any_order_unknown_ones_and_merges():
     inner = "message P { optional int32 x = 1; repeated int32 y = 2; }"
     outer = "message M { optional P p = 1; repeated int32 n = 2; optional string s = 3; }"

@@ -80,6 +80,16 @@ def test_unknown_names(everything):
         everything(nothing=1)
 
 
+def test_names_in_messages(everything):
+    message = everything(text="")
+    assert "text" in message
+    assert "inner" not in message
+    assert "word" not in message
+    for name in ("ints", "nothing", 5):
+        with pytest.raises(ValueError, match=r"presence|nothing|non-string"):
+            _ = name in message
+
+
 def test_keywords(everything):
     message = everything(
         i32=3, color="GREEN", ints=(1, 2), texts=["a"], inner={"x": 4, "names": ["n"]}, inners=[{"x": 1}, everything.Inner(x=2)],

@@ -1,7 +1,8 @@
 ; Assignment to fields whose content lies in a lane of its own, by values of exactly the common types: str, bytes, lists of numbers or of texts, arrays.
 ;
 ; New content is written where the old one lies if it is as long, or ends its lane; else behind the lane's last row, and the old rows are wasted
-; (word 15 of the state): where that is much, the next encode tidies up. Whether there is room is asked first. Where there is none, Python makes it;
+; (word 15 of the state): where that is much, the next encode tidies up. Fewer rows at the end are given back only where no other span refers to the
+; lane, which might be empty and begin behind them. Whether there is room is asked first. Where there is none, Python makes it;
 ; then all is looked up again.
 
 @PyUnicode_Type = external global i8
@@ -52,8 +53,8 @@ define internal i1 @is_sound(i64 %start, i64 %count, i64 %used) alwaysinline {
   ret i1 %sound
 }
 
-; Give a span so many rows, for which there is room; where they begin. What they hold is not kept.
-define internal ptr @resized(ptr %state, ptr %lane, ptr %span, i64 %count) {
+; Give a span so many rows, for which there is room; where they begin. What they hold is not kept. `%around` are the words of the lane that has the span.
+define internal ptr @resized(ptr %state, ptr %around, ptr %lane, ptr %span, i64 %count) {
   %start = load i64, ptr %span
   %old = call i64 @word(ptr %span, i64 8)
   %address = load ptr, ptr %lane
@@ -66,7 +67,12 @@ define internal ptr @resized(ptr %state, ptr %lane, ptr %span, i64 %count) {
   %same = icmp eq i64 %count, %old
   br i1 %same, label %place, label %differ
 differ:
-  br i1 %at.end, label %here, label %elsewhere
+  %rows.around = call i64 @word(ptr %around, i64 16)
+  %is.alone = icmp eq i64 %rows.around, 1
+  %is.more = icmp sgt i64 %count, %old
+  %may.end = or i1 %is.alone, %is.more
+  %ends.here = and i1 %at.end, %may.end
+  br i1 %ends.here, label %here, label %elsewhere
 here:
   %new.end = add i64 %start, %count
   call void @put(ptr %lane, i64 16, i64 %new.end)
@@ -245,7 +251,8 @@ begin:
   %begun = call i1 @begin_writing(ptr %self, ptr %place, ptr %row)
   br i1 %begun, label %resize, label %python, !prof !0
 resize:
-  %target = call ptr @resized(ptr %state, ptr %lane, ptr %span, i64 %count)
+  %around = call ptr @own_lane(ptr %self)
+  %target = call ptr @resized(ptr %state, ptr %around, ptr %lane, ptr %span, i64 %count)
   ret ptr %target
 python:
   ret ptr null

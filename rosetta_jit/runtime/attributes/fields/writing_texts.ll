@@ -116,7 +116,8 @@ resize:
   %old.start = load i64, ptr %span
   %stride = call i64 @word(ptr %lane, i64 24)
   %old.rows = call ptr @element_row(ptr %lane, i64 %old.start)
-  %target = call ptr @resized(ptr %state, ptr %lane, ptr %span, i64 %all)
+  %around = call ptr @own_lane(ptr %self)
+  %target = call ptr @resized(ptr %state, ptr %around, ptr %lane, ptr %span, i64 %all)
   ; rows that stayed keep their old texts' places; the others have none
   %fewer = icmp slt i64 %all, %old
   %common = select i1 %fewer, i64 %all, i64 %old
@@ -163,7 +164,7 @@ mend:
   call void @put(ptr %text.span, i64 8, i64 0)
   br label %put
 put:
-  %text.at = call ptr @resized(ptr %state, ptr %texts, ptr %text.span, i64 %size)
+  %text.at = call ptr @resized(ptr %state, ptr %lane, ptr %texts, ptr %text.span, i64 %size)
   call void @llvm.memmove.p0.p0.i64(ptr %text.at, ptr %data, i64 %size, i1 false)
   br label %head
 done:

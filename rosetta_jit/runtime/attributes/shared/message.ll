@@ -230,6 +230,14 @@ define internal ptr @content(ptr %self, ptr %lane, i64 %start, i64 %count) noinl
   ret ptr %result
 }
 
+; The words of the lane that a message's row lies in.
+define internal ptr @own_lane(ptr %self) alwaysinline {
+  %state = call ptr @pointer(ptr %self, i64 16)
+  %lane.at = call i64 @word(ptr %self, i64 40)
+  %lane = getelementptr i8, ptr %state, i64 %lane.at
+  ret ptr %lane
+}
+
 ; The words of the lane that a field's content lies in.
 define internal ptr @lane_of(ptr %self, ptr %place) alwaysinline {
   %state = call ptr @pointer(ptr %self, i64 16)
