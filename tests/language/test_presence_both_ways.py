@@ -135,3 +135,27 @@ def test_laws_of_cases():
     laws = programs(FROM_ONEOF, "interpreter")[0].mapping.laws
     assert str(laws.messages) == "exact inverse"
     assert {loss.place for loss in laws.holders.losses} == {".radius", ".extent", ".name", ".speed", ".note"}
+
+
+INNER = """syntax = "proto2"; package PACKAGE;
+message Inner { optional string a = 1; optional int32 b = 2; required Deep deep = 3; }
+message Deep { optional int32 c = 1; }
+message Outer { required Inner inner = 1; optional Inner other = 2; required int32 n = 3; }"""
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_messages_that_the_schema_requires_are_there_where_all_their_fields_are_left_alone(backend: str) -> None:
+    """Else the holder were none that its own schema allows; a message that may be absent stays so."""
+    texts = {f"{package}.proto": INNER.replace("PACKAGE", package) for package in ("wire", "holder")}
+    head = 'import "wire.proto" import "holder.proto" data-holder: holder.Outer wire-schema: wire.Outer '
+    left = " ".join(f"ignore .{field} default .{field}" for field in ("inner.a", "inner.b", "inner.deep.c", "other.deep.c"))
+    texts["m.mapping"] = f"{head} rules: {left} ignore .other.a default .other.a ignore .other.b default .other.b .n <-> .n"
+    decode, encode = (kind("m.mapping", schema=texts, backend=backend) for kind in (rj.Decoder, rj.Encoder))
+    write = rj.Encoder.of("wire.Outer", schema=texts, imports=["wire.proto"], backend="interpreter")
+    again = rj.Encoder.of("holder.Outer", schema=texts, imports=["holder.proto"], backend="interpreter")
+    whole = {"a": "x", "b": 1, "deep": {"c": 2}}
+    found = decode(write(write.holder_type.from_dict({"inner": whole, "other": whole, "n": 3})))
+    assert found.to_dict() == {"inner": {"deep": {}}, "n": 3}
+    empty = write(write.holder_type.from_dict({"inner": {"deep": {}}, "n": 3}))
+    assert bytes(again(found)) == bytes(encode(found)) == bytes(empty)
+    assert ".inner" not in {loss.place for loss in decode.mapping.laws.messages.losses}

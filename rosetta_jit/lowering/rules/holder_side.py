@@ -24,7 +24,7 @@ from rosetta_jit.lowering.rules.shares import keep_texts
 from rosetta_jit.lowering.writer import Writer, block, integer
 from rosetta_jit.model.initial_values import InitialValues, selected
 from rosetta_jit.model.layout import Member, Number, Row, Span, Variant
-from rosetta_jit.model.types import Array, Bytes, Constant, Field, String, Struct, Union
+from rosetta_jit.model.types import Array, Bytes, Constant, Field, Optional, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Path
 
@@ -212,6 +212,23 @@ class HolderSide:
             self.single(fields, path, values)
         else:
             fields.appear(path)
+
+    def require(self, place: typed.Place, values: Evaluation) -> None:
+        """Mark as there what the schema requires: the place, or the innermost message around it that no message around may lack."""
+        required = 0
+        for count, step in enumerate(place.steps, 1):
+            if isinstance(step, FieldStep) and step.field.required:
+                required = count
+            elif isinstance(step, FieldStep) and isinstance(step.field.type, Optional):
+                break
+        if required == len(place.steps):
+            self.appear(place, values)
+        elif required:
+            fields, path, _ = self.descend(replace(place, steps=place.steps[:required]), values)
+            if isinstance(fields.find(path).slot, Span):
+                self.single(fields, path, values)
+            else:
+                fields.appear(path)
 
     def set_length(self, place: typed.Place, count: Expr, values: Evaluation) -> None:
         """Take room for the elements; those that are structs begin empty."""

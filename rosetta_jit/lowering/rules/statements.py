@@ -78,12 +78,11 @@ class Runner:
                     assert_never(rule)
 
     def leave(self, place: typed.Place, values: Values) -> None:
-        """Leave a place as it is, which is 0 or empty; what the schema requires is there."""
-        last = place.steps[-1]
+        """Leave a place as it is, which is 0 or empty; what the schema requires is there, also of the messages around it."""
         if isinstance(self.target, WireSide):
             self.target.clear(place, values)
-        elif isinstance(last, typed.FieldStep) and last.field.required:
-            self.target.appear(place, values)
+        else:
+            self.target.require(place, values)
 
     def branch(self, rules: tuple[typed.Rule, ...], values: Values) -> Block:
         """Rules that run or not; what is looked up within them is forgotten behind them."""
