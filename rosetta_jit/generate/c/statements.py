@@ -60,7 +60,7 @@ class Function:
     origins: Sequence[Origin] = ()
     role: Role = "decode"
     known: Positions = NONE
-    aligned: Mapping[str, ir.Expr] = field(default_factory=dict[str, ir.Expr])
+    aligned: Mapping[str, nodes.Expr] = field(default_factory=dict[str, nodes.Expr])
     writer: Writer = field(default_factory=lambda: Writer(depth=1))
 
     def line(self, text: str) -> None:
