@@ -26,6 +26,7 @@ ORDER = (
     "flags",
     "sums",
     "left_alone",
+    "parts",
     "reductions",
     "mapped",
     "bridges",

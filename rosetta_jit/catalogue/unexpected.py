@@ -55,7 +55,7 @@ class _Place:
 def instead(span: Span, kind: str, expected: frozenset[str]) -> str:
     """What to write instead of a token that is not expected; empty where nothing explains it."""
     place = _place(span, kind, expected)
-    found = (_of_character(place), *(each(place) for each in (_of_sign, _of_bracket, _of_number, _of_statement, _of_word)))
+    found = (_of_character(place), *(each(place) for each in (_of_sign, _of_bracket, _of_number, _of_statement, _of_line, _of_word)))
     return next((each for each in found if each), "")
 
 
@@ -166,14 +166,20 @@ def _of_statement(place: _Place) -> str:
         return "rules stand behind `rules:`, or behind `unpack-rules:` or `pack-rules:`"
     if found == "state" and "IMPORT" in expected:
         return "a state variable has a type: `state n: int64 = 0`"
+    return _of_colon(place) if expected == frozenset(("COLON",)) or place.ahead.startswith("[") else ""
+
+
+def _of_line(place: _Place) -> str:
+    """What the line tells in which the token stands, or the one before."""
+    found, before = place.found, place.before
     if found == "if" and before == "else":
         return "`else when condition`; each `when` has an `end`"
     rule = place.line + (found if place.kind == "$END" and place.touches else "")
-    if "EQUAL" in expected and (called := re.search(r"=\s*([a-z]\w*)\s+(\.[\w.]+)$", rule)):
+    if "EQUAL" in place.expected and (called := re.search(r"=\s*([a-z]\w*)\s+(\.[\w.]+)$", rule)):
         return f"what a function takes stands in brackets: `{called[1]}({shorten(called[2])})`"
     if not before and (declared := re.match(r"(state \w+: (\w+)|parameter \w+: list)$", place.line)):
         return _of_declaration(declared[1], declared[2])
-    return _of_colon(place) if expected == frozenset(("COLON",)) or place.ahead.startswith("[") else ""
+    return ""
 
 
 def _of_declaration(declared: str, type_: str | None) -> str:

@@ -19,7 +19,7 @@ from rosetta_jit.language.laws.writes import FILTERED
 from rosetta_jit.language.limits import MAX_WORK
 from rosetta_jit.language.places import field_names, shown_names, shown_place
 from rosetta_jit.language.scope import Message
-from rosetta_jit.language.typed import Access, Const, For, Given, IndexStep, LenOf, Listed, Local, Rule, Search
+from rosetta_jit.language.typed import Access, Const, Expr, For, Given, IndexStep, LenOf, Listed, Local, Place, Rule, Search
 from rosetta_jit.language.untouched import untouched
 from rosetta_jit.language.walk import parts
 from rosetta_jit.model.walk import every_rule
@@ -150,6 +150,23 @@ def _outcome(result: Result, trip: Trip) -> Outcome:
     return found if is_lost else Lost("it is refused where a conversion does not take it")
 
 
+def _becomes(value: Expr, place: Place) -> str | None:
+    """What a place becomes instead of what it was, where that can be said."""
+    match value:
+        case _ if any(isinstance(part, Search) for part in parts(value)):
+            return "it becomes that of the element which a key tells"
+        case Listed() | Given(_, (_,)) if not reads_other(value, place.side):
+            return "it becomes an item of a list"
+        case Access(other) if other.side == place.side and not has_local(value):
+            return f"it becomes that of `{shown_place(other.steps)}`"
+        case LenOf(other) if other.side == place.side and not has_local(value):
+            return f"it becomes `len({shown_place(other.steps)})`"
+        case _ if reads_other(value, place.side):
+            return "it comes back as something that does not follow from it"
+        case _:
+            return None
+
+
 def _value_outcome(result: Result, trip: Trip) -> Outcome:
     trip.ranges = result.ranges
     place, value = result.place, result.value
@@ -164,10 +181,6 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
             return Lost("a filter drops some elements, and which it keeps is not followed")
         case Local("?"):
             return Lost("it cannot be shown by which block of a `when` it comes back")
-        case _ if any(isinstance(part, Search) for part in parts(value)):
-            return Lost("it becomes that of the element which a key tells")
-        case Listed() | Given(_, (_,)) if not reads_other(value, place.side):
-            return Lost("it becomes an item of a list")
         case Access(other) | LenOf(other) if other.side != place.side:
             is_element = any(isinstance(step, IndexStep) for step in other.steps)
             return None if value in trip.equal_to(goal) else UNSHOWN if is_element else Lost("nothing of it is kept")
@@ -179,11 +192,8 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
             return None
         case Const(constant):
             return Lost(f"it becomes {constant!r}")
-        case Access(other) | LenOf(other) if not has_local(value):
-            name = shown_place(other.steps)
-            return Lost(f"it becomes that of `{name}`" if isinstance(value, Access) else f"it becomes `len({name})`")
-        case _ if reads_other(value, place.side):
-            return Lost("it comes back as something that does not follow from it")
+        case _ if (why := _becomes(value, place)) is not None:
+            return Lost(why)
         case _:
             if any(same_number(value, each) for each in (goal, *trip.equal_to(goal))):
                 return None
