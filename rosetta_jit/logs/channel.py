@@ -179,12 +179,14 @@ class Channel:
     def __getitem__(self, name: str) -> NDArray[Any]:
         """A field of all messages as an array, ``imu["angular_velocity.x"]``; the times as ``["log_time"]``, ``["publish_time"]``.
 
+        Numbers, arrays of one length, and texts, as `str`.
+
         Raises
         ------
         KeyError
             There is no such field.
-        TypeError
-            The field is not a number: take `to_arrow`.
+        TypeError, ValueError
+            The field is a message, or an array of several lengths: take `to_arrow`.
         """
         if name in CLOCKS:
             stamps = [each.rows.log_ns if name == "log_time" else each.rows.publish_ns for each in self._blocks()]

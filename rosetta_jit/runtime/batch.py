@@ -10,7 +10,7 @@ import numpy as np
 from rosetta_jit.errors import DecodeError, InUse
 from rosetta_jit.kernel.state import EPOCH, VALID
 from rosetta_jit.runtime.batch_parts import contents, errors_of_part, errors_together, joined, revived
-from rosetta_jit.runtime.columns import column, presence_mask
+from rosetta_jit.runtime.columns import WithColumns, column, presence_mask
 from rosetta_jit.runtime.holder import Holder, Manners
 from rosetta_jit.runtime.holder.classes import HolderFamily
 from rosetta_jit.runtime.holder.family import family_of
@@ -31,7 +31,7 @@ _INTERNAL = frozenset({"lanes", "room", "reset"})
 """What batches have for other modules."""
 
 
-class Batch:
+class Batch(WithColumns):
     """``n`` messages.
 
     ``batch[i]`` is a view of one, with the manners of its holder; ``batch.angles`` is a column (``batch.column("angles")`` where the
@@ -50,13 +50,15 @@ class Batch:
     """
 
     __slots__ = ("_family", "_handed", "_kept", "errors", "lanes")
+    _family: HolderFamily
+    _handed: Handed | None
+    _kept: NDArray[np.int64] | None
+    errors: dict[int, DecodeError]
+    lanes: Lanes
 
     def __init__(self, family: HolderFamily, lanes: Lanes) -> None:
-        self._family = family
-        self.lanes = lanes
-        self.errors: dict[int, DecodeError] = {}
-        self._kept: NDArray[np.int64] | None = None
-        self._handed: Handed | None = None
+        for name, value in zip(self.__slots__, cast("tuple[Any, ...]", (family, None, None, {}, lanes)), strict=True):
+            object.__setattr__(self, name, value)
 
     @classmethod
     def new(cls, holder_class: type[Holder], count: int) -> Batch:
@@ -390,9 +392,7 @@ def hand_over(batch: Batch) -> None:
     batch._handed = batch._handed or Handed()  # noqa: SLF001
 
 
-def _revived(
-    text: str, manners: Manners, found: list[NDArray[np.uint8]], errors: dict[int, DecodeError], kept: NDArray[np.int64] | None
-) -> Batch:
+def _revived(text: str, manners: Manners, found: list[NDArray[np.uint8]], errors: Any, kept: NDArray[np.int64] | None) -> Batch:
     """Unpickle, or copy."""
     family = family_of(text, manners)
     batch = Batch(cast("HolderFamily", family), revived(family.layout, family.tree.initial, family.array_type, found))

@@ -15,11 +15,23 @@ from rosetta_jit.runtime.holder.message import Message, place
 from rosetta_jit.runtime.holder.paths import entries_to
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Cell, Child, Items, Node, Numbers, Pairs, Presence, Record, Scalar, Text
 from rosetta_jit.runtime.lanes import Lanes
-from rosetta_jit.runtime.nested_columns import Columns, Ragged
+from rosetta_jit.runtime.nested_columns import Columns, Ragged, refuse_others
 from rosetta_jit.runtime.text_columns import Texts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+
+class WithColumns:
+    """Whatever has columns as attributes beside its slots."""
+
+    __slots__: tuple[str, ...] = ()
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if name in self.__slots__:
+            object.__setattr__(self, name, value)
+        else:
+            refuse_others(name, getattr(self, name), value)
 
 
 def cells(lanes: Lanes, cell: Cell, scalar: str, rows: int, *, behind: int = 0) -> NDArray[Any]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, ItemsView, Iterable, Iterator, KeysView, Mapping, Sequence, ValuesView
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NoReturn, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -92,10 +92,10 @@ class Columns:
             return self.__columns[name]
         raise AttributeError(f"there is no column {name!r} among {', '.join(self)}", name=name, obj=self)
 
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        if name in self.__columns:
-            raise AttributeError(f"a column is written into: `.{name}[:] = …`, if it is one of numbers")
-        raise AttributeError(f"there is no column {name!r} among {', '.join(self)}", name=name, obj=self)
+    def __setattr__(self, name: str, value: object) -> None:
+        if name not in self.__columns:
+            raise AttributeError(f"there is no column {name!r} among {', '.join(self)}", name=name, obj=self)
+        refuse_others(name, self.__columns[name], value)
 
     def __eq__(self, other: object) -> bool:
         if isinstance(other, Columns):
@@ -350,6 +350,13 @@ def _flat(columns: Columns, before: str = "") -> Iterator[tuple[str, Any]]:
                 yield f"{before}{name}", each
             case _:
                 raise _of_one_message()
+
+
+def refuse_others(name: str, found: Any, value: object) -> None:
+    """Let a column be assigned to its own place, as ``batch.header.seq += 1`` does at its end; AttributeError says how else to write."""
+    is_same = isinstance(value, np.ndarray) and isinstance(found, np.ndarray)
+    if not is_same or cast("Any", value).__array_interface__ != cast("Any", found).__array_interface__:
+        raise AttributeError(f"a column is written into: `.{name}[:] = …`, if it is one of numbers")
 
 
 def of_batch(found: Any, origin: Origin) -> Any:

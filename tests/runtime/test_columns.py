@@ -339,3 +339,25 @@ def test_columns_are_read_as_a_dictionary():
         columns.x = 5
     with pytest.raises(AttributeError, match="no column 'y' among"):
         columns.y = 5
+
+
+def test_columns_are_changed_in_place():
+    """``batch.small += 1`` changes the array, and assigns it to the place where it is."""
+    batch = Batch.new(flat(), 3)
+    batch[1].small, batch[1].part.x = 5, 7
+    batch.small += 1
+    batch.part.x *= 2
+    batch.column("part").x -= 1
+    assert [(each.small, each.part.x) for each in batch] == [(1, -1), (6, 13), (1, -1)]
+    with pytest.raises(AttributeError, match=r"a column is written into: `.small\[:\] = …`"):
+        batch.small = np.arange(3)
+    with pytest.raises(AttributeError, match=r"a column is written into: `.small\[:\] = …`"):
+        batch.small = batch.small[:2]
+    with pytest.raises(AttributeError, match=r"a column is written into"):
+        batch.part.x = batch.part.x.copy()
+    with pytest.raises(AttributeError, match="has no field 'smal'"):
+        batch.smal = 5
+    with pytest.raises(AttributeError, match=r"written into"):
+        batch.part = 5
+    batch.errors = {}
+    assert [each.small for each in pickle.loads(pickle.dumps(batch))] == [1, 6, 1]  # noqa: S301 - our own bytes

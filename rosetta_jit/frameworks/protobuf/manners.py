@@ -311,8 +311,13 @@ They are the package's own functions, which need nothing of a message but its fi
 
 
 def methods_of(struct: str) -> dict[str, Any]:
-    """The methods of a type, by name; none of any other."""
-    return {name: _Theirs(struct, name) for name in METHODS.get(struct, ())}
+    """The methods of a type, by name; none of any other. What those that are containers contain is not a matter of their fields."""
+    found: dict[str, Any] = {name: _Theirs(struct, name) for name in METHODS.get(struct, ())}
+    return {**found, "__contains__": _among} if "__getitem__" in found else found
+
+
+def _among(self: Any, value: object) -> bool:
+    return any(each == value for each in iter(self))
 
 
 class _Theirs:
