@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Namespace, Writer, counted_lanes
 from rosetta_jit.generate.c.aligned import as_printed
+from rosetta_jit.generate.c.decided import decided
 from rosetta_jit.generate.c.expressions import constant, expression
 from rosetta_jit.generate.c.scope import Scope, register_name
 from rosetta_jit.generate.c.state import register_word
@@ -83,7 +84,7 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Ori
 
 
 def _attempt(writer: Writer, role: Role, kernel: Kernel, number: int, function: Function) -> Attempt:
-    body, scope = reached(kernel.bodies[number]), function.scope
+    body, scope = reached(decided(kernel.bodies[number])), function.scope
     advanced = {each.lane for each in (stmt for stmt, _ in statements(body)) if isinstance(each, Advance)}
     finish = {lane: scope.lanes.used(lane) if lane in advanced else "0" for lane in counted_lanes(kernel, body) if lane < scope.lanes.own}
     function.read = read_names(as_printed(body))
@@ -123,8 +124,9 @@ def _short(kernel: Kernel) -> frozenset[str]:
 def _routine(writer: Writer, role: str, direction: Direction, routine: Routine, function: Function, inline: str) -> Callable:
     scope = function.scope
     own = {each.name: scope.locals.identifier(each.name) for each in routine.parameters}
-    function.read = read_names(as_printed(routine.body), (each.name for each in routine.results))
-    print_block(function, routine.body)
+    body = decided(routine.body)
+    function.read = read_names(as_printed(body), (each.name for each in routine.results))
+    print_block(function, body)
     for each in routine.results:
         function.line(f"*found_{scope.locals.identifier(each.name)} = {bare(expression(scope, each))};")
     fails = "failure" in scope.parameters
