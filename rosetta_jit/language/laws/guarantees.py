@@ -19,7 +19,7 @@ from rosetta_jit.language.laws.writes import FILTERED
 from rosetta_jit.language.limits import MAX_WORK
 from rosetta_jit.language.places import field_names, shown_names, shown_place
 from rosetta_jit.language.scope import Message
-from rosetta_jit.language.typed import Access, Const, For, Given, IndexStep, LenOf, Listed, Local, Rule, Search
+from rosetta_jit.language.typed import Access, Const, Expr, For, Given, IndexStep, LenOf, Listed, Local, Rule, Search
 from rosetta_jit.language.untouched import untouched
 from rosetta_jit.language.walk import parts
 from rosetta_jit.model.walk import every_rule
@@ -185,9 +185,12 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
         case _ if reads_other(value, place.side):
             return Lost("it comes back as something that does not follow from it")
         case _:
-            if any(same_number(value, each) for each in (goal, *trip.equal_to(goal))):
-                return None
-            found = come_back(value, goal)
-            if found == UNSHOWN and is_of_digits(value, goal):
-                return Lost("what no relation takes of it comes back as 0")
-            return Lost(IN_SUMS) if found == UNSHOWN and comes_back_rounded(value, goal) else found
+            return None if any(same_number(value, each) for each in (goal, *trip.equal_to(goal))) else _come_back(value, goal)
+
+
+def _come_back(value: Expr, goal: Expr) -> Outcome:
+    """What is left of a field where a chain of steps brings it back."""
+    found = come_back(value, goal)
+    if found == UNSHOWN and is_of_digits(value, goal):
+        return Lost("what no relation takes of it comes back as 0")
+    return Lost(IN_SUMS) if found == UNSHOWN and comes_back_rounded(value, goal) else found
