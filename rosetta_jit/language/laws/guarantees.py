@@ -195,9 +195,12 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
         case _ if (why := _becomes(value, place)) is not None:
             return Lost(why)
         case _:
-            if any(same_number(value, each) for each in (goal, *trip.equal_to(goal))):
-                return None
-            found = come_back(value, goal)
-            if found == UNSHOWN and is_of_digits(value, goal):
-                return Lost("what no relation takes of it comes back as 0")
-            return Lost(IN_SUMS) if found == UNSHOWN and comes_back_rounded(value, goal) else found
+            return None if any(same_number(value, each) for each in (goal, *trip.equal_to(goal))) else _come_back(value, goal)
+
+
+def _come_back(value: Expr, goal: Expr) -> Outcome:
+    """What is left of a field where a chain of steps brings it back."""
+    found = come_back(value, goal)
+    if found == UNSHOWN and is_of_digits(value, goal):
+        return Lost("what no relation takes of it comes back as 0")
+    return Lost(IN_SUMS) if found == UNSHOWN and comes_back_rounded(value, goal) else found
