@@ -71,9 +71,12 @@ def run(folder, answer, version, names):
 
 
 def check_programs(folder, names):
-    """Each program is compiled of the functions as they are, and again only where it must be."""
-    assert run(folder, "decoded", 2, names) == {name: [2.0, 1] for name in names}
-    assert run(folder, "decoded", 3, names) == {name: [3.0, 1] for name in names}
+    """Each program is compiled of the functions as they are, and again only where it must; those that come to the same share a kernel."""
+    for version in (2, 3):
+        digests = run(folder, "identified", version, names)
+        once = {digest: name for name, digest in reversed(digests.items()) if digest is not None}
+        found = run(folder, "decoded", version, names)
+        assert found == {name: [float(version), int(digests[name] is None or once[digests[name]] == name)] for name in names}
     assert run(folder, "decoded", 2, names) == {name: [2.0, int(not KINDS[name].is_kept)] for name in names}
 
 
