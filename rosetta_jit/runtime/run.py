@@ -146,10 +146,12 @@ def readable(message: object) -> NDArray[np.uint8]:
 
 
 def writable(buffer: object) -> NDArray[np.uint8]:
-    """The bytes of an output: TypeError if it has none, BufferError if they cannot be written."""
-    array = readable(buffer)
-    if not array.flags.writeable and memoryview(cast("Any", buffer)).readonly:
+    """The bytes of an output: TypeError if it has none, BufferError if they cannot be written, or are references to objects."""
+    array, view = readable(buffer), memoryview(cast("Any", buffer))
+    if not array.flags.writeable and view.readonly:
         raise BufferError(f"{type(buffer).__name__} is read-only")
+    if any("O" in part for part in view.format.split(":")[::2]):  # between colons stand names
+        raise BufferError(f"{type(buffer).__name__} has references to Python objects, which a message would overwrite: give a bytearray")
     return array
 
 

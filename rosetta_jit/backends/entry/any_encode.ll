@@ -48,8 +48,8 @@ target:
   %offset = phi i64 [ 0, %into ], [ %asked, %place ]
   %target.at = getelementptr ptr, ptr %args, i64 1
   %target.object = load ptr, ptr %target.at
-  ; PyBUF_WRITABLE
-  %has = call i1 @open(ptr %target.object, ptr %view, i32 1)
+  ; PyBUF_WRITABLE, PyBUF_FORMAT and PyBUF_ND
+  %has = call i1 @open(ptr %target.object, ptr %view, i32 13)
   br i1 %has, label %opened, label %raise, !prof !0
 opened:
   %room = load ptr, ptr %view
@@ -61,7 +61,9 @@ opened:
   %readable = call i1 @is_usable(ptr %state, i64 %into.epoch)
   %unshared = call i1 @registers_are_free(ptr %context)
   %into.usable = and i1 %readable, %unshared
-  %fits = and i1 %inside, %into.usable
+  %plain = call i1 @holds_no_objects(ptr %target.object, ptr %view)
+  %takes.bytes = and i1 %inside, %plain
+  %fits = and i1 %takes.bytes, %into.usable
   br i1 %fits, label %prepare, label %close, !prof !0
 prepare:
   call void @enter(ptr %state, i64 %into.epoch, i64 0)

@@ -106,8 +106,8 @@ define internal ptr @into(ptr %self, ptr %args, i64 %nargsf, ptr %names) noinlin
   %has = call i1 @open(ptr %message, ptr %view, i32 0)
   br i1 %has, label %opened, label %raise, !prof !0
 opened:
-  ; PyBUF_WRITABLE
-  %takes = call i1 @open(ptr %target, ptr %target.view, i32 1)
+  ; PyBUF_WRITABLE, PyBUF_FORMAT and PyBUF_ND
+  %takes = call i1 @open(ptr %target, ptr %target.view, i32 13)
   br i1 %takes, label %both, label %refused, !prof !0
 refused:
   call void @close(ptr %message, ptr %view)
@@ -129,7 +129,9 @@ both:
   %unused = icmp sge i64 %epoch, 0
   %unshared = call i1 @registers_are_free(ptr %context)
   %free = and i1 %unused, %unshared
-  %usable = and i1 %apart, %free
+  %plain = call i1 @holds_no_objects(ptr %target, ptr %target.view)
+  %takes.bytes = and i1 %apart, %plain
+  %usable = and i1 %takes.bytes, %free
   br i1 %usable, label %run, label %close, !prof !0
 run:
   call void @enter(ptr %state, i64 %epoch, i64 1)

@@ -110,6 +110,31 @@ any:
   ret i1 %has
 }
 
+; Whether what was exported to be written are bytes and numbers, and no references to objects: their format is as `struct` and numpy have it.
+; A name in it may have the letter, too: the slow path looks more closely.
+define internal i1 @holds_no_objects(ptr %object, ptr %view) alwaysinline {
+entry:
+  %is_array = call i1 @is_array(ptr %object)
+  br i1 %is_array, label %yes, label %any, !prof !1
+any:
+  %format.at = getelementptr i8, ptr %view, i64 40
+  %format = load ptr, ptr %format.at
+  %has.format = icmp ne ptr %format, null
+  br i1 %has.format, label %look, label %yes, !prof !0
+look:
+  %at = phi ptr [ %format, %any ], [ %next, %go.on ]
+  %letter = load i8, ptr %at
+  switch i8 %letter, label %go.on [ i8 0, label %yes
+                                    i8 79, label %no ]
+go.on:
+  %next = getelementptr i8, ptr %at, i64 1
+  br label %look
+yes:
+  ret i1 true
+no:
+  ret i1 false
+}
+
 define internal void @close(ptr %object, ptr %view) alwaysinline {
   %is_array = call i1 @is_array(ptr %object)
   br i1 %is_array, label %array, label %any, !prof !1
