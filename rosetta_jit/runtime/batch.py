@@ -50,11 +50,12 @@ class Batch(WithColumns):
     """
 
     __slots__ = ("_family", "_handed", "_kept", "errors", "lanes")
-    _family: HolderFamily
-    _handed: Handed | None
-    _kept: NDArray[np.int64] | None
-    errors: dict[int, DecodeError]
-    lanes: Lanes
+    if TYPE_CHECKING:  # `help` shows what stands here otherwise
+        _family: HolderFamily
+        _handed: Handed | None
+        _kept: NDArray[np.int64] | None
+        errors: dict[int, DecodeError]
+        lanes: Lanes
 
     def __init__(self, family: HolderFamily, lanes: Lanes) -> None:
         for name, value in zip(self.__slots__, cast("tuple[Any, ...]", (family, None, None, {}, lanes)), strict=True):

@@ -201,6 +201,6 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
 def _come_back(value: Expr, goal: Expr) -> Outcome:
     """What is left of a field where a chain of steps brings it back."""
     found = come_back(value, goal)
-    if found == UNSHOWN and is_of_digits(value, goal):
+    if found is not None and is_of_digits(value, goal):
         return Lost("what no relation takes of it comes back as 0")
     return Lost(IN_SUMS) if found == UNSHOWN and comes_back_rounded(value, goal) else found
