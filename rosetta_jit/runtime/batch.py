@@ -58,8 +58,7 @@ class Batch(WithColumns):
         lanes: Lanes
 
     def __init__(self, family: HolderFamily, lanes: Lanes) -> None:
-        for name, value in zip(self.__slots__, cast("tuple[Any, ...]", (family, None, None, {}, lanes)), strict=True):
-            object.__setattr__(self, name, value)
+        self._family, self._handed, self._kept, self.errors, self.lanes = family, None, None, {}, lanes
 
     @classmethod
     def new(cls, holder_class: type[Holder], count: int) -> Batch:
@@ -395,7 +394,7 @@ def hand_over(batch: Batch) -> None:
 
 def _revived(text: str, manners: Manners, found: list[NDArray[np.uint8]], errors: Any, kept: NDArray[np.int64] | None) -> Batch:
     """Unpickle, or copy."""
-    family = family_of(text, manners)
-    batch = Batch(cast("HolderFamily", family), revived(family.layout, family.tree.initial, family.array_type, found))
+    family = cast("HolderFamily", family_of(text, manners))
+    batch = Batch(family, revived(family.layout, family.tree.initial, family.array_type, found))
     batch.errors, batch._kept = errors, kept  # noqa: SLF001
     return batch
