@@ -377,7 +377,8 @@ def family_in(batch: Batch) -> HolderFamily:
 
 def begin_anew(batch: Batch) -> None:
     """Inside ``with batch.lanes:``, before other messages: forget errors, and take other memory where tables have taken it."""
-    batch.errors, batch._kept = {}, None  # noqa: SLF001
+    object.__setattr__(batch, "errors", {})  # each call of `many` comes here
+    object.__setattr__(batch, "_kept", None)
     if batch._handed is not None:  # noqa: SLF001
         batch._handed.renew(batch.lanes)  # noqa: SLF001
 
@@ -393,7 +394,6 @@ def hand_over(batch: Batch) -> None:
 
 
 def _revived(text: str, manners: Manners, found: list[NDArray[np.uint8]], errors: Any, kept: NDArray[np.int64] | None) -> Batch:
-    """Unpickle, or copy."""
     family = cast("HolderFamily", family_of(text, manners))
     batch = Batch(family, revived(family.layout, family.tree.initial, family.array_type, found))
     batch.errors, batch._kept = errors, kept  # noqa: SLF001

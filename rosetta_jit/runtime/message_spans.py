@@ -112,7 +112,7 @@ def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | 
 def _is_buffer(value: Any) -> bool:
     """Whether a value has bytes; an array of objects has none, but what refers to them."""
     try:
-        return memoryview(value).format != "O"
+        return type(value) is bytes or memoryview(value).format != "O"
     except TypeError:
         return False
 
