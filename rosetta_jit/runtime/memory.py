@@ -47,6 +47,11 @@ def pointer_to(memory: NDArray[np.uint8]) -> int | bytes:
     return address_of(memory) if memory.size and memory.flags.writeable else memory.ctypes.data
 
 
+def has_references(view: memoryview) -> bool:
+    """Whether there are references to Python's objects among what a buffer has, by its format; between colons stand names of fields."""
+    return any("O" in part for part in view.format.split(":")[::2])
+
+
 def aligned_bytes(size: int) -> NDArray[np.uint8]:
     """Bytes that begin at a multiple of `ALIGNMENT`, or of a page, if they are many.
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 
-from rosetta_jit.runtime.memory import address_of
+from rosetta_jit.runtime.memory import address_of, has_references
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | 
 def _is_buffer(value: Any) -> bool:
     """Whether a value has bytes; an array of objects has none, but what refers to them."""
     try:
-        return type(value) is bytes or memoryview(value).format != "O"
+        return type(value) is bytes or not has_references(memoryview(value))
     except TypeError:
         return False
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from rosetta_jit.errors import DecodeError, EncodeError, Kind
 from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, GROW, GROW_LANE, GROW_ROWS, RESULT
+from rosetta_jit.runtime.memory import has_references
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -150,7 +151,7 @@ def writable(buffer: object) -> NDArray[np.uint8]:
     array, view = readable(buffer), memoryview(cast("Any", buffer))
     if not array.flags.writeable and view.readonly:
         raise BufferError(f"{type(buffer).__name__} is read-only")
-    if any("O" in part for part in view.format.split(":")[::2]):  # between colons stand names
+    if has_references(view):
         raise BufferError(f"{type(buffer).__name__} has references to Python objects, which a message would overwrite: give a bytearray")
     return array
 
