@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import unicodedata
-
 TAB_CELLS = 4
 WIDE = frozenset(("W", "F"))
 """East Asian widths of characters that fill two cells: Unicode Standard Annex 11."""
@@ -25,6 +23,8 @@ def cells(text: str) -> int:
 
 
 def _cells(char: str) -> int:
+    import unicodedata  # a library of its own to load, and most texts are ASCII
+
     if unicodedata.combining(char):
         return 0
     return 2 if unicodedata.east_asian_width(char) in WIDE else 1
