@@ -177,6 +177,17 @@ class CacheWarning(UserWarning):
     """The kernel cache is damaged or cannot be used; everything works, but compiles again."""
 
 
+def warn(message: str, category: type[Warning]) -> None:
+    """Warn of what was noticed here, at the line outside this package that led to it."""
+    import warnings
+    from inspect import currentframe
+
+    frame, level = currentframe(), 0
+    while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "rosetta_jit":
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, category, stacklevel=level + 1)
+
+
 class ValuesError(RosettaError, ValueError):
     """Plain values that a holder's type cannot take.
 

@@ -8,6 +8,7 @@ from functools import lru_cache, partial
 from typing import Any
 
 from rosetta_jit.api import cacheable as certainty
+from rosetta_jit.errors import CacheWarning, warn
 from rosetta_jit.kernel.entries import HOST, ON_DEMAND
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.cache.kernels import Cache
@@ -151,8 +152,4 @@ def sites_of(header: Mapping[str, Any], kernel: int) -> run.Sites:
 
 
 def _warn(why: str) -> None:
-    import warnings
-
-    from rosetta_jit.errors import CacheWarning
-
-    warnings.warn(f"a cached kernel could not be loaded and is compiled again: {why}", CacheWarning, stacklevel=4)
+    warn(f"a cached kernel could not be loaded and is compiled again: {why}", CacheWarning)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Unpack, cast
 
@@ -11,7 +10,7 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.diagnostics import Diagnostic, render
-from rosetta_jit.errors import LogError, LogWarning, MappingError
+from rosetta_jit.errors import LogError, LogWarning, MappingError, warn
 from rosetta_jit.logs.base import Block, Connection, Format, Wanted
 from rosetta_jit.logs.channel import Channel
 from rosetta_jit.logs.decoded_parts import OnError
@@ -290,4 +289,4 @@ def format_of(storage: Storage, wanted: str | None = None) -> Format:
 
 
 def _warn(problem: Diagnostic) -> None:
-    warnings.warn(render(problem), LogWarning, stacklevel=4)
+    warn(render(problem), LogWarning)

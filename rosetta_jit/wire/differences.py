@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from rosetta_jit.model.types import Array, Bytes, Int, Schema, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass
-
-if TYPE_CHECKING:
-    from rosetta_jit.wire.other_type import Pairs
+from rosetta_jit.wire.other_type import OCTET, Pairs, is_same_word
 
 
 def differences(wire: Struct, holder: Struct, schema: Schema, pairs: Pairs, *, is_read: bool) -> tuple[str, ...]:
@@ -34,7 +31,9 @@ class _Walk:
             case Array(element), Array(other_element):
                 yield from self.of(element, other_element, f"{here}[]", f"{there}[]")
             case Array(element), Bytes():
-                yield from self.of(element, Int(8, signed=False), f"{here}[]", f"{there}[]")
+                yield from self.of(element, OCTET, f"{here}[]", f"{there}[]")
+            case Int() as one, Int() as other if is_same_word(one, other):
+                pass
             case Int(bits, signed), Int(other_bits, other_signed) if (bits, signed) != (other_bits, other_signed):
                 names = self.turned(f"{'' if signed else 'u'}int{bits}", f"{'' if other_signed else 'u'}int{other_bits}")
                 yield f"`{self.turned(here, there)[0]}`: {names[0]} becomes {names[1]}, and a value that does not fit is refused"

@@ -27,6 +27,19 @@ Pairs = Callable[[Struct, Struct, str], Partners]
 """For a struct of the wire, the holder's, and the path of both: which fields of the holder those of the wire are."""
 
 
+OCTET = Int(8, signed=False, spelling="byte")
+"""An element of `Bytes`."""
+
+
+def is_same_word(one: Type, other: Type) -> bool:
+    """Whether two types have one word for an integer whose sign they read differently, as ROS 1 and 2 for a `byte`: it is the same bits."""
+    match one, other:
+        case Int(bits, _, word), Int(other_bits, _, other_word):
+            return word != "" and (bits, word) == (other_bits, other_word)
+        case _:
+            return False
+
+
 class UnlikeError(Exception):
     """Two types that cannot stand for each other: ``path`` says where, ``why`` what differs."""
 
@@ -120,7 +133,10 @@ class _OtherType:
                 found = self.look(path, wire, holder, shown)
                 if found is None:
                     return Padding(scalar, 0, order)
-                return replace(codec, path=found.path, holder_scalar=self.scalar(found, scalar))
+                there = self.scalar(found, scalar)
+                if is_same_word(self.schema.resolve(found.wire), self.schema.resolve(found.holder)):
+                    return replace(codec, path=found.path, scalar=there or scalar)
+                return replace(codec, path=found.path, holder_scalar=there)
             case Blob(path) | Table(path) | Constant(path):
                 found = self.find(path, wire, holder, shown)
                 if path and type(self.schema.resolve(found.wire)) is not type(self.schema.resolve(found.holder)):
@@ -159,7 +175,7 @@ class _OtherType:
     def elements(self, found: _Found) -> tuple[Type, Type]:
         one, other = self.schema.resolve(found.wire), self.schema.resolve(found.holder)
         if isinstance(other, Bytes):
-            other = Array(Int(8, signed=False), other.length)
+            other = Array(OCTET, other.length)
         if not isinstance(one, Array) or not isinstance(other, Array) or one.length != other.length:
             raise UnlikeError(found.shown, "is an array in one type, and in the other none, or one of another length")
         return one.element, other.element

@@ -44,6 +44,13 @@ def test_an_mcap_file_whose_writer_was_stopped(folder):
     assert [each.code for each in found] == ["log-unfinished"]
 
 
+def test_a_warning_is_of_the_line_that_opens_the_log(folder):
+    path = write_mcap(folder / "stopped.mcap", COUNT, finish=False)
+    with pytest.warns(rj.LogWarning) as found:
+        rj.open(path)
+    assert [each.filename for each in found] == [__file__]
+
+
 @pytest.mark.parametrize("compression", BAGS)
 def test_bag(folder, compression):
     log = rj.open(write_bag(folder / f"{compression}.bag", COUNT, compression))
@@ -254,12 +261,12 @@ def test_a_url(log):
 
 
 def test_an_address_whose_package_is_missing(monkeypatch):
-    import fsspec
+    import fsspec.core
 
     def missing(*_, **__):
         raise ImportError("install aiohttp")
 
-    monkeypatch.setattr(fsspec, "open", missing)
+    monkeypatch.setattr(fsspec.core, "url_to_fs", missing)
     with pytest.raises(LogError, match="cannot be read: install aiohttp"):
         rj.open("https://host/a.mcap")
 

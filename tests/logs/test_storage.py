@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import lzma
+import shutil
 import sys
 from pathlib import Path
 
@@ -50,6 +51,13 @@ def test_an_address_of_fsspec(kind, logs):
     with fsspec.open(f"memory://logs/{kind}", "wb") as file:
         file.write(logs[kind].read_bytes())
     assert read(f"memory://logs/{kind}") == read(logs[kind]) == read(f"file://{logs[kind]}")
+
+
+@pytest.mark.parametrize("kind", ["zip", "tar"])
+def test_a_log_within_an_archive(kind, logs, tmp_path):
+    """Its bytes are compressed once more, and the archive is closed before they are read."""
+    archive = shutil.make_archive(str(tmp_path / "drive"), "zip" if kind == "zip" else "gztar", logs["a.mcap"].parent, "a.mcap")
+    assert read(f"{kind}://a.mcap::{archive}") == read(logs["a.mcap"])
 
 
 def test_a_folder_as_an_address(logs):

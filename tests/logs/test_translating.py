@@ -71,6 +71,26 @@ def test_the_values_are_the_same(bag, tmp_path):
     assert rj.open(tmp_path / "a.mcap")["/tf"].count == 6
 
 
+def test_a_byte_is_the_same_eight_bits(tmp_path):
+    """ROS 1 reads its `byte` with a sign, and ROS 2 without one; an int8 is a number in both."""
+    kinds, path = ONE.types, tmp_path / "bytes.bag"
+    layout = kinds["std_msgs/msg/MultiArrayLayout"](dim=[], data_offset=0)
+    sent = {
+        "/bytes": kinds["std_msgs/msg/ByteMultiArray"](layout, np.array([-1, 0, 127, -128], np.int8)),
+        "/level": kinds["diagnostic_msgs/msg/DiagnosticStatus"](level=-2, name="n", message="m", hardware_id="h", values=[]),
+        "/numbers": kinds["std_msgs/msg/Int8MultiArray"](layout, np.array([-1, 5], np.int8)),
+    }
+    with Writer(path) as writer:
+        for topic, each in sent.items():
+            connection = writer.add_connection(topic, each.__msgtype__, typestore=ONE)
+            writer.write(connection, 1, ONE.serialize_ros1(each, each.__msgtype__))
+    assert main(["convert", str(path), "--to", "ros2", "-o", str(tmp_path / "bytes.mcap")]) == 0
+    log = rj.open(tmp_path / "bytes.mcap")
+    assert bytes(next(iter(log["/bytes"])).data) == b"\xff\x00\x7f\x80"
+    assert log["/level"]["level"].tolist() == [254]
+    assert next(iter(log["/numbers"])).data.tolist() == [-1, 5]
+
+
 def test_what_has_no_successor(bag, tmp_path, capsys):
     """A type that ROS 2 does not have; one that has not all fields; messages that are not of ROS 1."""
     types = get_typestore(Stores.EMPTY)

@@ -120,11 +120,14 @@ def _file(name: str, path: Path | None) -> BinaryIO:
     if name == "-":
         return _spooled(sys.stdin.buffer)
     try:
-        fsspec: Any = import_module("fsspec")
+        addresses, archives = cast("list[Any]", [import_module(each) for each in ("fsspec.core", "fsspec.archive")])
     except ImportError:
         raise LogError((words.needs(name, "fsspec", "logs"),)) from None
     try:
-        return cast("BinaryIO", fsspec.open(name, "rb").open())
+        system, inside = addresses.url_to_fs(name)
+        file = cast("BinaryIO", system.open(inside, "rb"))
+        # what is compressed within an archive cannot be read from its end, and an archive closes its files when it goes
+        return _spooled(file) if isinstance(system, archives.AbstractArchiveFileSystem) else file
     except Exception as error:  # noqa: BLE001 - each kind of address has a package of its own, and their errors have no base
         cause = error.__cause__ if isinstance(error, FileNotFoundError) and not error.strerror else error  # else it is the name alone
         raise OSError(0, str(cause or os.strerror(ENOENT)) or type(cause).__name__) from None

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import ctypes
 import sys
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, partial
 from typing import Any, cast
 
+from rosetta_jit.errors import warn
 from rosetta_jit.runtime.attributes.groups import BEGINNING, END, GROUPS, Group, group_of, part_of, symbols
 from rosetta_jit.runtime.cache.texts import kept, known
 from rosetta_jit.runtime.callable import is_native
@@ -116,7 +116,7 @@ def library() -> Accessors | Library | None:
         image = known(ALL)
         code = native.load(image, SYMBOLS) if image is not None else Accessors() if is_supported() else whole()
     except ForeignCodeError as error:
-        warnings.warn(f"attributes of messages are read in Python, which takes ten times as long: {error}", RuntimeWarning, stacklevel=2)
+        warn(f"attributes of messages are read in Python, which takes ten times as long: {error}", RuntimeWarning)
         return None
     ctypes.pythonapi.Py_IncRef(ctypes.py_object(code))  # objects that end when Python does still call the code
     return code

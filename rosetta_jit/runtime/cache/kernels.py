@@ -12,13 +12,12 @@ from __future__ import annotations
 import errno
 import os
 import sys
-import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import lru_cache
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.errors import CacheWarning
+from rosetta_jit.errors import CacheWarning, warn
 from rosetta_jit.runtime.cache.sealed import DamagedError, Entry, seal, unseal
 from rosetta_jit.runtime.cache.stores import FolderStore, MemoryStore, Store, Stored, UntrustedError
 from rosetta_jit.startup.dataclass import dataclass
@@ -237,7 +236,7 @@ class Cache:
         from rosetta_jit.diagnostics import render
 
         self._warned.add(subject)
-        warnings.warn(render(diagnostic), CacheWarning, stacklevel=5)
+        warn(render(diagnostic), CacheWarning)
 
 
 @lru_cache(maxsize=4)
