@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import islice
 
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.walk import every_statement, parts_of, statements
@@ -29,7 +30,7 @@ VAST = 12_000
 
 def is_large(kernel: ir.Kernel) -> bool:
     """Whether a kernel is so large that it is not worth while to improve it again and again."""
-    return sum(1 for body in kernel.bodies for _ in statements(body)) > LARGE
+    return _are_more(every_statement(kernel), LARGE)
 
 
 def are_vast(kernels: Iterable[ir.Kernel]) -> bool:
@@ -54,7 +55,7 @@ def has_loops_for_vectors(kernel: ir.Kernel) -> bool:
 
 def is_moderate(kernel: ir.Kernel) -> bool:
     """Whether a kernel is of a size for which LLVM can be asked for all that it can do."""
-    return sum(1 for _ in _usual_statements(kernel)) <= MODERATE
+    return not _are_more(_usual_statements(kernel), MODERATE)
 
 
 def _only_stores(block: nodes.Block) -> bool:
@@ -78,15 +79,20 @@ def _usual_statements(kernel: ir.Kernel) -> Iterator[nodes.Stmt]:
 
 def is_short_and_straight(kernel: ir.Kernel) -> bool:
     """Whether a kernel, in the first of its bodies, takes no longer than a call of it by much."""
-    every = [each for each, _ in statements(kernel.bodies[0])]
-    if len(every) > SHORT and not (len(every) <= SHORT_IN_VECTORS and are_straight_and_compute((kernel,))):
+    first = kernel.bodies[0]
+    if _are_more(statements(first), SHORT) and (_are_more(statements(first), SHORT_IN_VECTORS) or not are_straight_and_compute((kernel,))):
         return False
-    return not any(isinstance(each, nodes.For | nodes.While) for each in every)
+    return not any(isinstance(each, nodes.For | nodes.While) for each, _ in statements(first))
 
 
 def is_short(kernel: ir.Kernel) -> bool:
     """Whether the first of a kernel's bodies has so few statements that it can be compiled once more."""
-    return sum(1 for _ in statements(kernel.bodies[0])) <= SHORT_IN_VECTORS
+    return not _are_more(statements(kernel.bodies[0]), SHORT_IN_VECTORS)
+
+
+def _are_more(found: Iterable[object], most: int) -> bool:
+    """Whether there are more than so many; no more are looked at than say so."""
+    return next(islice(found, most, None), None) is not None
 
 
 def calls_to_host(kernels: Iterable[ir.Kernel]) -> list[nodes.HostCall]:
