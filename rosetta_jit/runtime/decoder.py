@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from threading import get_ident, local
-from typing import TYPE_CHECKING, Any, TypeVar, cast, overload
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 from weakref import WeakKeyDictionary
 
 from rosetta_jit.kernel.state import CLEAN, NUMBER, VALID
@@ -20,16 +20,20 @@ from rosetta_jit.runtime.message_spans import MessageSpans, laid_out, source_of
 from rosetta_jit.runtime.program import Loaded, Program, is_foreign
 from rosetta_jit.runtime.row_counts import roomier
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
     import numpy as np
     from _typeshed import ReadableBuffer as Buffer
     from numpy.typing import NDArray
 
+    from rosetta_jit.runtime import filling as batches
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.filling import Filling, OnError
     from rosetta_jit.runtime.holder.objects.giving import Givers
     from rosetta_jit.runtime.on_demand import OnDemand
+else:
+    (batches,) = late("rosetta_jit.runtime", "filling")
 
 _Object = TypeVar("_Object")
 
@@ -168,7 +172,7 @@ class DecoderBase(Program):
         InUse
             Another thread is filling, changing or encoding the batch.
         """
-        source, spans = laid_out(cast("Any", messages), offsets)
+        source, spans = laid_out(messages, offsets)
         data = run.readable(source)
         filling = self._filling(len(spans), into, on_error)
         lanes = filling.batch.lanes
@@ -200,9 +204,7 @@ class DecoderBase(Program):
             raise ValueError(f'on_error is "raise", "skip" or "mask", not {on_error!r}')
         batch = self._batch(count) if into is None else into
         self._lanes_of(batch)
-        from rosetta_jit.runtime.filling import Filling
-
-        return Filling(self._loaded, batch, on_error, count, self._compiled_many, self._made_for)
+        return batches.Filling(self._loaded, batch, on_error, count, self._compiled_many, self._made_for)
 
     def _fill(self, filling: Filling, data: NDArray[np.uint8], spans: MessageSpans, count: int) -> None:
         """One step, inside ``with lanes:``. Message ``i`` of all steps lies at place ``i``; there are ``count`` behind this step."""

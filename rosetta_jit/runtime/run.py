@@ -138,9 +138,9 @@ def encoding() -> Generator[None]:
         raise EncodeError("count", "", NO_MEMORY) from error
 
 
-def readable(message: object) -> NDArray[np.uint8]:
+def readable(message: Any) -> NDArray[np.uint8]:
     """The bytes of a message: TypeError if it has none, BufferError if they do not lie together."""
-    view = memoryview(cast("Any", message))
+    view = memoryview(message)
     if not view.c_contiguous:
         raise BufferError("the message's bytes do not lie one after another")
     return np.frombuffer(view, np.uint8) if view.nbytes else np.empty(0, np.uint8)
