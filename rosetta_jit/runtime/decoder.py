@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from _thread import get_ident
 from collections.abc import Iterable, Mapping
-from threading import get_ident, local
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 from weakref import WeakKeyDictionary
 
@@ -315,6 +315,8 @@ class DecoderBase(Program):
 
     def _holder_of_thread(self) -> Holder:
         """The holder of this thread: the decoder's own, or one that stands for it."""
+        from threading import local
+
         holders = self._owners.setdefault("others", local())
         if not hasattr(holders, "own"):
             holders.own = self.new()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from threading import RLock
+from _thread import RLock
 from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:

@@ -11,7 +11,6 @@ import os
 import sys
 from collections.abc import Mapping
 from functools import cache
-from importlib.util import find_spec
 
 from rosetta_jit.runtime.code.processor import processor
 from rosetta_jit.startup.sha import sha256
@@ -72,7 +71,8 @@ def _package_digest() -> str:
 @cache
 def numba_version() -> str:
     """The name of numba's metadata folder, because neither numba nor importlib.metadata may be imported at a warm start: both are slow."""
-    spec = find_spec("numba")
+    found = (finder.find_spec("numba", None) for finder in sys.meta_path)  # `importlib.util` would have to be imported
+    spec = next(filter(None, found), None)
     if spec is None or spec.origin is None:
         return ""
     beside = os.listdir(os.path.dirname(os.path.dirname(spec.origin)))
