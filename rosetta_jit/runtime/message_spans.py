@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 
-from rosetta_jit.runtime.memory import address_of, has_references
+from rosetta_jit.runtime.memory import address_of, has_references, no_message
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -93,6 +93,8 @@ def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | 
     if offsets is not None:
         if is_buffer:
             return source_of(messages), MessageSpans.of(offsets)
+        if _has_references(messages):
+            raise no_message(messages)
         raise TypeError(
             f"offsets are places in one buffer, and not in a {type(messages).__name__}; the batch that is to be filled is `into=…`"
         )
@@ -102,17 +104,32 @@ def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | 
         raise TypeError(f"a list of messages is needed, or a buffer and offsets, not {type(messages).__name__}")
     pieces = list(cast("Iterable[Any]", messages))
     try:
-        sizes = [len(each) if type(each) is bytes else memoryview(each).nbytes for each in pieces]
+        sizes = [len(each) if type(each) is bytes else _size_of(each) for each in pieces]
     except TypeError:
         number, strange = next((number, each) for number, each in enumerate(pieces) if not _is_buffer(each))
         raise TypeError(f"message {number} is no bytes-like object, but of the type {type(strange).__name__}") from None
     return b"".join(pieces), MessageSpans.of(np.cumsum([0, *sizes], dtype=np.int64))
 
 
+def _size_of(message: Any) -> int:
+    view = message if type(message) is memoryview else memoryview(message)
+    if has_references(view):
+        raise no_message(message)
+    return view.nbytes
+
+
 def _is_buffer(value: Any) -> bool:
     """Whether a value has bytes; an array of objects has none, but what refers to them."""
     try:
         return type(value) is bytes or not has_references(memoryview(value))
+    except TypeError:
+        return False
+
+
+def _has_references(value: Any) -> bool:
+    """Whether a value has a buffer, and what is in it are references to objects."""
+    try:
+        return has_references(memoryview(value))
     except TypeError:
         return False
 
