@@ -86,6 +86,8 @@ def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | 
     ------
     TypeError
         There are no offsets, and the messages are one buffer; there are, and they are several; or one of them has no bytes.
+    BufferError
+        One of them is an array of references to objects.
     ValueError
         The offsets are of another type or shape.
     """
@@ -93,8 +95,6 @@ def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | 
     if offsets is not None:
         if is_buffer:
             return source_of(messages), MessageSpans.of(offsets)
-        if _has_references(messages):
-            raise no_message(messages)
         raise TypeError(
             f"offsets are places in one buffer, and not in a {type(messages).__name__}; the batch that is to be filled is `into=…`"
         )
@@ -122,14 +122,6 @@ def _is_buffer(value: Any) -> bool:
     """Whether a value has bytes; an array of objects has none, but what refers to them."""
     try:
         return type(value) is bytes or not has_references(memoryview(value))
-    except TypeError:
-        return False
-
-
-def _has_references(value: Any) -> bool:
-    """Whether a value has a buffer, and what is in it are references to objects."""
-    try:
-        return has_references(memoryview(value))
     except TypeError:
         return False
 
