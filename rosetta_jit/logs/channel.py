@@ -47,6 +47,7 @@ class Channel:
     def __init__(self, log: LogFile, connections: tuple[Connection, ...], target: str | None, options: Options) -> None:
         self._log, self._target, self._options = log, target, options
         self.connections = connections
+        self._spare = list["Batch"]()
 
     @property
     def topic(self) -> str:
@@ -128,6 +129,18 @@ class Channel:
         self.decoder.reset()
         blocks = self._log.blocks_ahead(self._wanted(start, end, pieces))
         yield from Collector(self.decoder, on_error, expected=self.count).parts(blocks)
+
+    def _parts_of_tables(self, wanted: Wanted, on_error: OnError) -> Iterator[Part]:
+        """The same for who keeps only tables. The batch is kept for the next time: fresh memory costs more than filling it."""
+        self.decoder.reset()
+        try:
+            batch = self._spare.pop()
+        except IndexError:  # there was none, or another thread has it
+            batch = None
+        for part in Collector(self.decoder, on_error, expected=self.count, batch=batch).parts(self._log.blocks_ahead(wanted)):
+            batch = part.batch
+            yield part
+        self._spare[:] = () if batch is None else (batch,)
 
     def decoded(self, block: Block, rows: Rows, on_error: OnError = "raise") -> Batch:
         """Messages of a block, in a batch of their own; an error says of which topic and time the message is."""
@@ -219,7 +232,7 @@ class Channel:
         from rosetta_jit.logs.tables import table_of
 
         names, chosen, is_any = None if columns is None else list(columns), tuple(clocks), False
-        for part in self.parts(start=start, end=end, pieces=pieces, on_error=on_error):
+        for part in self._parts_of_tables(self._wanted(start, end, pieces), on_error):
             yield part, table_of(part, names, chosen, form)
             is_any = True
         if not is_any:

@@ -87,15 +87,24 @@ class Collector:
         The most bytes that the messages of a part have together; if they are small, `BYTES`.
     expected
         How many messages there are, if that is known: memory is taken for as many as are going to be in a part.
+    batch
+        A batch of the decoder's that nobody uses any more: its memory is taken for the parts.
     """
 
     def __init__(
-        self, decoder: Decoder, on_error: OnError, *, first: int = 0, size: int | None = None, expected: int | None = None
+        self,
+        decoder: Decoder,
+        on_error: OnError,
+        *,
+        first: int = 0,
+        size: int | None = None,
+        expected: int | None = None,
+        batch: Batch | None = None,
     ) -> None:
         self._decoder, self._first, self._expected = decoder, first, expected or 0
         self._size = LARGE_BYTES if size is None else size
         self._on_error: OnError = on_error
-        self._batch: Batch | None = None
+        self._batch = batch
         self._filling: Filling | None = None
         self._times = np.empty((2, MESSAGES), np.int64)
         self._bytes = 0

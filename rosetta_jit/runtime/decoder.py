@@ -48,7 +48,7 @@ class DecoderBase(Program):
 
     if TYPE_CHECKING:  # the entry does this
 
-        def __call__(self, message: Buffer, holder: Any = None) -> Any:
+        def __call__(self, message: Buffer, holder: Any = None, /) -> Any:
             """Decode into a holder, by default the decoder's own; returns it."""
             ...
 
@@ -57,7 +57,7 @@ class DecoderBase(Program):
 
     if TYPE_CHECKING:  # for people and type checkers it is a method
 
-        def into(self, message: Buffer, holder: Any) -> Any: ...
+        def into(self, message: Buffer, holder: Any, /) -> Any: ...
 
     else:
 

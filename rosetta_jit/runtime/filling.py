@@ -141,6 +141,9 @@ def _make_rows(lanes: Lanes, count: int) -> None:
 MOST_GUESSED = 16
 """How many times as large a lane may become by a guess: messages behind a large one may be small."""
 
+SPARE = 32
+"""A guess is larger by one of so many parts: a lane that lacks little at its end would be copied to one of twice the size."""
+
 
 def _grow_for_all(lanes: Lanes, done: int, count: int) -> None:
     """Guess from the messages so far what all will take, so that a lane does not move often."""
@@ -149,7 +152,8 @@ def _grow_for_all(lanes: Lanes, done: int, count: int) -> None:
         lanes.grow(lane, rows)
         return
     used, capacity = lanes.words[lane_word(lane, USED)], lanes.capacity(lane)
-    guessed = (used * count) // (done + 1) + rows - capacity
+    wanted = (used * count) // max(done, 1) + rows
+    guessed = wanted + wanted // SPARE - capacity
     lanes.grow(lane, max(rows, min(guessed, MOST_GUESSED * capacity)))
 
 

@@ -91,6 +91,9 @@ MAX_PAGE_FIELDS = 200
 MAX_PAGE_COLUMNS = 20
 """columns of a batch on a page"""
 
+MAX_PAGE_CELL = 240
+"""characters of a field of a batch on a page"""
+
 MAX_PAGE_PIXELS = 640
 """pixels of the longer side of an image on a page: larger ones are thinned out"""
 

@@ -49,7 +49,12 @@ def pointer_to(memory: NDArray[np.uint8]) -> int | bytes:
 
 def has_references(view: memoryview) -> bool:
     """Whether there are references to Python's objects among what a buffer has, by its format; between colons stand names of fields."""
-    return any("O" in part for part in view.format.split(":")[::2])
+    return view.itemsize != 1 and any("O" in part for part in view.format.split(":")[::2])
+
+
+def no_message(value: object) -> BufferError:
+    """The error of reading references to objects as a message: their bytes are addresses."""
+    return BufferError(f"{type(value).__name__} has references to Python objects, and no bytes of a message: give bytes, or numbers")
 
 
 def aligned_bytes(size: int) -> NDArray[np.uint8]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 
-from rosetta_jit.runtime.memory import address_of, has_references
+from rosetta_jit.runtime.memory import address_of, has_references, no_message
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -86,6 +86,8 @@ def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | 
     ------
     TypeError
         There are no offsets, and the messages are one buffer; there are, and they are several; or one of them has no bytes.
+    BufferError
+        One of them is an array of references to objects.
     ValueError
         The offsets are of another type or shape.
     """
@@ -102,11 +104,18 @@ def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | 
         raise TypeError(f"a list of messages is needed, or a buffer and offsets, not {type(messages).__name__}")
     pieces = list(cast("Iterable[Any]", messages))
     try:
-        sizes = [len(each) if type(each) is bytes else memoryview(each).nbytes for each in pieces]
+        sizes = [len(each) if type(each) is bytes else _size_of(each) for each in pieces]
     except TypeError:
         number, strange = next((number, each) for number, each in enumerate(pieces) if not _is_buffer(each))
         raise TypeError(f"message {number} is no bytes-like object, but of the type {type(strange).__name__}") from None
     return b"".join(pieces), MessageSpans.of(np.cumsum([0, *sizes], dtype=np.int64))
+
+
+def _size_of(message: Any) -> int:
+    view = message if type(message) is memoryview else memoryview(message)
+    if has_references(view):
+        raise no_message(message)
+    return view.nbytes
 
 
 def _is_buffer(value: Any) -> bool:

@@ -15,7 +15,7 @@ import numpy as np
 
 from rosetta_jit.errors import DecodeError, EncodeError, Kind
 from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, GROW, GROW_LANE, GROW_ROWS, RESULT
-from rosetta_jit.runtime.memory import has_references
+from rosetta_jit.runtime.memory import has_references, no_message
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -139,8 +139,10 @@ def encoding() -> Generator[None]:
 
 
 def readable(message: Any) -> NDArray[np.uint8]:
-    """The bytes of a message: TypeError if it has none, BufferError if they do not lie together."""
+    """The bytes of a message: TypeError if it has none, BufferError if they do not lie together, or are references to objects."""
     view = memoryview(message)
+    if view.itemsize != 1 and has_references(view):
+        raise no_message(message.obj if isinstance(message, memoryview) else message)
     if not view.c_contiguous:
         raise BufferError("the message's bytes do not lie one after another")
     return np.frombuffer(view, np.uint8) if view.nbytes else np.empty(0, np.uint8)
@@ -148,11 +150,12 @@ def readable(message: Any) -> NDArray[np.uint8]:
 
 def writable(buffer: object) -> NDArray[np.uint8]:
     """The bytes of an output: TypeError if it has none, BufferError if they cannot be written, or are references to objects."""
-    array, view = readable(buffer), memoryview(cast("Any", buffer))
-    if not array.flags.writeable and view.readonly:
-        raise BufferError(f"{type(buffer).__name__} is read-only")
+    view = memoryview(cast("Any", buffer))
     if has_references(view):
         raise BufferError(f"{type(buffer).__name__} has references to Python objects, which a message would overwrite: give a bytearray")
+    array = readable(buffer)
+    if not array.flags.writeable and view.readonly:
+        raise BufferError(f"{type(buffer).__name__} is read-only")
     return array
 
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.runtime.batch import hand_over
+from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.memory_for_arrow import SPARE
 
 SCHEMA = b"string name\nuint8[] data\nfloat64[4] fixed\nuint16[] numbers"
@@ -73,8 +76,8 @@ def test_memory_is_taken(tmp_path):
 def test_parts_of_other_sizes(tmp_path):
     """Parts that outgrow the memory, that have nothing, and that would leave most of what they take empty."""
     sizes = [size for size in (200, 200, 5000, 10, 0, 4000, 4900) for _ in range(IN_A_PART)]
-    topic, taken = channel(tmp_path / "x.mcap", sizes), []
-    assert topic.to_arrow(clocks=()).to_pylist() == rows_of(sizes)
+    assert channel(tmp_path / "x.mcap", sizes).to_arrow(clocks=()).to_pylist() == rows_of(sizes)
+    topic, taken = rj.open(tmp_path / "x.mcap")["/x"], []
     for number, (part, table) in enumerate(topic.tables_of_parts(clocks=())):
         first = number * IN_A_PART
         assert table.to_pylist() == rows_of(sizes[first : first + IN_A_PART], first)
@@ -105,3 +108,53 @@ def test_a_table_outlives_the_next_filling():
         each.data = np.full(100, 9, np.uint8)
     assert [table["data"].to_pylist() for table in tables] == [[bytes([number]) * 100] * 2 for number in (1, 2, 3)]
     assert batch.lanes.buffers[batch._family.tree.root.entries["data"].node.lane].size <= 200 + 200 // SPARE + 8
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_memory_of_a_batch_serves_the_next_reading(tmp_path, monkeypatch):
+    """Tables that were read before keep their values, whatever is read then, and whoever keeps a part has its batch for himself."""
+    sizes = [50 + number for number in range(20)]
+    log = channel(tmp_path / "a.mcap", sizes)
+    first = log.to_arrow(clocks=())
+    copied = first.to_pylist()
+    later = log.to_arrow(clocks=(), start=5)
+    assert later.to_pylist() == rows_of(sizes[5:], 5)
+    grown = []
+    grow = Lanes.grow
+    monkeypatch.setattr(Lanes, "grow", lambda lanes, lane, rows: (grown.append(lane), grow(lanes, lane, rows)))
+    again = log.to_arrow(clocks=())
+    assert not grown
+    assert first.to_pylist() == copied == again.to_pylist() == rows_of(sizes)
+    assert later.to_pylist() == rows_of(sizes[5:], 5)
+    (*_, kept) = log.parts()
+    data = kept.batch.to_arrow().to_pylist()
+    log.to_arrow()
+    assert kept.batch.to_arrow().to_pylist() == data
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_readings_at_the_same_time_have_batches_of_their_own(tmp_path):
+    sizes = [50] * 40
+    log = channel(tmp_path / "a.mcap", sizes)
+    log.to_arrow()
+    one, other = log.tables(clocks=()), log.tables(clocks=())
+    found = [row for pair in zip(one, other, strict=True) for table in pair for row in table.to_pylist()]
+    expected = rows_of(sizes)
+    assert sorted(found, key=lambda row: row["name"]) == [each for each in expected for _ in range(2)]
+    tables, threads = [], [threading.Thread(target=lambda: tables.append(log.to_arrow(clocks=()).to_pylist())) for _ in range(8)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert tables == [expected] * 8
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_a_reading_that_failed_leaves_nothing(tmp_path):
+    sizes = [50] * 20
+    log = channel(tmp_path / "a.mcap", sizes, lambda number: number == 12)
+    for _ in range(2):
+        with pytest.raises(rj.DecodeError, match=r"\[12\]"):
+            log.to_arrow()
+    masked = [log.to_arrow(clocks=(), on_error="skip").to_pylist() for _ in range(3)]
+    assert masked == [rows_of(sizes[:12]) + rows_of(sizes[13:], 13)] * 3

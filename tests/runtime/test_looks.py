@@ -107,6 +107,23 @@ def test_texts_are_escaped_in_notebooks(decoder):
         assert "&lt;script&gt;" in html
 
 
+def test_a_batch_in_a_notebook_shows_names_of_enums_and_the_begin_of_long_fields():
+    schema = {
+        "c.proto": """syntax = "proto3"; package c; enum Color { RED = 0; BLUE = 7; }
+            message M { Color color = 1; optional int32 n = 2; oneof one { int32 a = 3; string b = 4; } repeated string texts = 5; }"""
+    }
+    decoder = rj.Decoder.of("c.M", imports=["c.proto"], schema=schema, backend="python")
+    message = decoder.new()
+    message.color, message.b = 7, "b"
+    message.texts.extend(["x" * 100] * 4)
+    html = decoder.many([message.SerializeToString()])._repr_html_()
+    color, n, a, b, texts = re.findall(r"<td[^>]*>([^<]*)</td>", html)
+    assert (color, n, a, b) == ("BLUE", "", "", "&#x27;b&#x27;")
+    assert texts.endswith("xx…")
+    assert len(texts) < 300
+    assert '<table style="margin:0">' in html
+
+
 def test_arrays_are_summed_up_in_notebooks():
     scan = rj.Decoder.of("sensor_msgs/LaserScan", encoding="ros1", backend="python").new()
     scan.ranges, scan.intensities = np.linspace(0, 10, 1080), np.full(9, np.nan)

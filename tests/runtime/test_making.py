@@ -221,3 +221,26 @@ def test_threads_make_and_end_holders(decoder):
     for each in threads:
         each.join()
     assert not wrong
+
+
+def test_an_array_of_texts_is_shown_without_what_other_code_asks_of_lanes(joint_state):
+    """To make that takes as long as to make what shows the array."""
+    made = joint_state()
+    names = made.name
+    for slot in ("memory", "words", "lock"):
+        with pytest.raises(AttributeError):
+            object.__getattribute__(made.lanes_, slot)
+    names.extend(["a", "bc"])
+    assert list(made.name) == ["a", "bc"]
+
+
+def test_arrays_and_messages_of_a_holder_that_failed_are_refused(decoder, joint_state):
+    made = joint_state()
+    names, header = made.name, made.header
+    with pytest.raises(rj.DecodeError):
+        decoder(b"\0\1\0\0", made)
+    for read in (lambda: made.name, lambda: names[0], lambda: header.frame_id):
+        with pytest.raises(rj.InvalidHolder, match="last decode into this holder failed"):
+            read()
+    made.clear()
+    assert (list(made.name), list(names), header.frame_id) == ([], [], "")

@@ -20,9 +20,9 @@ buffer:
   %has = icmp ne ptr %source, null
   br i1 %has, label %open, label %raise, !prof !0
 open:
-  %got = call i32 @PyObject_GetBuffer(ptr %source, ptr %view, i32 0)
-  %flat = icmp eq i32 %got, 0
-  br i1 %flat, label %viewed, label %drop, !prof !0
+  %got = call i32 @open_message(ptr %source, ptr %view)
+  switch i32 %got, label %drop [ i32 1, label %viewed
+                                 i32 0, label %abandon ], !prof !2
 viewed:
   %start = load ptr, ptr %view
   %end.at = getelementptr i8, ptr %view, i64 16

@@ -31,8 +31,9 @@ bytes:
   %data = getelementptr i8, ptr %message.object, i64 32
   br label %decode
 buffer:
-  %has = call i1 @open(ptr %message.object, ptr %view, i32 0)
-  br i1 %has, label %viewed, label %raise, !prof !0
+  %has = call i32 @open_message(ptr %message.object, ptr %view)
+  switch i32 %has, label %raise [ i32 1, label %viewed
+                                  i32 0, label %slow ], !prof !2
 viewed:
   %view.data = load ptr, ptr %view
   %view.size.at = getelementptr i8, ptr %view, i64 16

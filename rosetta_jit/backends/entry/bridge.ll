@@ -22,8 +22,9 @@ bytes:
   %bytes.data = getelementptr i8, ptr %message, i64 32
   br label %check
 buffer:
-  %has = call i1 @open(ptr %message, ptr %view, i32 0)
-  br i1 %has, label %viewed, label %raise, !prof !0
+  %has = call i32 @open_message(ptr %message, ptr %view)
+  switch i32 %has, label %raise [ i32 1, label %viewed
+                                  i32 0, label %slow ], !prof !2
 viewed:
   %view.data = load ptr, ptr %view
   %view.size.at = getelementptr i8, ptr %view, i64 16
@@ -103,8 +104,9 @@ define internal ptr @into(ptr %self, ptr %args, i64 %nargsf, ptr %names) noinlin
   %message = load ptr, ptr %args
   %target.at = getelementptr ptr, ptr %args, i64 1
   %target = load ptr, ptr %target.at
-  %has = call i1 @open(ptr %message, ptr %view, i32 0)
-  br i1 %has, label %opened, label %raise, !prof !0
+  %has = call i32 @open_message(ptr %message, ptr %view)
+  switch i32 %has, label %raise [ i32 1, label %opened
+                                  i32 0, label %slow ], !prof !2
 opened:
   ; PyBUF_WRITABLE, PyBUF_FORMAT and PyBUF_ND
   %takes = call i1 @open(ptr %target, ptr %target.view, i32 13)

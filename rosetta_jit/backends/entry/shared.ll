@@ -11,7 +11,7 @@
 ; the state (`kernel.state.RESULT`) if the kernel has failed, and raises, or makes room and runs the kernel again.
 ;
 ; Offsets into CPython's objects, the same from 3.11 to 3.14 (Include/object.h, cpython/bytesobject.h, cpython/bytearrayobject.h, pybuffer.h).
-; Any object: type 8. bytes: size 16, data 32. list: items 24. bytearray: size 16, data 40, how often its buffer is exported 48. Py_buffer: buf 0, len 16, 80
+; Any object: type 8. bytes: size 16, data 32. list: items 24. bytearray: size 16, data 40, how often its buffer is exported 48. Py_buffer: buf 0, len 16, itemsize 24, 80
 ; bytes in all. Ours (runtime/callable.py): of a callable the context 72, of a holder its state 16.
 
 @PyBytes_Type = external global i8
@@ -110,7 +110,48 @@ any:
   ret i1 %has
 }
 
-; Whether what was exported to be written are bytes and numbers, and no references to objects: their format is as `struct` and numpy have it.
+; Export the buffer of a message: 1; 0 where references to objects are in it, which the slow path refuses; -1 if an error is set. Elements of one byte
+; are no references.
+define internal i32 @open_message(ptr %object, ptr %view) alwaysinline {
+  %has = call i1 @open(ptr %object, ptr %view, i32 0)
+  br i1 %has, label %opened, label %raise, !prof !0
+opened:
+  %is_array = call i1 @is_array(ptr %object)
+  br i1 %is_array, label %good, label %measure, !prof !1
+measure:
+  %element.at = getelementptr i8, ptr %view, i64 24
+  %element.size = load i64, ptr %element.at
+  %is.byte = icmp eq i64 %element.size, 1
+  br i1 %is.byte, label %good, label %look, !prof !0
+look:
+  %found = call i32 @open_with_format(ptr %object, ptr %view)
+  ret i32 %found
+good:
+  ret i32 1
+raise:
+  ret i32 -1
+}
+
+; The same of a view that has elements of more bytes. It is exported again with its format, which numpy puts together whenever it is asked.
+define internal i32 @open_with_format(ptr %object, ptr %view) noinline cold {
+  call void @PyBuffer_Release(ptr %view)
+  ; PyBUF_FORMAT and PyBUF_ND
+  %got = call i32 @PyObject_GetBuffer(ptr %object, ptr %view, i32 12)
+  %has = icmp eq i32 %got, 0
+  br i1 %has, label %look, label %raise
+look:
+  %plain = call i1 @holds_no_objects(ptr %object, ptr %view)
+  br i1 %plain, label %good, label %refuse
+refuse:
+  call void @PyBuffer_Release(ptr %view)
+  ret i32 0
+good:
+  ret i32 1
+raise:
+  ret i32 -1
+}
+
+; Whether what was exported are bytes and numbers, and no references to objects: their format is as `struct` and numpy have it.
 ; A name in it may have the letter, too: the slow path looks more closely.
 define internal i1 @holds_no_objects(ptr %object, ptr %view) alwaysinline {
 entry:
@@ -208,3 +249,4 @@ define internal void @note(i64 %result, ptr %state) alwaysinline {
 
 !0 = !{!"branch_weights", i32 1048576, i32 1}
 !1 = !{!"branch_weights", i32 8, i32 1}
+!2 = !{!"branch_weights", i32 1, i32 1048576, i32 1}

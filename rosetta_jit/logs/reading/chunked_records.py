@@ -106,6 +106,7 @@ class Records:
     def __init__(self, storage: Storage, grammar: Grammar, tell: Callable[[Diagnostic], None], start: int, *, check: bool) -> None:
         self.start = start
         self._storage, self._grammar, self._tell, self._check = storage, grammar, tell, check
+        self._scratch = Scratch()
 
     def blocks(self, segments: Sequence[Chunk | Region], wanted: Wanted, end: int) -> Iterator[Block]:
         """The messages of segments, which lie in order; the log's records end at ``end``.
@@ -113,7 +114,12 @@ class Records:
         A segment's own are those of the records that begin between it and the next. Where the index lies, they are looked for from the
         last chunk on that it told truly; so they are the same whether segments are read together or one by one.
         """
-        scratch = Scratch()
+        try:
+            yield from self._blocks(segments, wanted, end, self._scratch)
+        finally:
+            self._scratch.settle()
+
+    def _blocks(self, segments: Sequence[Chunk | Region], wanted: Wanted, end: int, scratch: Scratch) -> Iterator[Block]:
         chosen = range(len(segments)) if wanted.pieces is None else range(len(segments))[wanted.pieces.start : wanted.pieces.stop]
         numbers = (number for number in chosen if segments[number].piece.has(wanted))
         found = (self._found(number, segments[number], scratch) for number in numbers)

@@ -38,12 +38,23 @@ LEAST_OF_ZSTD, MOST_OF_ZSTD = 4, 128 << 10
 """Bytes that a block of zstd takes at least, and those that it stands for at most: RFC 8878, sections 3.1.1.2.2 and 3.1.1.2.3."""
 
 
+KEPT_BYTES = 16 << 20
+"""The most memory that is kept from one reading of a log to the next."""
+
+
 class Scratch:
     """Memory that is used for one chunk after another: fresh memory would take as long as reading into it. Threads may share it."""
 
     def __init__(self) -> None:
         self._contents, self._records = list["Bytes"](), list["Bytes"]()
         self._lock, self._of_thread = Lock(), local()
+
+    def settle(self) -> None:
+        """Keep some of the memory for the next reading."""
+        with self._lock:
+            for memory in (self._contents, self._records):
+                while sum(each.size for each in memory) > KEPT_BYTES // 2:
+                    del memory[-1]
 
     def zstd(self, zstandard: Any) -> Any:
         """What decompresses one frame after another in this thread: to make it takes as long as to decompress some kilobytes."""

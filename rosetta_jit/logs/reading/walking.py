@@ -78,8 +78,9 @@ class Rows:
         """Which of them are of some channels: shape (n,)."""
         if len(channels) > FEW:
             return np.isin(self.channels, list(channels))
-        found = np.zeros(len(self), np.bool_)
-        for number in channels:
+        first, *others = channels or (-1,)
+        found = self.channels == first
+        for number in others:
             found |= self.channels == number
         return found
 

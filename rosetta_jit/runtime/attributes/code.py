@@ -17,7 +17,7 @@ from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.allowed import ForeignCodeError
 from rosetta_jit.runtime.code.lazy import Stubs, is_supported, stubs_text
 from rosetta_jit.runtime.code.native import Library
-from rosetta_jit.runtime.type_specs import function_of, size_with_weak_list, weak_list_offset
+from rosetta_jit.runtime.type_specs import function_of, read_word, size_with_weak_list, weak_list_offset
 
 FILES = (
     *("shared/message.ll", "shared/boxes.ll"),
@@ -40,10 +40,29 @@ ALL = "all accessors"
 HEAP_TYPE_BYTES: int = cast("Any", type).__basicsize__
 """The size of a class that a class statement makes, in bytes. Behind it lies what a class of its own class has besides."""
 
+ASCII_FLAGS = 0x60
+"""The flags `compact` and `ascii` of a str (Include/cpython/unicodeobject.h): its characters are bytes that lie behind its head."""
+
+ASCII_BYTES = sys.getsizeof("a") - 2
+"""The size of that head."""
+
 MESSAGE_SLOTS_END, LANES_SLOTS_END = 104, 152
 """Where in a message (`holder.message.Message`) and in lanes (`runtime.lanes.Lanes`) the slots end that all of them have."""
 
+
+def _has_ascii_flags() -> bool:
+    """Whether texts of this Python are as that header of CPython 3.11 to 3.13 has them."""
+    if not is_native():
+        return False
+    plain, others = ("", "a", "ab" * 9, str(12345)), ("\x80", "\xe9" * 9, "\u6f22", "a\U0001f680")
+    flags = [read_word(id(each) + 32) & 0xFFFFFFFF & ASCII_FLAGS for each in (*plain, *others)]
+    return all(each == ASCII_FLAGS for each in flags[: len(plain)]) and ASCII_FLAGS not in flags[len(plain) :]
+
+
 OFFSETS = {
+    "ASCII_BYTES": ASCII_BYTES,
+    "ASCII_FLAGS": ASCII_FLAGS,
+    "ASCII_KIND": ASCII_FLAGS if _has_ascii_flags() else ~ASCII_FLAGS,
     "HEAP_TYPE_BYTES": HEAP_TYPE_BYTES,
     "NAMES_AT": HEAP_TYPE_BYTES + 8,
     "MESSAGE_END": size_with_weak_list(MESSAGE_SLOTS_END),

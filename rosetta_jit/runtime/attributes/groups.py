@@ -23,7 +23,7 @@ class Group:
     hurried: bool = False
 
 
-BEGINNING = ("begin", "bind", "restart", "spawn", "equip")
+BEGINNING = ("begin", "bind", "is_readable", "restart", "spawn", "equip")
 END = "end_holder"
 """What ends a holder. It looks for its own address in a class, which therefore must be that of code, and none of a stub."""
 

@@ -33,8 +33,8 @@ def sequence_base() -> type:
 
 
 def bind_place(sequence: Any, address: int) -> None:
-    """Tell the compiled code of a sequence, an object of a class that `compiled` gave, where its place is."""
-    if is_native():
+    """Tell the compiled code of a sequence, an object of a class that `compiled` gave, where its place is, if it has one."""
+    if address:
         write_word(id(sequence) + PLACE, address)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from rosetta_jit.errors import EncodeError
 from rosetta_jit.model.limits import MAX_INITIAL_BYTES
 from rosetta_jit.runtime.holder import arena, coerce, grid, undo, values
-from rosetta_jit.runtime.holder.message import Family, Getter, Message, Setter, View, beside, element, place, writable
+from rosetta_jit.runtime.holder.message import Family, Getter, Message, Setter, View, beside, check_readable, element, place, writable
 from rosetta_jit.runtime.holder.record import Bit, Blob, Child, Entry, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_DEPTH
@@ -42,7 +42,7 @@ def getter(entry: Entry, family: Family) -> Getter:
 
 
 def _beside(message: Message, record: Record, family: Family) -> View:
-    place(message)
+    check_readable(message)
     return beside(_new_view(family, record), message, family.access(record))
 
 
@@ -53,7 +53,7 @@ def _new_view(family: Family, record: Record) -> View:
 
 def view_of(message: Message) -> View:
     """A view of a message, which the message can keep: it does not lead back to it."""
-    place(message)
+    check_readable(message)
     access = message.access_
     made = type(message) if isinstance(message, View) else access.family.view_class(access.record.struct)
     return beside(made.__new__(made), message, access)

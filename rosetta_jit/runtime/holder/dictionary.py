@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import ItemsView, Iterator, Mapping, MutableMapping, ValuesView
 from typing import TYPE_CHECKING, Any, cast
 
-from rosetta_jit.runtime.holder.message import View, element, place, writable
+from rosetta_jit.runtime.holder.message import View, check_readable, element, place, writable
 from rosetta_jit.runtime.holder.record import Blob, Entry, Numbers, Pairs, Scalar, Text
 from rosetta_jit.runtime.holder.sequence import detached, store_row
 from rosetta_jit.startup.late import late
@@ -36,7 +36,7 @@ class Dictionary(MutableMapping[Any, Any]):
         self.node = cast("Pairs", entry.node)
         self.index: dict[Any, int] = {}
         self.seen = -1
-        place(message)
+        check_readable(message)
 
     def _keys(self) -> dict[Any, int]:
         """Which pair is the last of each key."""

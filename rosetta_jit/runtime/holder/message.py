@@ -124,7 +124,7 @@ class Ways(Protocol):
 class Access:
     """How the fields of one record are read and written; each accessor is made when first used."""
 
-    __slots__ = ("_kin", "_numbers", "_places", "_sameness", "bind", "family", "getters", "record", "setters", "table")
+    __slots__ = ("_kin", "_numbers", "_places", "_sameness", "bind", "family", "getters", "is_readable", "record", "setters", "table")
 
     def __init__(self, record: Record, family: Family, ways: Ways) -> None:
         self.record = record
@@ -138,8 +138,11 @@ class Access:
             self._show(name)
         self.table = 0 if self._places is None else self._places.address
         """Address of what compiled accessors know of the record's fields; 0 where there are none."""
-        self.bind = None if library() is None else functions()["bind"]
+        compiled = None if library() is None else functions()
+        self.bind = None if compiled is None else compiled["bind"]
         """What tells them where a message lies."""
+        self.is_readable = None if compiled is None else compiled["is_readable"]
+        """What asks them whether there is something that a message shows."""
         self._sameness = 0
         self._kin: Any = None
 
@@ -279,6 +282,13 @@ def place(message: Message) -> tuple[Lanes, int]:
     if not lanes.words[VALID]:
         raise lanes.invalid()
     return (lanes, message.index_) if message.parent_ is None else _found(_chain(message))
+
+
+def check_readable(message: Message) -> None:
+    """See that a message can be read, without making what `place` needs of new lanes; raise what `place` does where it cannot."""
+    is_readable = message.access_.is_readable
+    if is_readable is None or not is_readable(message):
+        place(message)
 
 
 def make_present(message: Message) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 
 from rosetta_jit.runtime.attributes.sequences import bind_place, compiled, extend_texts, iterator_class, sequence_base
 from rosetta_jit.runtime.callable import sealed
-from rosetta_jit.runtime.holder.message import Message, View, element, place, writable
+from rosetta_jit.runtime.holder.message import Message, View, check_readable, element, place, writable
 from rosetta_jit.runtime.holder.record import Blob, Entry, Items, Node, Numbers, Record, Scalar, Text
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.startup.late import late
@@ -70,7 +70,7 @@ class Sequence(MutableSequence[Any], Base):
         return super().__new__(cast("type[Self]", compiled(cls)) if message.access_.table else cls)
 
     def __init__(self, message: View, entry: Entry) -> None:
-        place(message)
+        check_readable(message)
         _set_message(self, message)
         _set_entry(self, entry)
         _set_node(self, entry.node)

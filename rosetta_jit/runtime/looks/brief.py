@@ -32,10 +32,10 @@ def brief_message(message: Message, depth: int = 0) -> str:
     return f"{name}({', '.join((*shown, *rest))})"
 
 
-def present_fields(message: Message) -> Iterator[tuple[Entry, Any]]:
-    """The fields that are there and what they are read as, an enum's number as its name."""
+def present_fields(message: Message, most: int | None = None) -> Iterator[tuple[Entry, Any]]:
+    """The fields that are there, or those among the first ones, and what they are read as, an enum's number as its name."""
     lanes, row = place(message)
-    for entry in message.access_.record.entries.values():
+    for entry in islice(message.access_.record.entries.values(), most):
         if arena.present(lanes, entry.presence, row):
             yield entry, named(entry, message.access_.getters[entry.name](message))
 

@@ -14,6 +14,7 @@ from rosetta_jit.kernel.state import VALID
 from rosetta_jit.model.words import field_words
 from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.limits import (
+    MAX_PAGE_CELL,
     MAX_PAGE_COLUMNS,
     MAX_PAGE_DEPTH,
     MAX_PAGE_FIELDS,
@@ -41,6 +42,9 @@ CURVE_POINTS, CURVE_WIDTH, CURVE_HEIGHT = 100, 160, 24
 CELL = "text-align:left;vertical-align:top;padding:1px 8px"
 STYLE = f"{CELL};white-space:pre-wrap;max-width:60em;overflow-wrap:anywhere"
 NAME = f"{CELL};white-space:nowrap"
+BATCH_CELL = f"{CELL};white-space:pre-wrap;min-width:10em;max-width:30em;overflow-wrap:break-word"
+TABLE = '<table style="margin:0">'
+"""Notebooks put tables in the middle, away from the name above."""
 MEDIA = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg"}
 
 
@@ -52,16 +56,19 @@ def page(holder: Message) -> str:
 
 
 def batch_page(batch: Rows, fields: Sequence[str]) -> str:
-    """The first messages of a batch, a row each, and their first fields."""
+    """The first messages of a batch, a row each, and their first fields; one that is absent is left empty."""
     names = fields[:MAX_PAGE_COLUMNS]
     head = "".join(f'<th style="{NAME}">{escape(name)}</th>' for name in names)
-    rows = [
-        "".join(f'<td style="{STYLE};min-width:10em">{escape(brief(message.access_.getters[name](message)))}</td>' for name in names)
-        for message in islice(batch, MAX_PAGE_ROWS)
-    ]
-    lines = "".join(f"<tr>{row}</tr>" for row in rows)
+    lines = "".join(f"<tr>{_cells(message, names)}</tr>" for message in islice(batch, MAX_PAGE_ROWS))
     rest = "".join(_rest(len(batch), MAX_PAGE_ROWS))
-    return f'<div style="overflow-x:auto"><b>{escape(repr(batch))}</b><table><tr>{head}</tr>{lines}</table>{rest}</div>'
+    return f'<div style="overflow-x:auto"><b>{escape(repr(batch))}</b>{TABLE}<tr>{head}</tr>{lines}</table>{rest}</div>'
+
+
+def _cells(message: Message, names: Sequence[str]) -> str:
+    shown = {entry.name: brief(value) for entry, value in present_fields(message, len(names))}
+    texts = (shown.get(name, "") for name in names)
+    cut = (text if len(text) <= MAX_PAGE_CELL else f"{text[:MAX_PAGE_CELL]}…" for text in texts)
+    return "".join(f'<td style="{BATCH_CELL}">{escape(text)}</td>' for text in cut)
 
 
 def failed_page(batch: Rows) -> str:
@@ -82,7 +89,7 @@ class _Page:
             yield _picture(picture)
         rows = "".join(self.rows(message, depth))
         if rows:
-            yield f"<table>{rows}</table>"
+            yield f"{TABLE}{rows}</table>"
 
     def rows(self, message: Message, depth: int) -> Iterator[str]:
         for entry, value in present_fields(message):

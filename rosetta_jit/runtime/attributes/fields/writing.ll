@@ -149,14 +149,24 @@ done:
   ret i1 %is
 }
 
-; The bytes of exactly a str, as UTF-8, or of exactly a bytes object; null if it is none, or has no UTF-8.
+; The bytes of exactly a str, as UTF-8, or of exactly a bytes object; null if it is none, or has no UTF-8. Those of a str of ASCII lie behind its head.
 define internal { ptr, i64 } @bytes_of(ptr %value, ptr %type) alwaysinline {
   %size.at = alloca i64
   %is = call i1 @is_exactly(ptr %value, ptr %type)
   br i1 %is, label %look, label %none
 look:
   %is.text = icmp eq ptr %type, @PyUnicode_Type
-  br i1 %is.text, label %text, label %raw
+  br i1 %is.text, label %flags, label %raw
+flags:
+  %state.at = getelementptr i8, ptr %value, i64 32
+  %text.state = load i32, ptr %state.at
+  %text.kind = and i32 %text.state, $ASCII_FLAGS
+  %is.ascii = icmp eq i32 %text.kind, $ASCII_KIND
+  br i1 %is.ascii, label %ascii, label %text, !prof !0
+ascii:
+  %characters = getelementptr i8, ptr %value, i64 $ASCII_BYTES
+  %character.count = call i64 @word(ptr %value, i64 16)
+  br label %none
 text:
   %utf8 = call ptr @PyUnicode_AsUTF8AndSize(ptr %value, ptr %size.at)
   %good = icmp ne ptr %utf8, null
@@ -172,8 +182,8 @@ raw:
   %length = call i64 @word(ptr %value, i64 16)
   br label %none
 none:
-  %at = phi ptr [ null, %0 ], [ null, %wrong ], [ %utf8, %measure ], [ %data, %raw ]
-  %count = phi i64 [ 0, %0 ], [ 0, %wrong ], [ %size, %measure ], [ %length, %raw ]
+  %at = phi ptr [ null, %0 ], [ null, %wrong ], [ %utf8, %measure ], [ %data, %raw ], [ %characters, %ascii ]
+  %count = phi i64 [ 0, %0 ], [ 0, %wrong ], [ %size, %measure ], [ %length, %raw ], [ %character.count, %ascii ]
   %one = insertvalue { ptr, i64 } undef, ptr %at, 0
   %two = insertvalue { ptr, i64 } %one, i64 %count, 1
   ret { ptr, i64 } %two

@@ -86,6 +86,16 @@ failed:
   ret ptr null
 }
 
+; is_readable(message) -> whether a message shows something now; where not, Python knows why.
+define ptr @is_readable(ptr %module, ptr %arguments, i64 %given) {
+  %message = load ptr, ptr %arguments
+  %row = call ptr @row(ptr %message)
+  %is = icmp ne ptr %row, null
+  %answer = zext i1 %is to i8
+  %object = call ptr @box_bool(i8 %answer)
+  ret ptr %object
+}
+
 define internal void @set_slot(ptr %message, i64 %offset, ptr %value) {
   %old = call ptr @pointer(ptr %message, i64 %offset)
   call void @Py_IncRef(ptr %value)
