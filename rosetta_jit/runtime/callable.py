@@ -111,7 +111,7 @@ def callable_class(base: type, *, native: bool | None = None) -> type:
 def message_base(*, native: bool | None = None) -> type:
     """A class to derive messages from, with room for what compiled code must know of them (`bind_message`); ``index_`` is a part of it."""
     if not _chosen(native):
-        return type("MessageBase", (), {"_is_native": False, "__module__": __name__, "__slots__": ("index_",)})
+        return type_specs.Listed("MessageBase", (), {"_is_native": False, "__module__": __name__, "__slots__": ("index_",)})
     members = (type_specs.Member * 2)(type_specs.Member(b"index_", type_specs.SSIZE_T, INDEX, 0, None))
     created = type_specs.from_spec(
         "MessageBase",
@@ -121,7 +121,7 @@ def message_base(*, native: bool | None = None) -> type:
         ((type_specs.TP_MEMBERS, ctypes.addressof(members)),),
     )
     return type_specs.with_attributes(
-        created, {"_is_native": True, "__module__": __name__, "__qualname__": "MessageBase", "_members": members}
+        type_specs.let_list(created), {"_is_native": True, "__module__": __name__, "__qualname__": "MessageBase", "_members": members}
     )
 
 

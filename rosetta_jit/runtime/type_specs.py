@@ -16,6 +16,8 @@ OBJECT, SSIZE_T, READONLY = 16, 19, 1
 VARARGS, KEYWORDS, ONE_ARGUMENT, FASTCALL = 0x01, 0x02, 0x08, 0x80
 """Flags of methods (Include/methodobject.h); the last with that of keywords has the arguments of a vectorcall."""
 
+_CLASS = 8
+"""Where an object has its class."""
 _KEPT: list[object] = []
 
 
@@ -67,13 +69,35 @@ class _Spec(ctypes.Structure):
     )
 
 
+class Listed(type):
+    """The class of the classes that holders and views derive from: what they have for us alone, whose names end with an underscore, is not
+    listed. Prompts ask each base of a class for what it lists.
+    """
+
+    __slots__ = ()
+
+    def __dir__(cls) -> list[str]:
+        return [name for name in super().__dir__() if name.startswith("__") or not name.endswith("_")]
+
+
+def let_list(created: type) -> type:
+    """The type, of which CPython has made its own class `type`, as one of the class `Listed`, which takes as much memory."""
+    ctypes.pythonapi.Py_IncRef(ctypes.py_object(Listed))
+    write_word(id(created) + _CLASS, id(Listed))
+    return created
+
+
 def from_spec(name: str, base: type, size: int, flags: int, slots: Sequence[tuple[int, int]]) -> type:
-    """A type whose instances are of a fixed size; all else, garbage collection included, comes from the base."""
+    """A type whose instances are of a fixed size; all else, garbage collection included, comes from the base.
+
+    Up to CPython 3.11 its own class does not: then it is the one that has no other memory.
+    """
     table = (_Slot * (len(slots) + 1))(*(_Slot(number, function) for number, function in slots))
     spec = _Spec(f"rosetta_jit.{name}".encode(), size, 0, flags, table)
     create = ctypes.pythonapi.PyType_FromSpecWithBases
     create.restype, create.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.py_object]
-    return create(ctypes.addressof(spec), (base,))
+    created = create(ctypes.addressof(spec), (base,))
+    return let_list(created) if isinstance(base, Listed) and type(created) is type else created
 
 
 def with_attributes(created: type, attributes: Mapping[str, object]) -> type:

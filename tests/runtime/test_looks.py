@@ -7,6 +7,7 @@ import inspect
 import io
 import pydoc
 import re
+from rlcompleter import Completer
 
 import numpy as np
 import pytest
@@ -235,3 +236,15 @@ def test_compressed_images_are_shown_as_they_came():
     assert f'src="data:image/jpeg;base64,{base64.b64encode(image.data).decode()}"' in image._repr_html_()
     image.data = b"<svg onload=alert(1)>"
     assert "<img" not in image._repr_html_()
+
+
+@pytest.mark.parametrize("name", ["sensor_msgs/Imu", "sensor_msgs/msg/Imu", "rst.kinematics.JointAngles"])
+def test_prompts_complete_what_is_meant_to_be_used(name):
+    """Python's own prompt asks each base of a class, too."""
+    decoder = rj.Decoder.of(name, encoding="ros1" if name == "sensor_msgs/Imu" else None)
+    holder = decoder.holder_type()
+    nested = [getattr(holder, field) for field in ("orientation",) if hasattr(holder, field)]
+    for each in (holder, *nested, decoder):
+        offered = Completer({"it": each}).attr_matches("it.")
+        assert offered
+        assert not [found for found in offered if found.rstrip("()").endswith("_")]

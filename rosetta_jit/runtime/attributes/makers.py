@@ -72,8 +72,8 @@ def _made(maker: _Maker) -> Any:
 def class_of_holder_classes() -> type:
     """A class to derive the class of holder classes from, with room behind each for what compiled code makes its objects of."""
     if not is_native():
-        return type("HolderClassBase", (type,), {"__module__": __name__})
-    return type_specs.from_spec("HolderClassBase", type, HEAP_TYPE_BYTES + 16, type_specs.DEFAULT | type_specs.BASETYPE, ())
+        return type("HolderClassBase", (type_specs.Listed,), {"__module__": __name__})
+    return type_specs.from_spec("HolderClassBase", type_specs.Listed, HEAP_TYPE_BYTES + 16, type_specs.DEFAULT | type_specs.BASETYPE, ())
 
 
 def let_call(metaclass: type) -> None:
