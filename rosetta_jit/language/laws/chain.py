@@ -132,6 +132,8 @@ def _why_part_lost(part: Expr, whole: Call) -> Lost:
 
 def _done(step: Expr, value: Value) -> Value:
     match step:
+        case Convert(operand, Float(32), "nearest") if value.opened and value.is_itself and operand.type == Float(64):
+            return _bijection(step, value)
         case Convert(_, type_, rule):
             return _converted(value, type_, rule)
         case Nearest(type=type_):
@@ -214,6 +216,15 @@ def _undone(step: Expr, opening: Expr, before: Value) -> Value | None:
             law = functions()[function].law
             back = law.by.get(step.function) if isinstance(law, Undone) else None
             return None if back is None else back(opening, step, before)
+        case Convert(), Call(function):
+            law = functions()[function].law
+            return law.rounded(before) if isinstance(law, Undone) and law.rounded is not None else None
+        case Call(), Convert() if before.opened:
+            try:
+                _undone(step, *before.opened[-1])
+            except LostError as error:
+                raise LostError(f"it is rounded to a float32, and {error}") from None
+            return None
         case _:
             return None
 
