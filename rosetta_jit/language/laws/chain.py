@@ -18,6 +18,7 @@ from rosetta_jit.language.affine_steps import LARGEST, PRECISION, LostError, Val
 from rosetta_jit.language.affine_steps import UNSHOWN as NOT_SHOWN
 from rosetta_jit.language.conversions import EXACT_BITS, bounds
 from rosetta_jit.language.function import Affine, NotFollowed, Undone
+from rosetta_jit.language.image_orders import ORDERED
 from rosetta_jit.language.installed import functions
 from rosetta_jit.language.operators import form_of, why_lost
 from rosetta_jit.language.typed import Binary, Call, Choice, Const, Convert, Expr, Given, Nearest, Unary
@@ -120,7 +121,8 @@ def _why_lost(expr: Expr) -> Lost:
     law = functions()[expr.function].law
     if isinstance(law, Undone) and law.of_several is not None:
         return Lost(law.of_several)
-    return next((why for part in expr.arguments if (why := _why_part_lost(part, expr)) != UNSHOWN), UNSHOWN)
+    parts = expr.arguments[:1] if expr.function == ORDERED else expr.arguments  # the others say how the first lies
+    return next((why for part in parts if (why := _why_part_lost(part, expr)) != UNSHOWN), UNSHOWN)
 
 
 def _why_part_lost(part: Expr, whole: Call) -> Lost:
