@@ -49,6 +49,11 @@ RULES = ("ignore", "default", "reject", "when", "for", "same names", "else", "en
 LENGTHS = ("length", "size", "resize", "reserve", "count")
 """What other languages call `len`."""
 
+NUMBERED: Mapping[str, str] = MappingProxyType(
+    {"limit": "a limit is a whole number of bytes: `limit: 4000000`", "edition": "the edition is a year: `edition: 2012`"}
+)
+"""Statements that take a number, and what they mean by it."""
+
 BEHIND_VALUES = ("where", "if", "and", "or", "via")
 
 WORDS: Mapping[str, str] = MappingProxyType(
@@ -137,3 +142,8 @@ def path_before(span: Span | None) -> str:
     """The path that a step or an index goes on from, as it is written; `.a` where it cannot be told."""
     found = None if span is None else re.search(r"(\.[\w.\[\]]*\w\]?)[.\[]?$", span.source.text[max(0, span.start - 200) : span.start])
     return shorten(found[1]) if found else ".a"
+
+
+def is_index(span: Span | None) -> bool:
+    """Whether what is written there stands in brackets of its own, behind a path."""
+    return span is not None and span.source.text[: span.start].rstrip().endswith("[")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
+from rosetta_jit.catalogue.fields import no_length
 from rosetta_jit.catalogue.habits import for_function
 from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.suggestions import closest
@@ -176,6 +177,12 @@ same_order = Mistake(
     "again here",
     help="write how the elements lie where the holder has this flag: `planar(.a, 3)`, `.a`",
 )
+
+
+def length_of_one(span: Span | None, found: str) -> Diagnostic:
+    """A length for a place that holds one value: written down, or that of the array that is assigned to it."""
+    is_written = span is not None and span.source.text[: span.start].rstrip().endswith("(")
+    return no_length(span, found) if is_written else one_value(span)
 
 
 def one_value(span: Span | None, called: str = "", reductions: Sequence[str] = (), array: str = "") -> Diagnostic:

@@ -6,11 +6,15 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.suggestions import closest
+from rosetta_jit.catalogue.limits import MAX_NAMES
+from rosetta_jit.catalogue.suggestions import closest, shorten
 from rosetta_jit.diagnostics import Diagnostic, Mistake, error, note
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Span
+
+SUFFIXES = (".msg", ".proto", ".idl", ".lcm", ".bottle-schema", ".srv", ".action", ".mapping")
+"""How names of files end that declare types, or rules."""
 
 
 def unknown_encoding(name: str, framework: str, known: Sequence[str], frameworks: Mapping[str, Collection[str]]) -> Diagnostic:
@@ -110,8 +114,14 @@ def no_rules(span: Span | None, direction: str) -> Diagnostic:
 
 
 def unknown_type(name: str, known: Sequence[str]) -> Diagnostic:
-    near = closest(name, known) or next((each for each in known if re.split(r"[./:]", each)[-1].casefold() == name.casefold()), None)
-    help_ = f"did you mean `{near}`?" if near else "name the files that declare it: imports=[…]"
+    """A type that no file declares; others of the name are in other packages."""
+    alike = [each for each in dict.fromkeys(known) if re.split(r"[./:]", each)[-1].casefold() == name.casefold()][:MAX_NAMES]
+    near = [each for each in (closest(name, known),) if each is not None]
+    meant = alike if len(alike) > 1 else near or alike
+    if name.endswith(SUFFIXES):
+        help_ = f'a file is imported, and a type in it is named: imports=["{shorten(name)}"]'
+    else:
+        help_ = f"did you mean {' or '.join(f'`{each}`' for each in meant)}?" if meant else "name the files that declare it: imports=[…]"
     return error("unknown-type", f"no file declares a message `{name}`", help_=help_)
 
 

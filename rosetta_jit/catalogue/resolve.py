@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 
-from rosetta_jit.catalogue.habits import for_function, for_name, path_before
+from rosetta_jit.catalogue.habits import for_function, for_name, is_index, path_before
 from rosetta_jit.catalogue.limits import MAX_NAMES, MAX_QUOTED
 from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.catalogue.suggestions import did_you_mean, there_are
@@ -108,6 +108,13 @@ def _how_named(name: str) -> str:
     if "/" in name:
         return "a constant is written as `package/msg/Type.NAME`; to divide, put blanks around `/`"
     return f"a field begins with a dot: `.{shorten(name)}`; a constant is written with the type that declares it: `Type.NAME`"
+
+
+def bare_function(span: Span | None, name: str) -> Diagnostic:
+    """The name of a function where a value is wanted."""
+    takes_none = name in ("now", "counter", "index")
+    help_ = f"call it: `{name}()`" if takes_none else f"what it takes stands in its brackets: `{name}(.x)`"
+    return error("unknown-name", f"`{name}` is a function", span, "its brackets are missing", help_=help_)
 
 
 def ambiguous_name(span: Span | None, name: str, several: Sequence[str]) -> Diagnostic:
@@ -258,9 +265,11 @@ def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
 
 def integer_needed(span: Span | None, what: str, found: str) -> Diagnostic:
     hint = f"convert it: `int64({written_at(span)})`" if found in {"uint64", "float32", "float64"} else ""
-    if found == "text":
+    if found == "text" and is_index(span):
         key, array = written_at(span), path_before(span)
         hint = f"`{array}[.key = {key}]` is the element with that key, `{array}[.keys[] = {key}]` one of an array with its keys beside"
+    elif found == "text":
+        hint = f"`integer({written_at(span)})` is the integer that a text spells"
     return error("integer-needed", f"{what} is an integer, not {found}", span, f"this is {found}", help_=hint)
 
 

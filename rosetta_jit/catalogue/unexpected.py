@@ -108,7 +108,7 @@ def _of_number(place: _Place) -> str:
     if found == "," and ahead[1:2].isdigit():
         return "decimals stand behind a point: `1.5`"
     if place.before.startswith("limit"):
-        return "a limit is a number of bytes: `limit: 4000000`"
+        return habits.NUMBERED["limit"]
     if place.kind == "NAME" and place.touches:
         together = re.match(r"[_0-9]+\b", found)
         return "the digits of a number stand together: `1000`" if together else "a number ends with its digits: `float32(1.0)`, `int64(10)`"
@@ -164,6 +164,8 @@ def _of_statement(place: _Place) -> str:
         return habits.WORDS[found]
     if place.kind == "START" and "IMPORT" in expected and "FOR" not in expected:
         return "rules stand behind `rules:`, or behind `unpack-rules:` or `pack-rules:`"
+    if (head := re.match(r"(limit|edition)\s*:", place.before + place.ahead)) is not None:
+        return habits.NUMBERED[head[1]]
     if found == "state" and "IMPORT" in expected:
         return "a state variable has a type: `state n: int64 = 0`"
     return _of_colon(place) if expected == frozenset(("COLON",)) or place.ahead.startswith("[") else ""

@@ -84,7 +84,7 @@ def _fold_modulo(numbers: list[int]) -> int | None:
 FUNCTIONS = (
     Function(
         "divide",
-        Numbers((INT64, Float(32), FLOAT64), (2, 2), TWO, _fold_divide),
+        Numbers((INT64, Float(32), FLOAT64), (2, 2), TWO, _fold_divide, divides=True),
         _lower_divide,
         inverse=_times,
         law=Affine(_follow_divide, exact=True, rounds=True),
@@ -92,12 +92,12 @@ FUNCTIONS = (
     ),
     Function(
         "floor_divide",
-        Numbers((INT64,), (2, 2), TWO, _fold_floor_divide),
+        Numbers((INT64,), (2, 2), TWO, _fold_floor_divide, divides=True),
         _lower_floored,
         inverse=_times,
         law=Affine(_follow_floored),
         rows=(FLOORED,),
         whole=Whole("modulo", _below, _joined),
     ),
-    Function("modulo", Numbers((INT64,), (2, 2), TWO, _fold_modulo), _lower_floored, SEVERAL, NOT_FOLLOWED, (FLOORED,)),
+    Function("modulo", Numbers((INT64,), (2, 2), TWO, _fold_modulo, divides=True), _lower_floored, SEVERAL, NOT_FOLLOWED, (FLOORED,)),
 )

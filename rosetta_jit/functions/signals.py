@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import partial, reduce
 
 from rosetta_jit.catalogue import signals as words
-from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expr, Wire
+from rosetta_jit.kernel.nodes import WIDTH, Binary, Compare, Const, Convert, Expr, Load, Local, Scalar, Wire
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import as_int64, bare, describe
@@ -21,9 +21,16 @@ from rosetta_jit.language.signal_bits import MOST_BITS, Signal, signal_of
 from rosetta_jit.lowering.codec.fields import scalar_name
 from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.views import View, byte_at, kept, put, room
+from rosetta_jit.lowering.writer import Writer
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Array, Bytes, Int, String, Type
+
+WORD_BITS = 32
+"""Signals of so many bits are put together in words that have no more, of which a vector holds twice as many as of others."""
+
+SIGNED: dict[Scalar, Scalar] = {"u32": "i32", "u64": "i64"}
+WORDS: dict[int, Scalar] = {1: "u8", 2: "u16", 4: "u32", 8: "u64"}
 
 # --- types ---------------------------------------------------------------------------------------------------------------
 
@@ -104,19 +111,50 @@ def _lower_signal(call: typed.Call, values: Evaluation) -> Expr:
     writer.expect(Compare("ge", count, index(signal.size)), "index", values.where, f"no {signal.size} bytes", line=values.line)
     lane, first = (None, address.at) if isinstance(address, Wire) else (address.lane, address.row)
     first = writer.let("frame", first)
-    if lane is None:
-        writer.require(signal.size, values.where, at=first)
+    if lane is not None:
+        return _number_of(_gathered(signal, lane, first), signal, writer)
+    size = int(count.value) if isinstance(count, Const) else signal.size
+    writer.require(size, values.where, at=first)
+    return _number_of(_loaded(signal, first, size) or _gathered(signal, None, first), signal, writer)
+
+
+def _loaded(signal: Signal, frame: Expr, size: int) -> Expr | None:
+    """The bits of a signal in one word of the message; None where none of them lies within so many bytes of the frame."""
+    window = signal.window(size)
+    if window is None:
+        return None
+    word: Scalar = WORDS[window.size]
+    loaded: Expr = Load(word, add(frame, window.byte), "<" if signal.is_little or window.size == 1 else ">")
+    if word not in ("u32", "u64"):
+        loaded = Convert("u32", loaded)
+    moved = _shifted("shr", loaded, window.shift)
+    return moved if window.shift + signal.length == 8 * window.size else _and(moved, (1 << signal.length) - 1)
+
+
+def _gathered(signal: Signal, lane: int | None, frame: Expr) -> Expr:
+    """The bits of a signal, byte by byte."""
+    word: Scalar = "u32" if signal.length <= WORD_BITS else "u64"
     found: list[Expr] = []
     for piece in signal.pieces:
-        byte = Convert("u64", byte_at(lane, add(first, piece.byte)))
+        byte = Convert(word, byte_at(lane, add(frame, piece.byte)))
         part = _and(_shifted("shr", byte, piece.bit), piece.mask) if piece.bit or piece.count < 8 else byte
         found.append(_shifted("shl", part, piece.shift))
-    bits = writer.let("bits", reduce(partial(Binary, "or"), found))
-    scalar = scalar_name(scalar_of(signal.type))
-    if not signal.signed or signal.length == MOST_BITS:
-        return Convert(scalar, bits)
-    above = Const("i64", MOST_BITS - signal.length)
-    return Convert(scalar, Binary("shr", Binary("shl", Convert("i64", bits), above), above))
+    return reduce(partial(Binary, "or"), found)
+
+
+def _number_of(bits: Expr, signal: Signal, writer: Writer) -> Expr:
+    """The number whose bits a word has: the highest of a signed one is its sign."""
+    bits = writer.let("bits", bits)
+    return _signed(bits, signal) if signal.signed else Convert(scalar_name(scalar_of(signal.type)), bits)
+
+
+def _signed(bits: Local, signal: Signal) -> Expr:
+    """The bits of a word, of which the highest of the signal is its sign."""
+    scalar, word = scalar_name(scalar_of(signal.type)), SIGNED[bits.type]
+    above = 8 * WIDTH[word] - signal.length
+    number = Convert(word, bits)
+    moved = Binary("shr", Binary("shl", number, Const(word, above)), Const(word, above)) if above else number
+    return moved if scalar == word else Convert(scalar, moved)
 
 
 def _lower_frame(call: typed.Call, values: Evaluation) -> View:
@@ -156,11 +194,11 @@ def _described(value: typed.Expr) -> Signal:
 def _shifted(way: str, value: Expr, distance: int) -> Expr:
     if not distance:
         return value
-    return Binary("shl" if way == "shl" else "shr", value, Const("u64", distance))
+    return Binary("shl" if way == "shl" else "shr", value, Const(type_of(value), distance))
 
 
 def _and(value: Expr, mask: int) -> Expr:
-    return Binary("and", value, Const("u64", mask))
+    return Binary("and", value, Const(type_of(value), mask))
 
 
 # --- laws ----------------------------------------------------------------------------------------------------------------

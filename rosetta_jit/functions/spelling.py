@@ -123,6 +123,15 @@ def _read_float(opening: typed.Call, _step: typed.Call, before: Value) -> Value 
     return before if not decimals and isinstance(number.type, Float) and number.type.bits == 64 else None
 
 
+def _rounded_number(before: Value) -> Value | None:
+    """The float32 whose text was read: `kernel.decimals.shortest` chooses digits that, read so, are rounded to it."""
+    match before.opened:
+        case (*_, (typed.Call("text", (number,)), value)) if before.is_itself and isinstance(number.type, Float) and number.type.bits == 32:
+            return value
+        case _:
+            return None
+
+
 # --- bytes, integer, number ----------------------------------------------------------------------------------------------
 
 
@@ -189,5 +198,12 @@ FUNCTIONS = (
     ),
     of_texts("bytes", Texts(("text", "encoding"), BYTES), _lower_bytes, _bytes_of, undone_by(text=if_same_constants), ENCODED),
     of_texts("integer", Texts(("text",), INT64), _lower_integer, _spelt, undone_by(text=loses(SPELLING)), SPELT),
-    of_texts("number", Texts(("text",), FLOAT64), _lower_number, _spelt, undone_by(text=loses(SPELLING)), SPELT),
+    of_texts(
+        "number",
+        Texts(("text",), FLOAT64),
+        _lower_number,
+        _spelt,
+        replace(undone_by(text=loses(SPELLING)), rounded=_rounded_number),
+        SPELT,
+    ),
 )

@@ -47,13 +47,15 @@ Count = tuple[int, int | None]
 class Numbers:
     """Of numbers: all arguments and the result are of the first of the ``types`` that every argument becomes without a loss.
 
-    ``fold`` computes integers that are known, or gives None where the function refuses them.
+    ``fold`` computes integers that are known, or gives None where the function refuses them. The last argument of one that ``divides``
+    must not be 0.
     """
 
     types: tuple[Int | Float, ...]
     count: Count = (1, 1)
     takes: str = "one value"
     fold: Callable[[list[int]], int | None] | None = None
+    divides: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,10 +169,14 @@ class Affine:
 
 @dataclass(frozen=True, slots=True)
 class Undone:
-    """A step that others undo: ``by`` says which, and what is left; ``of_several`` is why nothing comes back of several fields."""
+    """A step that others undo: ``by`` says which, and what is left; ``of_several`` is why nothing comes back of several fields.
+
+    ``rounded`` gives, of the value before a step that gives a float64, what rounding to a float32 undoes the steps so far to, or None.
+    """
 
     by: Mapping[str, Back]
     of_several: str | None = None
+    rounded: Callable[[Value], Value | None] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,6 +34,15 @@ class Piece:
 
 
 @dataclass(frozen=True, slots=True)
+class Window:
+    """A word of ``size`` bytes in a frame that has all bits of a signal, from its bit ``shift`` on."""
+
+    byte: int
+    size: int
+    shift: int
+
+
+@dataclass(frozen=True, slots=True)
 class Signal:
     """A signal: how many bits it has, whether the highest is a sign, and where they lie."""
 
@@ -46,6 +55,22 @@ class Signal:
     def size(self) -> int:
         """How many bytes a frame has at least."""
         return 1 + max(piece.byte for piece in self.pieces)
+
+    @property
+    def is_little(self) -> bool:
+        """Whether the bytes of a word that has it begin with the lowest."""
+        return "@1" in self.text
+
+    def window(self, size: int) -> Window | None:
+        """The smallest word within the first ``size`` bytes of a frame that has all of its bits."""
+        first = min(piece.byte for piece in self.pieces)
+        for width in (1, 2, 4, 8):
+            byte = min(first, size - width)
+            if byte >= 0 and byte + width >= self.size:
+                lowest = self.pieces[0] if self.is_little else self.pieces[-1]
+                before = lowest.byte - byte if self.is_little else byte + width - 1 - lowest.byte
+                return Window(byte, width, 8 * before + lowest.bit)
+        return None
 
     @property
     def bits(self) -> frozenset[int]:

@@ -352,6 +352,15 @@ def test_a_type_that_there_is_not_is_told_from_one_like_it(asked, options, meant
         rj.Decoder.of(asked, **options)
 
 
+def test_a_name_of_types_of_several_packages_and_a_file_are_told_as_such():
+    with pytest.raises(rj.SchemaError) as error:
+        rj.Decoder.of("Image")
+    assert "`sensor_msgs/Image`" in str(error.value)
+    assert "`rst.vision.Image` or " in str(error.value)
+    with pytest.raises(rj.SchemaError, match=r'a file is imported, and a type in it is named: imports=\["sensor_msgs/msg/Imu\.msg"\]'):
+        rj.Decoder.of("sensor_msgs/msg/Imu.msg")
+
+
 def test_files_of_types_are_named_as_files_of_mappings_are(tmp_path, monkeypatch):
     (tmp_path / "lab.proto").write_text('syntax = "proto3"; package lab; message Point { double x = 1; }')
     monkeypatch.chdir(tmp_path)

@@ -63,7 +63,12 @@ class Case:
 
 @cache
 def case(name: str) -> Case:
-    made, rng = example(EXAMPLES[name]), random.Random(name)
+    return case_of(name, example(EXAMPLES[name]))
+
+
+def case_of(name: str, made: Example) -> Case:
+    """With messages and holders that the name alone decides."""
+    rng = random.Random(name)
     found = Case(made, (), [], [])
     directions = tuple(each for each in ("decode", "encode") if goes(found, each))
     checked = rj.check(made.mapping, schema=made.files).checked

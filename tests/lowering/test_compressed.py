@@ -314,3 +314,12 @@ def test_what_is_compressed_to_unpack_is_decompressed_to_pack(format_, law):
 
 def compressed(pixels, format_):
     return saved(Image.frombytes("RGB", (13, 7), pixels), format_.upper())
+
+
+def test_a_law_of_pixels_in_another_order_says_that_it_is_not_shown():
+    files = {"t/I.msg": "uint32 width\nuint32 height\nuint8[] data\n"}
+    order = 'permuted(decompress(.data, "png", .width, .height, 3), [2, 1, 0])'
+    rules = f"  .width <-> .width\n  .height <-> .height\n  .data <-> {order}\n"
+    files["m.mapping"] = f'import "t/I.msg"\ndata-holder: t/I\nwire-schema: t/I\nrules:\n{rules}'
+    laws = rj.check("m.mapping", schema=files).laws
+    assert [loss.why for loss in laws.holders.losses] == ["it cannot be shown that its value comes back"]

@@ -26,12 +26,14 @@ from tests.random_mappings.relations import Part, below_all, body
 from tests.random_mappings.searches import maps, searched, separated
 from tests.random_mappings.sums import sums
 from tests.random_mappings.test_wires import Side, counted, without_cases
+from tests.random_mappings.views import triangle, viewed
 from tests.random_mappings.wires import WIRES, package
 from tests.random_mappings.wrapped import held, repeated, united
 
 MESSAGES = 15
 FORMS = (parameter, date, unit, digits, taken_apart, flags, joined, sums, divided, moment, rejected, demanded, within_blocks, same)
 ARRAY_FORMS = (listed, widened, octets, searched, maps, separated, of_elements, same_arrays, defaulted, conditional)
+VIEWS = (viewed, triangle)
 WRAPPED = (held, repeated, united)
 ORDERS = (ordered, padded, flagged, sliced, members, chosen_element, elementwise_digits)
 
@@ -40,7 +42,7 @@ def relations(rng: random.Random, names: tuple[str, str]) -> tuple[Side, Side, l
     """The types of both sides, and the relations between them."""
     wire, holder = (WIRES[name] for name in names)
     dst = Message("Dst", {})
-    made = Relations(rng, wire, holder, Side(holder, dst).constant, more=FORMS + WRAPPED, more_arrays=ARRAY_FORMS + ORDERS)
+    made = Relations(rng, wire, holder, Side(holder, dst).constant, more=FORMS + WRAPPED, more_arrays=ARRAY_FORMS + ORDERS + VIEWS)
     if "yarp" not in "".join(names):  # whose inner structs have no names
         made.more += (via,)
     parts = [made.part() for _ in range(rng.randrange(1, 7))]

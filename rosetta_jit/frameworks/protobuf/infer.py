@@ -180,10 +180,16 @@ def _type(seen: Seen, depth: int) -> tuple[str | dict[int, Seen], str, str]:
 def _of_varints(values: list[int]) -> tuple[str, str, str]:
     low, high = min(values), max(values)
     if high >= 1 << 63:
-        return "int64", "", f"{min(_signed(each) for each in values)} to {max(_signed(each) for each in values)}"
+        return "int64", "", _range(min(map(_signed, values)), max(map(_signed, values)))
     if high <= 1:
-        return "bool", "", f"{low} to {high}: a bool, an enum or an integer"
-    return "int64", "", f"{low} to {high}: an integer or an enum"
+        return "bool", "", f"{_range(low, high)}: a bool, an enum or an integer"
+    return "int64", "", f"{_range(low, high)}: an integer or an enum"
+
+
+def _range(low: float, high: float) -> str:
+    """What was seen, from the least to the greatest."""
+    least, most = (f"{each:g}" if isinstance(each, float) else str(each) for each in (low, high))
+    return least if least == most else f"{least} to {most}"
 
 
 def _signed(value: int) -> int:
@@ -194,8 +200,8 @@ def _of_fixed(values: list[int], name: str, format_: str, otherwise: str) -> tup
     size = struct.calcsize(format_)
     floats = [struct.unpack(format_, each.to_bytes(size, "little"))[0] for each in values]
     if all(map(_is_likely, floats)):
-        return name, "", f"{min(floats):g} to {max(floats):g}"
-    return otherwise, "", f"{min(values)} to {max(values)}: no likely {name}"
+        return name, "", _range(min(floats), max(floats))
+    return otherwise, "", f"{_range(min(values), max(values))}: no likely {name}"
 
 
 def _is_likely(value: float) -> bool:
@@ -205,7 +211,7 @@ def _is_likely(value: float) -> bool:
 
 def _of_bytes(values: list[bytes], most: int, depth: int) -> tuple[str | dict[int, Seen], str, str]:
     """A text, a message, packed numbers, or bytes: the first that all occurrences can be."""
-    sizes = f"{min(map(len, values))} to {max(map(len, values))} bytes"
+    sizes = f"{_range(min(map(len, values)), max(map(len, values)))} bytes"
     full = [each for each in values if each]
     if not full:
         return "bytes", "", "always empty: a text, a message, or bytes"

@@ -178,6 +178,9 @@ def type_numbers(function: Function, signature: Numbers, expr: model.Call, argum
         return None
     if arguments and not check_arguments(function, arguments, expr.span, scope):
         return None
+    if signature.divides and isinstance(arguments[-1], Const) and arguments[-1].value == 0:
+        scope.problems.append(words.zero_division(arguments[-1].span))
+        return None
     for target in signature.types:
         converted = [_argument(argument, target) for argument in arguments]
         known = [argument for argument in converted if argument is not None]

@@ -18,6 +18,7 @@ from rosetta_jit.language.affine_steps import LARGEST, PRECISION, LostError, Val
 from rosetta_jit.language.affine_steps import UNSHOWN as NOT_SHOWN
 from rosetta_jit.language.conversions import EXACT_BITS, bounds
 from rosetta_jit.language.function import Affine, NotFollowed, Undone
+from rosetta_jit.language.image_orders import ORDERED
 from rosetta_jit.language.installed import functions
 from rosetta_jit.language.operators import form_of, why_lost
 from rosetta_jit.language.typed import Binary, Call, Choice, Const, Convert, Expr, Given, Nearest, Unary
@@ -120,7 +121,8 @@ def _why_lost(expr: Expr) -> Lost:
     law = functions()[expr.function].law
     if isinstance(law, Undone) and law.of_several is not None:
         return Lost(law.of_several)
-    return next((why for part in expr.arguments if (why := _why_part_lost(part, expr)) != UNSHOWN), UNSHOWN)
+    parts = expr.arguments[:1] if expr.function == ORDERED else expr.arguments  # the others say how the first lies
+    return next((why for part in parts if (why := _why_part_lost(part, expr)) != UNSHOWN), UNSHOWN)
 
 
 def _why_part_lost(part: Expr, whole: Call) -> Lost:
@@ -132,6 +134,8 @@ def _why_part_lost(part: Expr, whole: Call) -> Lost:
 
 def _done(step: Expr, value: Value) -> Value:
     match step:
+        case Convert(operand, Float(32), "nearest") if value.opened and value.is_itself and operand.type == Float(64):
+            return _bijection(step, value)
         case Convert(_, type_, rule):
             return _converted(value, type_, rule)
         case Nearest(type=type_):
@@ -214,6 +218,15 @@ def _undone(step: Expr, opening: Expr, before: Value) -> Value | None:
             law = functions()[function].law
             back = law.by.get(step.function) if isinstance(law, Undone) else None
             return None if back is None else back(opening, step, before)
+        case Convert(), Call(function):
+            law = functions()[function].law
+            return law.rounded(before) if isinstance(law, Undone) and law.rounded is not None else None
+        case Call(), Convert() if before.opened:
+            try:
+                _undone(step, *before.opened[-1])
+            except LostError as error:
+                raise LostError(f"it is rounded to a float32, and {error}") from None
+            return None
         case _:
             return None
 

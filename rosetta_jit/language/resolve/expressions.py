@@ -22,6 +22,7 @@ from rosetta_jit.language.functions.decisions import type_choice, type_compariso
 from rosetta_jit.language.functions.texts import concatenation, is_textual
 from rosetta_jit.language.functions.user_functions import type_host_call
 from rosetta_jit.language.groups import group_of
+from rosetta_jit.language.installed import written
 from rosetta_jit.language.resolve.coerced_values import type_coerced, type_nearest
 from rosetta_jit.language.resolve.defaults import length_there, text_there
 from rosetta_jit.language.resolve.groups import type_component
@@ -133,6 +134,8 @@ def _unnamed(expr: model.Name, several: list[str], scope: Scope) -> Diagnostic:
     origin = scope.messages[scope.origin]
     if expr.name in members_of(origin.root, origin.schema):
         return fields.undotted_field(expr.span, expr.name)
+    if expr.name in ("index", "has") or written(expr.name) is not None:
+        return words.bare_function(expr.span, expr.name)
     known = {*scope.locals, *scope.state, *CONSTANTS, *scope.constants.full}
     members = members_of(origin.root, origin.schema)
     owner = origin.root.name if words.is_compared(expr.span) else ""

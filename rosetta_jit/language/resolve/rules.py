@@ -375,8 +375,8 @@ def _length_can_be(value: typed.Expr, place: typed.Place, scope: Scope) -> bool:
             return False
         case Array() | Bytes() | Map():
             return True
-        case Bool() | Int() | Float() | Enum():
-            scope.problems.append(layouts.one_value(place.span))
+        case Bool() | Int() | Float() | Enum() as one:
+            scope.problems.append(layouts.length_of_one(place.span, describe(one)))
             return False
         case other:
             scope.problems.append(words.length_not_settable(place.span, describe(other)))

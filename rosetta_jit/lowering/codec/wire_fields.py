@@ -1,8 +1,9 @@
 """The fields of a wire that a mapping relates to another type: found by the walk, used by the rules.
 
 Decoding binds each number to a local, each blob to its place and size, each array to the place of its first element, the distance
-between elements, and their count. Encoding asks the rules for numbers and sizes, and binds the places of elements, which the rules
-fill afterwards. In the alternatives of a `Choice` the same fields are bound in each, so they become variables.
+between elements, and their count; so, too, arrays and bytes of fixed length in elements of one size. Encoding asks the rules for
+numbers and sizes, and binds the places of elements, which the rules fill afterwards. In the alternatives of a `Choice` the same fields
+are bound in each, so they become variables.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
 from rosetta_jit.model import expr
 from rosetta_jit.model.walk import names_of, parts
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.wire.codec import Blob, Choice, Codec, Computed, Number, Path, Repeat, Seq, Table
+from rosetta_jit.wire.codec import Blob, Choice, Codec, Computed, Count, Number, Path, Repeat, Seq, Table
 from rosetta_jit.wire.size import fixed_size
 
 EACH = "[]"
@@ -42,13 +43,22 @@ class AssignedValues(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
+class Fixed:
+    """An array of fixed length: how many elements it has, and how many bytes it is from one to the next."""
+
+    length: int
+    step: int
+
+
+@dataclass(frozen=True, slots=True)
 class Region:
-    """Elements of one size, or bytes: where the first lies, how far apart they are."""
+    """Elements of one size, or bytes: where the first lies, how far apart they are; ``inner`` are the arrays within each element."""
 
     first: Expr
     step: Expr
     scalar: Scalar
     order: str = "<"
+    inner: tuple[Fixed, ...] = ()
 
 
 @dataclass(slots=True)
@@ -175,7 +185,7 @@ class WireFields:
     def bind_leaf(self, key: Path, leaf: Leaf, first: Expr, step: int) -> None:
         """A number of an element: where it lies in the first, and how far to the next."""
         start = self.bind(key, "first", add(first, leaf.offset))
-        self.found.regions[key] = Region(start, self.bind(key, "step", index(step)), leaf.scalar, leaf.order)
+        self.found.regions[key] = Region(start, self.bind(key, "step", index(step)), leaf.scalar, leaf.order, leaf.inner)
 
     def declare(self, codec: Codec, prefix: Path) -> None:
         match codec:
@@ -215,8 +225,13 @@ class WireElements:
     where: Where
 
     def place(self, item: Codec, first: Expr, step: int) -> WireElements:
+        if self.parent.element:
+            return self  # bound with the elements around it, if ever
         for leaf in leaves(item):
             self.parent.bind_leaf((*self.key, EACH, *leaf.path), leaf, first, step)
+        if self.parent.assigned is None and (self.key, "count") not in self.parent.found.variables:
+            for leaf in inner_leaves(item):
+                self.parent.bind_leaf((*self.key, EACH, *leaf.path), leaf, first, step)
         return self
 
     def at(self, number: Expr) -> WireFields:
@@ -225,27 +240,41 @@ class WireElements:
 
 @dataclass(frozen=True, slots=True)
 class Leaf:
-    """A number at a fixed offset of an element."""
+    """A number at a fixed offset of an element, or the first of arrays of fixed length within it."""
 
     path: Path
     offset: int
     scalar: Scalar
     order: str
+    inner: tuple[Fixed, ...] = ()
 
 
-def leaves(item: Codec, offset: int = 0) -> list[Leaf]:
+def leaves(item: Codec) -> list[Leaf]:
     """The numbers of an element of one size. One that needs translation (`Table`) is none: rules cannot use it in its place."""
+    return [leaf for leaf in _leaves(item) if not leaf.inner]
+
+
+def inner_leaves(item: Codec) -> list[Leaf]:
+    """The numbers in arrays of fixed length within an element of one size; bytes are such an array."""
+    return [leaf for leaf in _leaves(item) if leaf.inner]
+
+
+def _leaves(item: Codec, offset: int = 0) -> Iterator[Leaf]:
     match item:
         case Number(path, scalar, order):
-            return [Leaf(path, offset, scalar_name(scalar), order)]
+            yield Leaf(path, offset, scalar_name(scalar), order)
+        case Blob(path, Count(None, _, int(length)), terminated=False):
+            yield Leaf((*path, EACH), offset, "u8", "<", (Fixed(length, 1),))
+        case Repeat(path, Count(None, _, int(length)), element, (), 0):
+            step = fixed_size(element)
+            for leaf in _leaves(element, offset) if step is not None else ():
+                yield replace(leaf, path=(*path, EACH, *leaf.path), inner=(Fixed(length, step or 0), *leaf.inner))
         case Seq(items) if fixed_size(item) is not None:
-            found: list[Leaf] = []
             for each in items:
-                found += leaves(each, offset)
+                yield from _leaves(each, offset)
                 offset += fixed_size(each) or 0
-            return found
         case _:
-            return []
+            pass
 
 
 def _stem(key: Path, role: str) -> str:

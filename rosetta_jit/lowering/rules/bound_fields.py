@@ -12,7 +12,7 @@ from typing import assert_never
 
 from rosetta_jit.kernel.nodes import Direction
 from rosetta_jit.language import typed
-from rosetta_jit.lowering.codec.wire_fields import EACH, leaves, numbers_of_counts
+from rosetta_jit.lowering.codec.wire_fields import EACH, inner_leaves, leaves, numbers_of_counts
 from rosetta_jit.lowering.rules.packed_values import rule_for
 from rosetta_jit.model import expr
 from rosetta_jit.model.walk import names_of, parts
@@ -47,7 +47,8 @@ class _Here:
 class BoundFields:
     """The fields that are bound so far, by absolute path; what rules give is bound when the walk asks for it.
 
-    The values of ``translated`` fields have other numbers on the wire.
+    The values of ``translated`` fields have other numbers on the wire. Of ``fixed`` arrays each element of an array has one, which is
+    always as long. How elements lie ``varies`` in the alternatives of a choice.
     """
 
     direction: Direction
@@ -55,7 +56,9 @@ class BoundFields:
     numbers: set[wire.Path] = field(default_factory=set["wire.Path"])
     counts: set[wire.Path] = field(default_factory=set["wire.Path"])
     regions: set[wire.Path] = field(default_factory=set["wire.Path"])
+    fixed: set[wire.Path] = field(default_factory=set["wire.Path"])
     translated: set[wire.Path] = field(default_factory=set["wire.Path"])
+    varies: bool = False
     deferred: list[Iterator[Obstacle]] = field(default_factory=list["Iterator[Obstacle]"])
 
     def message(self, codec: wire.Codec) -> Iterator[Obstacle]:
@@ -200,9 +203,17 @@ class BoundFields:
         self.counts.add(key)
         if size is not None and self.direction == "size":
             return
-        if size is not None:
-            self.regions.update((*key, EACH, *leaf.path) for leaf in leaves(repeat.item))
+        if size is not None and here.outer is None:
+            self.place(repeat.item, (*key, EACH))
         yield from self.whole(repeat.item, _Here((*key, EACH), here))
+
+    def place(self, item: wire.Codec, element: wire.Path) -> None:
+        """The places of numbers in elements of one size, and in arrays of fixed length within them."""
+        self.regions.update(element + leaf.path for leaf in leaves(item))
+        if self.direction == "decode" and not self.varies:
+            for path in (element + leaf.path for leaf in inner_leaves(item)):
+                self.regions.add(path)
+                self.fixed.update(path[:end] for end in range(len(element), len(path)) if path[end] == EACH)
 
     def choice(self, choice: wire.Choice, here: _Here) -> Iterator[Obstacle]:
         """All alternatives are read; which one is written, its label or the number of elements says, or it is the first."""
@@ -218,8 +229,10 @@ class BoundFields:
             if choice.when_empty and not choice.labels:
                 yield from self.counted(choice.path, here)
                 alternatives = [alternatives[choice.when_empty], alternatives[0]]
+        outer, self.varies = self.varies, True
         for codec in alternatives:
             yield from self.walk(codec, here)
+        self.varies = outer
 
     # --- what is asked for -----------------------------------------------------------------------------------------------
 

@@ -1,9 +1,9 @@
 """Whether rules can work on a message where its bytes lie: decided from the codec and the rules, before anything is lowered.
 
 To unpack in place, the walk over the codec must be able to leave what rules read where they find it: numbers outside arrays, counts, bytes,
-and numbers in elements of one size. To pack in place, a rule must give each number and each size when the walk asks for it, and what rules
-set later must have its room by then. An `Obstacle` says what is in the way of that; the message is then staged
-(`rosetta_jit.lowering.staging`).
+and in elements of one size numbers, and arrays and bytes of fixed length. To pack in place, a rule must give each number and each size
+when the walk asks for it, and what rules set later must have its room by then. An `Obstacle` says what is in the way of that; the
+message is then staged (`rosetta_jit.lowering.staging`).
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def _of_value(place: typed.Place, type_: Type, bound: BoundFields) -> Iterator[O
 
 def _of_number(place: typed.Place, bound: BoundFields) -> Iterator[Obstacle]:
     key, indices = wire_key(place)
-    if len(indices) > 1:
+    if len(indices) > 1 and key not in bound.regions:
         yield Obstacle(key, NESTED)
     elif key not in (bound.regions if indices else bound.numbers):
         yield Obstacle(key, UNKNOWN)
@@ -103,9 +103,9 @@ def _of_bytes(place: typed.Place, bound: BoundFields) -> Iterator[Obstacle]:
 
 def _of_count(place: typed.Place, bound: BoundFields) -> Iterator[Obstacle]:
     key, indices = wire_key(place)
-    if indices:
+    if indices and key not in bound.fixed:
         yield Obstacle(key, "how long it is, is known only where the walk stands at its element")
-    elif key not in bound.counts:
+    elif not indices and key not in bound.counts:
         yield Obstacle(key, UNKNOWN)
 
 

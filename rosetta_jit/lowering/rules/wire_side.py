@@ -6,6 +6,7 @@ It can be read (`lowering.evaluation.Source`) and be written; which one it is de
 from __future__ import annotations
 
 from contextlib import AbstractContextManager, nullcontext
+from math import prod
 
 from rosetta_jit.kernel.nodes import WIDTH, Address, Binary, Compare, Const, Expr, Load, Require, Store, Wire
 from rosetta_jit.kernel.terms import add, index, mul
@@ -13,7 +14,7 @@ from rosetta_jit.language import typed
 from rosetta_jit.language.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.arithmetic import inside
 from rosetta_jit.lowering.codec.fields import converted
-from rosetta_jit.lowering.codec.wire_fields import EACH, Region, WireFields
+from rosetta_jit.lowering.codec.wire_fields import EACH, Fixed, Region, WireFields
 from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.views import between
 from rosetta_jit.lowering.writer import Where, Writer
@@ -41,42 +42,63 @@ class WireSide:
         return Load(region.scalar, at, ">" if region.order == ">" else "<")
 
     def count(self, place: typed.Place, values: Evaluation) -> Expr:
-        """How many elements or bytes there are; how many an element has is known only while the walk is there."""
-        del values
+        """How many elements or bytes there are; how many an element has is fixed, or known only while the walk is there."""
         key, indices = wire_key(place)
-        assert not indices, key
-        return self.root.size_of(key)
+        if not indices:
+            return self.root.size_of(key)
+        self.number_of_element(key, indices[0], values)
+        return index(self.fixed(key, len(indices)).length)
+
+    def fixed(self, key: Path, depth: int) -> Fixed:
+        """The array of fixed length within an element, or within other such arrays of it."""
+        inside = (*key, EACH)
+        return next(region.inner[depth - 1] for each, region in self.root.found.regions.items() if each[: len(inside)] == inside)
 
     def address(self, place: typed.Place, values: Evaluation) -> Address:
         """The address of the bytes of a string or bytes field."""
-        del values
-        key = (*wire_key(place)[0], EACH)
-        return Wire(self.root.found.regions[key].first)
+        key, indices = wire_key(place)
+        if not indices:
+            return Wire(self.root.found.regions[*key, EACH].first)
+        return Wire(self.element((*key, EACH), indices, values)[1])
 
     def present(self, place: typed.Place, values: Evaluation) -> Expr:
         """Whether what can be absent is there; fields of which this can be said are not read in place."""
         raise AssertionError(place, values)
 
     def element(self, key: Path, indices: list[typed.Expr], values: Evaluation) -> tuple[Region, Expr]:
-        """How the elements of an array lie, and where one of them is; it is checked to be there."""
-        assert len(indices) == 1, key
-        region, array = self.root.found.regions[key], key[: key.index(EACH)]
-        number = self.writer.once(values.of(indices[0]))
-        where = Where().members(array).element(number)
-        count = self.root.size_of(array)
-        self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)
+        """How the elements of an array lie, and where one of them is; it is checked to be there.
+
+        With fewer indices than there are arrays, the first one of the arrays that are left, which is there as a whole.
+        """
+        region = self.root.found.regions[key]
+        number, where, count = self.number_of_element(key, indices[0], values)
         if not isinstance(region.step, Const) and has_product(indices[0]):
             number = self.writer.let("element", between(number, index(0), Binary("sub", count, index(1))))
         at = Binary("add", region.first, mul(number, region.step))
         if not isinstance(region.step, Const):  # written down, for it follows from a product
             self.writer.expect(Compare("ge", at, region.first), "index", where, "no such element", line=values.line)
-        self.writer.require(WIDTH[region.scalar], where, at=at)
+        known = {inside(number, count)}
+        for fixed, each in zip(region.inner, indices[1:], strict=False):
+            number = self.writer.once(values.of(each))
+            known.add(inside(number, index(fixed.length)))
+            self.writer.expect(inside(number, index(fixed.length)), "index", where, "no such element", line=values.line)
+            at = Binary("add", at, mul(number, index(fixed.step)))
+        left = region.inner[len(indices) - 1 :]
+        size = WIDTH[region.scalar] * prod(fixed.length for fixed in left)
+        self.writer.require(size, where, at=at)
         match self.writer.block:
-            case [*_, Require(at=required) as check] if required == at and inside(number, count) in self.writer.certain:
+            case [*_, Require(at=required) as check] if required == at and known <= self.writer.certain:
                 self.writer.certain.add(check)
             case _:
                 pass
         return region, at
+
+    def number_of_element(self, key: Path, number: typed.Expr, values: Evaluation) -> tuple[Expr, Where, Expr]:
+        """The number of an element of the outermost array, checked to be there; which one that is, and how many there are."""
+        array, found = key[: key.index(EACH)], self.writer.once(values.of(number))
+        where, count = Where().members(array).element(found), self.root.size_of(array)
+        self.writer.expect(inside(found, count), "index", where, "no such element", line=values.line)
+        return found, where, count
 
     # --- writing -------------------------------------------------------------------------------------------------------
 

@@ -110,3 +110,9 @@ def test_nesting_is_bounded():
     for _ in range(30):
         message = field(1, message)
     assert drafted([message]).count("message F1") == 16
+
+
+def test_what_never_varied_is_said_once():
+    text = rj.infer([b"\x0a\x02ab\x10\x05", b"\x0a\x02cd\x10\x05"], name="seen", encoding="protobuf")
+    assert "// 2 bytes" in text
+    assert "// 5: an integer or an enum" in text
