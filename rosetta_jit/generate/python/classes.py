@@ -22,6 +22,7 @@ WORDS = frozenset(
         "most",
         "sites",
         "indices",
+        "index",
         "math",
         "array",
         "self",
