@@ -16,6 +16,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.api import programs
 from rosetta_jit.api.options import type_request
+from rosetta_jit.cli import main
 from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
 from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.manners import PROTOC
@@ -248,6 +249,15 @@ def test_some(language, through, role, tmp_path):
     compare(language, through, role, CHOSEN[language].split(), tmp_path)
 
 
+UNITS = [
+    ("std_msgs/Bool", "c", "bool.c"),
+    ("std_msgs/Bool", "cpp", "std_msgs_bool.cpp"),
+    ("std_msgs/Char", "cpp", "std_msgs_char.cpp"),
+    ("std_msgs/Bool", "python", "bool.py"),
+    ("std_msgs/String", "python", "std_msgs_string.py"),
+]
+
+
 @pytest.mark.campaign
 @pytest.mark.parametrize("role", ROLES)
 @pytest.mark.parametrize(("language", "through"), LANGUAGES.values())
@@ -259,3 +269,16 @@ def test_all(language, through, role, tmp_path):
         folder = tmp_path / str(begin)
         folder.mkdir()
         compare(language, through, role, [each for each in all_of_them[begin : begin + at_once] if each != "in"], folder)
+
+
+@pytest.mark.parametrize(("type_", "language", "file"), UNITS)
+def test_units_are_not_called_as_words_of_their_language(type_, language, file, tmp_path, capsys):
+    """By default the package's name stands before such a word; who asks for the word is refused."""
+    arguments = ["generate", type_, "--encoding", "ros1", "--language", language, "-o", str(tmp_path)]
+    assert main(arguments) == 0
+    assert (tmp_path / file).exists()
+    word = type_.rsplit("/", maxsplit=1)[1].lower()
+    assert (main([*arguments, "--name", word]) == 0) == (file.split(".")[0] == word)
+    assert (file.split(".")[0] == word) == ("unusable-name" not in capsys.readouterr().err)
+    if language == "cpp" and shutil.which("g++") is not None:
+        cpp.compiled("g++", tmp_path, file.removesuffix(".cpp"))
