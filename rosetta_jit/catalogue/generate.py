@@ -27,7 +27,7 @@ def no_manner(holder: str, kind: str, where: str) -> Diagnostic:
 
 
 def unusable_name(name: str) -> Diagnostic:
-    help_ = "letters, digits and underscores, of which a letter comes first, up to 40; and not the name of a header of C"
+    help_ = "letters, digits and underscores, of which a letter comes first, up to 40; no header of C, and no word of the language"
     message = f"`{name}` cannot begin the names of functions"
     return error("unusable-name", message, help_=help_)
 

@@ -96,7 +96,7 @@ def _check(arguments: argparse.Namespace) -> None:
 def _source(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:
     from rosetta_jit.generate.build import Wishes, generated
 
-    name = arguments.name or _name(arguments.subject)
+    name = arguments.name or _name(arguments.subject, arguments.language)
     wishes = Wishes(arguments.freestanding, arguments.holder or "", arguments.include or "", numpy=arguments.arrays == "numpy")
     return generated(_request(arguments), arguments.language, arguments.directions, name, wishes)
 
@@ -110,7 +110,7 @@ def _object(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:
 
     if arguments.language != "c":
         raise SchemaError((no_object(arguments.language),))
-    name, triple = arguments.name or _name(arguments.subject), arguments.target or binding.get_default_triple()
+    name, triple = arguments.name or _name(arguments.subject, arguments.language), arguments.target or binding.get_default_triple()
     return object_of(_request(arguments), arguments.directions, name, triple, arguments.cpu, freestanding=arguments.freestanding)
 
 
@@ -129,13 +129,17 @@ def _is_mapping(subject: str) -> bool:
     return subject.endswith(".mapping")
 
 
-def _name(subject: str) -> str:
+def _name(subject: str, language: str) -> str:
     """``yarp/icub/torso_state.mapping`` and ``sensor_msgs/JointState`` give ``torso_state`` and ``joint_state``.
 
-    A name that a header of C has, as that of ``std_msgs/String``, is preceded by what stands before it: ``std_msgs_string``.
+    A name that a header of C has, or a word of the language, as that of ``std_msgs/String``, is preceded by what stands before it:
+    ``std_msgs_string``.
     """
     from rosetta_jit.generate.build import HEADERS
+    from rosetta_jit.generate.languages import installed
 
     parts = re.split(r"[./:]+", subject.removesuffix(".mapping"))
     names = [re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", part).lower() for part in parts]
-    return "_".join(names[-2:]) if names[-1] in HEADERS else names[-1]
+    known = installed().get(language)
+    is_usable = names[-1] not in HEADERS and (known is None or known.may_name(names[-1]))
+    return names[-1] if is_usable else "_".join(names[-2:])

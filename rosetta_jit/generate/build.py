@@ -227,6 +227,8 @@ def generated(request: Request, language: str, roles: tuple[Role, ...], name: st
     known = installed()
     if language not in known:
         raise SchemaError((words.unknown_language(language, tuple(known)),))
+    if not known[language].may_name(name):
+        raise SchemaError((words.unusable_name(name),))
     if wishes.numpy and not known[language].numpy:
         raise SchemaError((words.no_numpy(language, tuple(name for name, each in known.items() if each.numpy)),))
     with within_stack():

@@ -39,6 +39,8 @@ class Language:
         Its arrays of numbers can be numpy's.
     wires
         Its decoders of several wires fill one holder.
+    taken
+        A set of names that no unit may have, as ``module:name``: words of the language, and modules that a file would hide.
     """
 
     name: str
@@ -48,6 +50,11 @@ class Language:
     low_byte_first: bool = False
     numpy: bool = False
     wires: bool = False
+    taken: str = ""
+
+    def may_name(self, name: str) -> bool:
+        """Whether a unit may be called so."""
+        return not self.taken or name not in cast("frozenset[str]", object_at(self.taken))
 
     def roles(self, wanted: tuple[Role, ...]) -> tuple[Role, ...]:
         """The kernels that the printer needs for what is wanted."""
@@ -67,6 +74,7 @@ LANGUAGES = (
         low_byte_first=True,
         numpy=True,
         wires=True,
+        taken="rosetta_jit.generate.python.classes:NOT_MODULES",
     ),
     Language(
         "c", "C11: NAME.h and NAME.c, without allocation, globals or dependencies", "rosetta_jit.generate.c.language:files", wires=True
@@ -78,6 +86,7 @@ LANGUAGES = (
         borrows=True,
         low_byte_first=True,
         wires=True,
+        taken="rosetta_jit.generate.cpp.names:NOT_NAMESPACES",
     ),
     Language(
         "lisp",

@@ -54,19 +54,61 @@ def answer(unit, message: bytes) -> str:
 
 
 def same(found: str, wanted: str) -> bool:
-    """A signalling NaN of 32 bits becomes a quiet one in Python's floats: one bit of a byte. One that is computed may have another sign."""
+    """A signalling NaN of 32 bits becomes a quiet one in Python's floats, and one that is computed may have another sign: that is all."""
     if "memory than its size allows" in found:
         return found.split("]", maxsplit=1)[0] == wanted.split("]", maxsplit=1)[0]
     if found == wanted or not (found.startswith("ok ") and wanted.startswith("ok ") and len(found) == len(wanted)):
         return found == wanted
     one, other = bytes.fromhex(found[3:]), bytes.fromhex(wanted[3:])
-    changes = [(at, a ^ b) for at, (a, b) in enumerate(zip(one, other, strict=True)) if a != b]
-    return all(change == 0x40 or (change == 0x80 and ends_nan(one, at)) for at, change in changes)
+    changes = [at for at, (a, b) in enumerate(zip(one, other, strict=True)) if a != b]
+    return all(is_quieted(one, other, at) or (one[at] ^ other[at] == 0x80 and ends_nan(one, at)) for at in changes)
+
+
+def is_quieted(found: bytes, wanted: bytes, at: int) -> bool:
+    """Whether a byte is the second of a NaN of 32 bits, in either byte order, that was signalling, and is the same but quiet."""
+    if found[at] != wanted[at] | 0x40 or not found[at] & 0x80:
+        return False
+    places = ((range(at - 2, at), at + 1), (range(at + 1, at + 3), at - 1))
+    return any(
+        0 <= min(first, *rest) <= max(first, *rest) < len(found)
+        and found[first] & 0x7F == 0x7F
+        and (wanted[at] & 0x3F or any(wanted[each] for each in rest))
+        for rest, first in places
+    )
 
 
 def ends_nan(message: bytes, at: int) -> bool:
     """Whether a byte can be the first of a NaN in either byte order: seven bits of its exponent are set, and the eighth beside them."""
     return message[at] & 0x7F == 0x7F and any(each >= 0x80 for each in (*message[max(0, at - 1) : at], *message[at + 1 : at + 2]))
+
+
+SIGNALLING = [bytes.fromhex(each) for each in ("0100807f", "ffffbfff", "0000a07f", "01008cff")]
+QUIET = [bytes.fromhex(each) for each in ("0100c07f", "5634d27f")]
+FLOATS = """syntax = "proto3"; package f; message Floats { float one = 1; repeated float many = 2; }"""
+
+
+@pytest.mark.parametrize("arrays", ["", "numpy"])
+def test_bits_of_nans(arrays, module):
+    """Quiet ones keep all bits; signalling ones of 32 bits are quiet in a float of Python, and as they came in an array of numpy."""
+    request = type_request("decode", "f.Floats", {"encoding": "protobuf", "schema": {"f.proto": FLOATS}})
+    unit = module(request, BOTH, Wishes(numpy=bool(arrays)))
+    for bits in [*SIGNALLING, *QUIET]:
+        quiet = bits[:2] + bytes([bits[2] | 0x40]) + bits[3:]
+        many = bits if arrays else quiet
+        assert unit.encode(unit.decode(b"\x0d" + bits + b"\x12\x04" + bits)) == b"\x0d" + quiet + b"\x12\x04" + many
+        wide = type_request("decode", "std_msgs/Float64", {"encoding": "ros1"})
+        eight = b"\1\0\0\0" + bits[:2] + bytes([bits[2] & 0xF7 | 0xF0]) + bits[3:]
+        other = module(wide)
+        assert other.encode(other.decode(eight)) == eight
+
+
+def test_no_other_bits_may_differ():
+    assert same("ok 0100c07f", "ok 0100807f")
+    assert same("ok 7fc00001", "ok 7f800001")
+    assert not same("ok 0100807f", "ok 0100c07f")
+    assert not same("ok 0000c07f", "ok 0000807f")  # an infinity
+    assert not same("ok 41", "ok 01")
+    assert not same("ok 0000c041", "ok 00008041")
 
 
 def answers_as_the_library(unit, programs, messages) -> None:

@@ -20,6 +20,8 @@ from rosetta_jit.startup.dataclass import dataclass
 
 OWN_WORDS = frozenset({"presence", "which", "unknown", "links", "nothing", "value"})
 PADDING = re.compile(r"padding_?\d*")
+NOT_FIELDS = frozenset({"presence", "unknown", "which", "nothing", "links"})
+"""Members of structs that stand for no field, besides padding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +69,11 @@ class Struct:
 
 Element = str | SpanType | Struct
 """What a row of a lane is: a scalar, a span, or a struct."""
+
+
+def members_of(struct: Struct) -> list[Member]:
+    """Those of a row's struct that stand for fields, in order."""
+    return [each for each in struct.members if each.identifier not in NOT_FIELDS and not (PADDING.fullmatch(each.identifier) and each.many)]
 
 
 @dataclass(slots=True)

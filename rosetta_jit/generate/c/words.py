@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from pathlib import Path
 
 C_TYPES: dict[str, str] = {
     "bool": "bool",
@@ -19,41 +20,20 @@ extern false float for friend goto if inline int long mutable namespace new noex
 public register reinterpret_cast requires restrict return short signed sizeof static static_assert static_cast struct switch template this
 thread_local throw true try typedef typeid typename typeof typeof_unqual union unsigned using virtual void volatile wchar_t while xor xor_eq
 """
-_MACROS = """
-NULL offsetof unix linux i386 arm mips sparc sun vax errno assert stdin stdout stderr EOF INFINITY NAN HUGE_VAL HUGE_VALF
-isnan isinf isfinite isnormal signbit memcpy memset memmove fmod sqrt sin cos tan asin acos atan atan2 fabs floor ceil trunc rint
-near far small interface min max
+_NAMES = """
+offsetof i386 arm mips sparc sun vax assert isnan isinf isfinite isnormal signbit memcpy memset memmove
+fmod sqrt sin cos tan asin acos atan atan2 fabs floor ceil trunc rint near far small interface min max
 """
-_LIMITS = [
-    f"{sign}INT{kind}{bits}_{end}"
-    for sign in ("", "U")
-    for kind in ("", "_LEAST", "_FAST")
-    for bits in (8, 16, 32, 64)
-    for end in ("MIN", "MAX", "C")
-]
-_OTHERS = [
-    "FLT_EVAL_METHOD",
-    "FLT_RADIX",
-    "SIZE_MAX",
-    "INTPTR_MIN",
-    "INTPTR_MAX",
-    "UINTPTR_MAX",
-    "INTMAX_MIN",
-    "INTMAX_MAX",
-    "UINTMAX_MAX",
-    "PTRDIFF_MIN",
-    "PTRDIFF_MAX",
-]
-_OF_FLOATS = ("FLT_EVAL_METHOD", "FLT_RADIX")
-_FLOATS = [f"{kind}_{what}" for kind in ("FLT", "DBL") for what in ("MAX", "MIN", "EPSILON", "DIG", "MANT_DIG", "MAX_EXP", "MIN_EXP")]
+_LIMITS = [f"{sign}INT{bits}_C" for sign in ("", "U") for bits in (8, 16, 32, 64, "MAX")]
 
 _OF_FILES = ("HAS_ORDER", "IN_ORDER_le", "IN_ORDER_be", "TEXT")
 """Macros of the files themselves, besides those that begin with the unit's name."""
 _TYPES = {*C_TYPES.values(), "size_t", "ptrdiff_t", "intptr_t", "uintptr_t", "intmax_t", "uintmax_t"}
 
-RESERVED = frozenset(
-    (*_LANGUAGE.split(), *_TYPES, *_OF_FILES, *_MACROS.split(), *_LIMITS, *_OTHERS, *_FLOATS, "FLT_EVAL_METHOD", "FLT_RADIX")
-)
+_MACROS = (Path(__file__).parent / "macros.txt").read_text("utf-8").split()
+"""Those without parameters that the headers of C11, C++20 and POSIX define, as glibc has them, with gcc's own."""
+
+RESERVED = frozenset((*_LANGUAGE.split(), *_TYPES, *_OF_FILES, *_NAMES.split(), *_LIMITS, *_MACROS))
 
 
 def of_unit(unit: str, names: Iterable[str]) -> frozenset[str]:

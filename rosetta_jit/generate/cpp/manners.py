@@ -39,6 +39,8 @@ class Manners:
         Fields are named in lower case.
     renamed
         Fields that the classes name otherwise than the schema: by struct and field.
+    reserved
+        Names of fields and classes behind which the framework's generator writes an underscore.
     around
         Files of further classes around the codec, by what they are for.
     """
@@ -50,6 +52,7 @@ class Manners:
     header: Callable[[Struct], str] | None = None
     lower: bool = False
     renamed: tuple[tuple[tuple[str, str], str], ...] = ()
+    reserved: frozenset[str] = frozenset()
     around: tuple[str, ...] = ()
 
     def sections(self) -> Mapping[str, str]:
@@ -71,10 +74,14 @@ def _joined(struct: Struct) -> str:
 
 
 def _nested(struct: Struct) -> str:
-    """Messages within others: protoc joins their names by underscores."""
+    """Messages within others: protoc joins their names by underscores, and writes one behind its keywords."""
     parts = struct.name.split(".")
     first = next((number for number, part in enumerate(parts) if part[:1].isupper()), len(parts) - 1)
-    return "::" + "::".join((*parts[:first], "_".join(parts[first:])))
+    named = ""
+    for part in parts[first:]:
+        named = f"{named}_{part}" if named else part
+        named = f"{named}_" if named in PROTOC else named
+    return "::" + "::".join((*parts[:first], named))
 
 
 def _proto_header(struct: Struct) -> str:
@@ -95,11 +102,21 @@ def _ros2_header(struct: Struct) -> str:
     return f"{package}/msg/{_snake(name)}.hpp"
 
 
+_PROTOC = """
+NULL alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl const constexpr const_cast continue
+decltype default delete do double dynamic_cast else enum explicit export extern false float for friend goto if inline int long
+mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast return
+short signed sizeof static static_assert static_cast struct switch template this thread_local throw true try typedef typeid
+typename union unsigned using virtual void volatile wchar_t while xor xor_eq
+"""
+PROTOC = frozenset(_PROTOC.split())
+"""Its keywords (cpp/cpp_helpers.cc of protobuf 3.21; later ones have those of C++20, too)."""
+
 TIMES = tuple(((struct, field), name) for struct in ("time", "duration") for field, name in (("secs", "sec"), ("nsecs", "nsec")))
 
 MANNERS = (
     Manners("own", "classes that are generated, too: vectors, strings, optional, variant", ("fields", "own")),
-    Manners("protobuf", "the classes that protoc generates", ("fields", "protobuf"), _nested, _proto_header, lower=True),
+    Manners("protobuf", "the classes that protoc generates", ("fields", "protobuf"), _nested, _proto_header, lower=True, reserved=PROTOC),
     Manners("ros1", "the structs of roscpp", ("fields",), _joined, lambda struct: f"{'/'.join(name_parts(struct.name))}.h", renamed=TIMES),
     Manners("ros2", "the structs of rclcpp", ("fields",), _joined, _ros2_header),
     Manners("lcm", "the classes that lcm-gen generates", ("fields",), _joined, lambda struct: f"{struct.name.replace('.', '/')}.hpp"),
@@ -111,6 +128,7 @@ MANNERS = (
         _nested,
         _proto_header,
         lower=True,
+        reserved=PROTOC,
         around=("converter",),
     ),
 )

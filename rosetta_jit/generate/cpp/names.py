@@ -9,6 +9,8 @@ from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.model.types import Struct
 
 OWN_WORDS = frozenset({"unknown_fields", "std", "rosetta_jit"})
+NOT_NAMESPACES = RESERVED | {"main", "std", "rosetta_jit"}
+"""What no unit may be called: its namespace is called so."""
 
 
 def member_names(struct: Struct, unit: str, classes: Iterable[str]) -> tuple[str, ...]:

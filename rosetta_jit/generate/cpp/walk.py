@@ -20,10 +20,8 @@ from typing import TYPE_CHECKING, Literal
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.generate.c.rows import PADDING
-from rosetta_jit.generate.c.rows import Member as RowMember
 from rosetta_jit.generate.c.rows import Struct as RowStruct
-from rosetta_jit.generate.c.words import RESERVED
+from rosetta_jit.generate.c.rows import members_of
 from rosetta_jit.generate.cpp.classes import names_of
 from rosetta_jit.generate.cpp.names import member_names
 from rosetta_jit.generate.shares import WHOLE, Ways, within
@@ -38,7 +36,6 @@ if TYPE_CHECKING:
 
 Direction = Literal["decode", "encode"]
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-NOT_FIELDS = frozenset({"presence", "unknown", "which", "nothing", "links"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,15 +100,16 @@ class Walk:
         """The names of a struct's fields as the class has them."""
         if self.manners.type is None:
             return member_names(struct, self.unit.name, names_of(self.unit).values())
-        return tuple(self.named(each.name, struct.name) for each in struct.fields)
+        unions = {each.name for each in struct.fields if isinstance(self.unit.schema.resolve(each.type), Union)}
+        return tuple(self.named(each.name, struct.name, is_union=each.name in unions) for each in struct.fields)
 
-    def named(self, name: str, struct: str = "") -> str:
+    def named(self, name: str, struct: str = "", *, is_union: bool = False) -> str:
         """The name of a field of a framework's class."""
         known = dict(self.manners.renamed).get((struct, name), name)
         plain = known.lower() if self.manners.lower else known
         if not IDENTIFIER.fullmatch(plain):
             raise SchemaError((words.no_manner(self.manners.name, "member", plain),))
-        return f"{plain}_" if plain in RESERVED else plain
+        return f"{plain}_" if plain in self.manners.reserved and not is_union else plain
 
     def local(self, what: str) -> str:
         return f"{what}_{self.depth}"
@@ -221,7 +219,7 @@ class Walk:
     def elements(self, type_: Array, slot: Span, row: str, spot: Spot) -> None:
         """The elements of a list, one by one."""
         lane, self.takes = self.lanes.rows(slot.lane), True
-        self.lines("list", spot, row=row, lane=lane)
+        self.lines("list", spot, row=row, lane=lane, take=self._take)
         self.depth += 1
         index = self.local("i")
         with self.writer.indented(f"for (std::int64_t {index} = 0; {index} < {self._count(row, spot)}; {index}++) {{"):
@@ -248,19 +246,32 @@ class Walk:
             self.writer.line(f"const auto &{inner} = from.{rows}.rows[{index}];")
             self.writer.line(f"auto &&{target} = {spot.at};")
         else:
-            self.writer.line(f"{self.lanes.type(lane)} {inner} = {{}};")
+            self._begin_row(lane, inner, index)
             self.writer.line(f"const auto &{target} = {spot.at};")
         if recursive:
-            self.writer.line(
-                f"fill_{rows}(from, bytes, {within}, {target});"
-                if self.direction == "decode"
-                else f"collect_{rows}({target}, to, {within});"
-            )
+            arguments = f"from, bytes, {within}, {target}" if self.direction == "decode" else f"{target}, to, {within}"
+            self.writer.line(f"{'fill' if self.direction == 'decode' else 'collect'}_{rows}({arguments});")
         else:
             self.value(type_, slot, element, within, Spot(target))
         if self.direction == "encode":
-            self.writer.line(f"to.{rows}.rows[{index}] = {inner};")
+            self._end_row(lane, inner, index)
         self.in_rows -= 1
+
+    @property
+    def _take(self) -> str:
+        """The function that takes rows, empty where they are then set in place."""
+        return "take" if self.unit.layout.recursive else "take_empty"
+
+    def _begin_row(self, lane: int, row: str, index: str) -> None:
+        """A row to be set. Where types contain themselves, what a row contains may move the rows: it is set beside them."""
+        if self.unit.layout.recursive:
+            self.writer.line(f"{self.lanes.type(lane)} {row} = {{}};")
+        else:
+            self.writer.line(f"auto &{row} = to.{self.lanes.rows(lane)}.rows[{index}];")
+
+    def _end_row(self, lane: int, row: str, index: str) -> None:
+        if self.unit.layout.recursive:
+            self.writer.line(f"to.{self.lanes.rows(lane)}.rows[{index}] = {row};")
 
     def link(self, slot: Span, row: str, spot: Spot, present: str = "") -> None:
         """A field of a type that contains itself: no row, or one."""
@@ -304,13 +315,13 @@ class Walk:
                         self.writer.line(f"auto &{self.local('mapped')} = {self.text('map entry', spot, key=self.local('key'))};")
                     self._plain(type_, member, own.type, f"{inner}.{own.identifier}", self.local(what))
         else:
-            self.lines("list", spot, row=row, lane=lane)
+            self.lines("list", spot, row=row, lane=lane, take=self._take)
             self.writer.line(f"std::int64_t {index} = {row}.start;")
             with self.writer.indented(f"for (const auto &each_{self.depth} : {spot.at}) {{"):
-                self.writer.line(f"{self.lanes.type(slot.lane)} {inner} = {{}};")
+                self._begin_row(slot.lane, inner, f"{index}++")
                 for (type_, member, own, _), at in zip(parts, ("first", "second"), strict=True):
                     self._plain(type_, member, own.type, f"{inner}.{own.identifier}", f"each_{self.depth}.{at}")
-                self.writer.line(f"to.{lane}.rows[{index}++] = {inner};")
+                self._end_row(slot.lane, inner, f"{index}++")
         self.writer.line("}")
         self.in_rows -= 1
         self.depth -= 1
@@ -387,8 +398,3 @@ class Walk:
         element = self.unit.layout.lanes[lane].element
         is_enum = isinstance(type_, Array) and isinstance(self.unit.schema.resolve(type_.element), Enum)
         return isinstance(element, Number) and element.scalar != "bool" and not is_enum
-
-
-def members_of(struct: RowStruct) -> list[RowMember]:
-    """Those of a row's struct that stand for fields, in order."""
-    return [each for each in struct.members if each.identifier not in NOT_FIELDS and not (PADDING.fullmatch(each.identifier) and each.many)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import builtins
 import keyword
 import re
+import sys
 from typing import assert_never
 
 from rosetta_jit.backends.printing import Namespace
@@ -22,6 +23,7 @@ WORDS = frozenset(
         "most",
         "sites",
         "indices",
+        "index",
         "math",
         "array",
         "self",
@@ -40,6 +42,8 @@ TAKEN = WORDS.union(OWN.split())
 """What no class may be called: what the module defines and imports besides."""
 MEMBERS = frozenset((*keyword.kwlist, "unknown_fields", "field"))
 MAX_DOC = 200
+NOT_MODULES = frozenset((*keyword.kwlist, *sys.stdlib_module_names))
+"""What no unit may be called: it could not be imported, or others could not."""
 
 
 NUMPY = {

@@ -29,7 +29,7 @@ rosetta_jit::detail::resize_to($at, $row.count);
 
 /* == list encode == */
 $row.count = rosetta_jit::detail::count_of($at);
-$row.start = rosetta_jit::detail::take(to.$lane, $row.count);
+$row.start = rosetta_jit::detail::$take(to.$lane, $row.count);
 
 /* == element decode == */
 rosetta_jit::detail::element($at, $index)

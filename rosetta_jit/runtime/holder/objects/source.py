@@ -69,5 +69,7 @@ def assignment(of: str, name: str, value: str) -> str:
 
 
 def is_word(name: str) -> bool:
-    """Whether a name can stand behind a dot. Within no class are names of two leading underscores others."""
-    return name.isascii() and name.isidentifier() and not keyword.iskeyword(name)
+    """Whether a name can stand behind a dot: `__debug__` is no keyword and no attribute, and within no class are names of two leading
+    underscores others.
+    """
+    return name.isascii() and name.isidentifier() and not keyword.iskeyword(name) and name != "__debug__"

@@ -528,6 +528,18 @@ template <class Lane> std::int64_t take(Lane &to, std::int64_t count)
     return to.used - count;
 }
 
+/* The same, all of them empty. One call for all: to set each takes a compiler an instruction that starts slowly. */
+template <class Lane> std::int64_t take_empty(Lane &to, std::int64_t count)
+{
+    using Row = std::remove_reference_t<decltype(*to.rows)>;
+    static_assert(std::is_trivially_copyable_v<Row>);
+    const std::int64_t start = take(to, count);
+    if (count > 0) {
+        std::memset(static_cast<void *>(to.rows + start), 0, static_cast<std::size_t>(count) * sizeof(Row));
+    }
+    return start;
+}
+
 /* Numbers, or the bytes of a text, as rows. */
 template <class Lane, class Span, class Container> void take_span(Lane &to, Span &span, const Container &from)
 {
