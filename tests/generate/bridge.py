@@ -114,7 +114,7 @@ class InC:
             for one, other in zip(self.lanes, plain.lanes, strict=True)
         ]
         self.scratch = texts["unit.h"].count("} scratch[") and int(texts["unit.h"].split("} scratch[")[1].split("]")[0])
-        self.sites = []
+        self.sites = [run.Site("", "", "", "", (), None)]  # the result of the first would be `run.GROW`
         self.memory: list[np.ndarray] = []  # of the last call: the words of a rejection lie there
 
     def call(self, function, lanes, row, *arguments, fill):
