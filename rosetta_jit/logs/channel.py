@@ -126,18 +126,19 @@ class Channel:
         self, *, start: Moment | None = None, end: Moment | None = None, pieces: range | None = None, on_error: OnError = "raise"
     ) -> Iterator[Part]:
         """The messages, decoded some megabytes at a time into one batch that is filled again and again. State begins anew."""
+        yield from self._parts(self._wanted(start, end, pieces), on_error)
+
+    def _parts(self, wanted: Wanted, on_error: OnError, batch: Batch | None = None) -> Iterator[Part]:
         self.decoder.reset()
-        blocks = self._log.blocks_ahead(self._wanted(start, end, pieces))
-        yield from Collector(self.decoder, on_error, expected=self.count).parts(blocks)
+        yield from Collector(self.decoder, on_error, expected=self.count, batch=batch).parts(self._log.blocks_ahead(wanted))
 
     def _parts_of_tables(self, wanted: Wanted, on_error: OnError) -> Iterator[Part]:
         """The same for who keeps only tables. The batch is kept for the next time: fresh memory costs more than filling it."""
-        self.decoder.reset()
         try:
             batch = self._spare.pop()
         except IndexError:  # there was none, or another thread has it
             batch = None
-        for part in Collector(self.decoder, on_error, expected=self.count, batch=batch).parts(self._log.blocks_ahead(wanted)):
+        for part in self._parts(wanted, on_error, batch):
             batch = part.batch
             yield part
         self._spare[:] = () if batch is None else (batch,)
