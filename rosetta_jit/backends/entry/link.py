@@ -100,8 +100,7 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpa
     if not is_prelinking():
         return object_file(kernels, entry, **options)
     machine = target_machine(hurried=are_vast(kernels))
-    module = linked(_own_parts(kernels, entry, options, whole=False))
-    _optimise(module, kernels, entry, machine, options)
+    module = _own(kernels, entry, machine, options)
     images = machine.emit_object(module), *_surroundings(module, kernels, entry)
     return prelinked(*images, gives=(*SYMBOLS[entry], HOST, ON_DEMAND)) or object_file(kernels, entry, **options)
 
@@ -128,6 +127,27 @@ def optimised(kernels: Sequence[Kernel], entry: EntryName, machine: binding.Targ
     module = linked((*_own_parts(kernels, entry, options, whole=True), *_surrounding_texts(kernels, entry)))
     _optimise(module, kernels, entry, machine, options)
     return module
+
+
+def _own(kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, options: Options) -> binding.ModuleRef:
+    """A program's own module, after LLVM's passes: for what unusual messages need, which is much and seldom runs, a few of them do."""
+    unusual = ir.Module("unusual") if _has_unusual_apart(kernels, options) else None
+    context = binding.create_context()
+    module = linked(_own_parts(kernels, entry, options, whole=False, unusual=unusual), context)
+    _optimise(module, kernels, entry, machine, options)
+    if unusual is not None:
+        rest = linked((str(unusual),), context)
+        _empty(unusual)
+        run_few_passes(rest, machine)
+        module.link_in(rest)
+        make_private(module, (*SYMBOLS[entry], HOST, ON_DEMAND))
+    return module
+
+
+def _has_unusual_apart(kernels: Sequence[Kernel], options: Options) -> bool:
+    """Whether the bodies for unusual messages are optimised for themselves: LLVM's slow passes are for the arithmetic of the usual one."""
+    first = kernels[0]
+    return len(first.bodies) > 1 and not (first.routines or options["with_numba"]) and are_straight_and_compute(kernels)
 
 
 def _optimise(
@@ -159,13 +179,18 @@ def _optimise(
 # --- parts ---------------------------------------------------------------------------------------------------------------
 
 
-def _own_parts(kernels: Sequence[Kernel], entry: EntryName, options: Options, *, whole: bool) -> Iterator[str]:
-    """The modules that a program's own is linked from, as LLVM text; if it is to be ``whole``, they define what they call of `support`."""
+def _own_parts(
+    kernels: Sequence[Kernel], entry: EntryName, options: Options, *, whole: bool, unusual: ir.Module | None = None
+) -> Iterator[str]:
+    """The modules that a program's own is linked from, as LLVM text; if it is to be ``whole``, they define what they call of `support`.
+
+    What is for unusual messages goes into a module of its own, if one is given.
+    """
     opening = options.get("opening")
     if options["with_numba"] and not is_large(kernels[0]) and not calls_to_host(kernels):
         yield from _typed(kernels[0])
     else:
-        yield _emitted(kernels[0], FUNCTIONS[0], whole=whole)
+        yield _emitted(kernels[0], FUNCTIONS[0], whole=whole, unusual=unusual)
     yield from (_emitted(kernel, name, whole=whole) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
     if opening is not None:
         yield _going_on(kernels[0], opening)
@@ -252,9 +277,9 @@ def _support(name: str) -> bytes:
     return kept("support", name, lambda: object_of([definitions.text((name,))], (name,)))
 
 
-def _emitted(kernel: Kernel, name: str, *, whole: bool) -> str:
+def _emitted(kernel: Kernel, name: str, *, whole: bool, unusual: ir.Module | None = None) -> str:
     module = ir.Module(name)
-    llvm.emit(module, kernel, name, whole=whole)
+    llvm.emit(module, kernel, name, whole=whole, unusual=unusual)
     text = str(module)
     _empty(module)
     return text

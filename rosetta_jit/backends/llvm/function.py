@@ -53,14 +53,15 @@ TINY, SHORT = 8, 24
 """Statements up to which a routine is part of its callers: if it does not loop, and if its callers are not many."""
 
 
-def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True) -> ir.Function:
+def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, unusual: ir.Module | None = None) -> ir.Function:
     """Define the kernel's function in the module.
 
     The kernel must have passed `verify`: what it promises there is handed to LLVM as a fact. Unless the module is to be ``whole``, it only
-    declares the functions of `support` that the kernel calls. The next kernel of one that goes on is declared in any case.
+    declares the functions of `support` that the kernel calls. The next kernel of one that goes on is declared in any case. If a module is
+    given for them, the bodies for unusual messages are defined there; it is for kernels without routines, which all bodies call.
     """
     function = _function(module, SIGNATURE, f"{name}.inside" if kernel.hidden else name, ARGUMENTS)
-    _attempt(function, kernel, kernel.bodies, _routines(module, kernel, name))
+    _attempt(function, kernel, kernel.bodies, _routines(module, kernel, name), unusual)
     if whole:
         definitions.define(module)
     return _behind_check(module, kernel, function, name) if kernel.hidden else function
@@ -170,8 +171,9 @@ def _attempt(
     kernel: Kernel,
     bodies: Sequence[Block],
     routines: Mapping[str, ir.Function | Routine],
+    elsewhere: ir.Module | None = None,
 ) -> None:
-    """The first of the bodies, whose failures lead to the next one. What has failed so far stands in the state.
+    """The first of the bodies, whose failures lead to the next one, ``elsewhere`` or beside it. What has failed so far stands in the state.
 
     Each body has a function of its own, so that those behind the first take no part in what it keeps in registers.
     """
@@ -198,16 +200,18 @@ def _attempt(
     if len(bodies) == 1 and not kernel.goes_on:
         builder.ret(builder.sub(constant(-1), site))
         return
-    following = _following(function)
+    following = _following(function, function.module)
     if len(bodies) > 1:
-        following.linkage = "internal"
-        _attempt(following, kernel, bodies[1:], routines)
+        defined = following if elsewhere is None else _following(function, elsewhere)
+        if elsewhere is None:
+            defined.linkage = "internal"
+        _attempt(defined, kernel, bodies[1:], routines)
     builder.ret(builder.call(following, function.args))
 
 
-def _following(function: ir.Function) -> ir.Function:
+def _following(function: ir.Function, module: ir.Module) -> ir.Function:
     """A function that goes on where another one failed. It saves the registers that it uses, so that those that call it need not."""
-    following = _function(function.module, SIGNATURE, f"{function.name}.next", ARGUMENTS)
+    following = _function(module, SIGNATURE, f"{function.name}.next", ARGUMENTS)
     following.attributes.add("noinline")
     following.calling_convention = "preserve_mostcc"
     return following

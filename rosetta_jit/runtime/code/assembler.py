@@ -30,9 +30,12 @@ def _machine(level: int) -> binding.TargetMachine:
     return target.create_target_machine(cpu=binding.get_host_cpu_name(), features=features, opt=level, reloc="pic", codemodel="small")
 
 
-def linked(parts: Iterable[str]) -> binding.ModuleRef:
-    """One module in a context of its own: what LLVM makes for a module, types and constants above all, it keeps as long as the context."""
-    context = binding.create_context()
+def linked(parts: Iterable[str], context: binding.ContextRef | None = None) -> binding.ModuleRef:
+    """One module in a context of its own: what LLVM makes for a module, types and constants above all, it keeps as long as the context.
+
+    Modules that are to be linked later have a ``context`` in common.
+    """
+    context = context or binding.create_context()
     first, *others = (binding.parse_assembly(part, context) for part in parts)
     for module in others:
         first.link_in(module)
