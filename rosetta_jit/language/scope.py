@@ -7,8 +7,7 @@ from dataclasses import field, replace
 from typing import assert_never
 
 from rosetta_jit.catalogue import fields as words
-from rosetta_jit.catalogue import layouts
-from rosetta_jit.catalogue.suggestions import nearest
+from rosetta_jit.catalogue import layouts, suggestions
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.constants import Constants
 from rosetta_jit.language.conversions import SMALL, describe
@@ -143,7 +142,7 @@ def _member(
         fields = members[step.name]
         return [FieldStep(field) for field in fields], fields[-1].type
     scope.problems.append(_unknown(step, type_, members, scope, side, behind))
-    near = nearest(step.name, members.keys())
+    near = suggestions.nearest(step.name, members.keys())
     return Broken(() if near is None else (near,))  # any field may be meant where none has a name like it
 
 

@@ -12,7 +12,7 @@ from typing import Any, assert_never
 
 from rosetta_jit.backends.backend import Backend
 from rosetta_jit.catalogue import pipeline as words
-from rosetta_jit.catalogue.wires import not_here
+from rosetta_jit.catalogue import wires
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.host import UserFunction
 from rosetta_jit.kernel.ir import Kernel
@@ -49,7 +49,7 @@ class BridgeBuild:
             raise MappingError((words.half_a_bridge(),))
         first, second = Build(closed(decode, encode)), Build(closed(encode, decode))
         if first.wires:
-            raise MappingError((not_here(first.checked.mapping.wire_span, "a bridge"),))
+            raise MappingError((wires.not_here(first.checked.mapping.wire_span, "a bridge"),))
         filled, packed = first.types.holder, second.types.holder
         is_same = same_name(filled.name, packed.name)
         if is_same and not have_same_fields(first.layout, second.layout):

@@ -15,8 +15,7 @@ from rosetta_jit.backends.backend import Backend
 from rosetta_jit.backends.installed import backend_named
 from rosetta_jit.backends.installed import installed as installed_backends
 from rosetta_jit.catalogue import pipeline as words
-from rosetta_jit.catalogue.wires import single as single_wire
-from rosetta_jit.catalogue.wires import unknown as unknown_wire
+from rosetta_jit.catalogue import wires
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework
 from rosetta_jit.frameworks.installed import GROUP as FRAMEWORKS
@@ -349,7 +348,7 @@ def _mapped_types(build: Build) -> Types:
         return types_of_wire(checked, request, _both(checked), rules)
     if request.wire is not None:
         span = checked.mapping.wire_span
-        raise MappingError((unknown_wire(span, request.wire, ()) if request.wire else single_wire(span),))
+        raise MappingError((wires.unknown(span, request.wire, ()) if request.wire else wires.single(span),))
     return Types(checked.holder.root, checked.wire.root, _both(checked), rules, checked.functions, checked.state)
 
 

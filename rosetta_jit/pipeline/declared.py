@@ -6,9 +6,8 @@ import json
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.catalogue import bind, wires
 from rosetta_jit.catalogue import pipeline as words
-from rosetta_jit.catalogue.bind import needless
-from rosetta_jit.catalogue.wires import unknown as unknown_wire
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.installed import Readers, installed
@@ -55,9 +54,9 @@ def files_of(request: Request) -> Files:
 def declared_types(request: Request, files: Files) -> Types:
     """The type that a request names, as it is declared."""
     if request.wire is not None:
-        raise report(request, unknown_wire(None, request.wire, ()))
+        raise report(request, wires.unknown(None, request.wire, ()))
     for name in json.loads(request.parameters):
-        raise report(request, needless(name))
+        raise report(request, bind.needless(name))
     if request.plain is not None:
         type_, schema = from_plain(json.loads(request.plain))
         struct = schema.resolve(type_)

@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Mapping as Dictionary
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
-from rosetta_jit.catalogue.check import Block
-from rosetta_jit.catalogue.state import in_used
+from rosetta_jit.catalogue import state as state_words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError
 from rosetta_jit.language.check.causes import OF_WHOLE, causes, relations_of, rules_first, unclear
@@ -44,6 +44,9 @@ from rosetta_jit.model.types import Schema, name_parts
 from rosetta_jit.parsing.idl import FrontEnds
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.catalogue.check import Block
 
 SIDES: tuple[Side, ...] = ("holder", "wire")
 
@@ -156,7 +159,7 @@ def _wrong(texts: _Texts, resolved: Resolved) -> list[Diagnostic]:
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in set_again(block.rules)]
     again = {each.span for each in problems if each.code == "set-twice"}
     problems += [each for each in (_of_wires(resolved) if mapping.wires else ()) if each.span not in again]
-    problems += [in_used(other.state[0].span, other.source.name) for other in texts.usable.mappings() if other.state]
+    problems += [state_words.in_used(other.state[0].span, other.source.name) for other in texts.usable.mappings() if other.state]
     return rules_first(problems, relations)
 
 

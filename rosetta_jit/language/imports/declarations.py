@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rosetta_jit.catalogue import mapping as words
-from rosetta_jit.catalogue.suggestions import closest
+from rosetta_jit.catalogue import suggestions
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError, ReportError
 from rosetta_jit.language.imports.mappings import MAPPING_SUFFIX
@@ -54,7 +54,7 @@ class Imports:
     def read(self, statement: Import) -> Imported | Diagnostic:
         source = self.search.loader(self.reading, self.importer)(self.file(statement.path))
         if source is None:
-            near = closest(statement.path, self.search.alike(statement.path))
+            near = suggestions.closest(statement.path, self.search.alike(statement.path))
             return words.import_not_found(statement.span, statement.path, map(str, self.search.folders), near)
         if source.name.endswith(unit_file.SUFFIX):
             problems: list[Diagnostic] = []

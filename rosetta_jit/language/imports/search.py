@@ -16,7 +16,7 @@ from itertools import islice
 from pathlib import Path, PurePosixPath
 
 from rosetta_jit.catalogue import mapping as words
-from rosetta_jit.catalogue.suggestions import closest
+from rosetta_jit.catalogue import suggestions
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.language.limits import MAX_FILE_BYTES, MAX_LISTED_FILES, MAX_TEXT_BYTES
 from rosetta_jit.parsing.idl import Load
@@ -152,7 +152,7 @@ class SearchPath:
         except SchemaError as error:
             raise MappingError(error.diagnostics) from error
         if found is None:
-            near = closest(name, self.alike(name))
+            near = suggestions.closest(name, self.alike(name))
             raise MappingError((words.mapping_not_found(name, map(str, self.folders), near),))
         return found
 

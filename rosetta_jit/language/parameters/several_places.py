@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from rosetta_jit.catalogue import derive
 from rosetta_jit.catalogue import groups as words
-from rosetta_jit.catalogue.derive import OTHER_PARTS
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.groups import component, group_functions, group_of
 from rosetta_jit.language.limits import MAX_SINGLE
@@ -63,7 +63,7 @@ def _with_part(expr: Expr, number: int) -> Expr:
 def _other_parts(split: Call, count: int) -> Rule:
     """A rejection of texts with another number of parts than there are places."""
     other = Binary("!=", replace(split, function="parts"), Literal(count, split.span), split.span)
-    return When(other, (Reject(OTHER_PARTS, split.span),), (), split.span)
+    return When(other, (Reject(derive.OTHER_PARTS, split.span),), (), split.span)
 
 
 def spread(rule: Rule, variables: tuple[str, ...]) -> tuple[Rule, ...]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rosetta_jit.catalogue import state as words
-from rosetta_jit.catalogue.suggestions import closest
+from rosetta_jit.catalogue import suggestions
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.limits import MAX_STATE
 from rosetta_jit.language.parameters.values import SCALARS, accepted, written
@@ -49,7 +49,7 @@ def declared(mapping: model.Mapping, problems: list[Diagnostic]) -> Declared:
             problems.append(words.repeated(each.span, each.name, other))
         elif each.type not in TYPES:
             problems.append(words.unknown_type(each.span, each.type, TYPES))
-            initial[each.name], types[each.name] = 0, closest(each.type, TYPES) or "float64"  # what is probably meant
+            initial[each.name], types[each.name] = 0, suggestions.closest(each.type, TYPES) or "float64"  # what is probably meant
         else:
             initial[each.name], types[each.name] = _initial(each, problems), each.type
     return Declared(initial, types)

@@ -14,15 +14,13 @@ from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError
 from rosetta_jit.language.limits import MAX_CHARACTERS, MAX_IMPORTS, MAX_LIMIT, MAX_LIMIT_DIGITS, MAX_NESTING, MAX_TOKENS
 from rosetta_jit.language.parse.rules import Context, read_parameter, read_rule, read_state, read_string
-from rosetta_jit.language.parse.templates import grammar
+from rosetta_jit.language.parse.templates import grammar, tree_of
 from rosetta_jit.language.parse.wires import message_of, read_type_name, read_wires
 from rosetta_jit.model.mapping import Function, Import, Mapping, Rule, TypeName
 from rosetta_jit.parsing.lalr import Token, Tree
-from rosetta_jit.parsing.syntax import Recovery, parse_tokens
+from rosetta_jit.parsing.syntax import Recovery
 from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
-
-"""Brackets, blocks, operators of one expression, steps of one path: deeper is refused, so that every walk is bounded."""
 
 NESTING = frozenset(
     ("binary", "negative", "inversion", "conditional", "table", "group", "call", "index", "slice", "list", "length", "loop", "when")
@@ -49,7 +47,7 @@ def parse(source: Source) -> Mapping:
     refused = _too_many(tokens, source) or _too_deep(tokens, source)
     if refused is not None:
         raise MappingError((refused,))
-    tree = parse_tokens(grammar(), source, tokens, _recovery(), words.unexpected)
+    tree = tree_of(tokens, source, _recovery())
     if not isinstance(tree, Tree):
         raise MappingError(tuple(tree))
     return _Reader(source, []).read(tree)

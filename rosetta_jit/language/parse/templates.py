@@ -18,7 +18,7 @@ from rosetta_jit.model.expr import Expr, Literal
 from rosetta_jit.parsing.lalr import Grammar, Token, Tree
 from rosetta_jit.parsing.parsers import parser_of
 from rosetta_jit.parsing.syntax import Recovery, parse_tokens
-from rosetta_jit.source import Span
+from rosetta_jit.source import Source, Span
 
 GRAMMAR = Path(__file__).with_name("mapping.lark")
 MISTAKES = ("UNCLOSED", "STRANGE")
@@ -80,7 +80,7 @@ def expression_tree(text: str, place: Span, problems: list[Diagnostic], *, most:
         problems.append(words.nesting(place, most))
         return None
     before = [Token(kind, text, place.start, place.start) for kind, text in BEFORE]
-    tree = parse_tokens(grammar(), place.source, [*before, *tokens], NOWHERE, words.unexpected)
+    tree = tree_of([*before, *tokens], place.source, NOWHERE)
     if not isinstance(tree, Tree):
         problems.extend(tree)
         return None
@@ -90,6 +90,15 @@ def expression_tree(text: str, place: Span, problems: list[Diagnostic], *, most:
         problems.append(words.no_value(place))
         return None
     return next(value for value in found[0].children if isinstance(value, Tree))
+
+
+def tree_of(tokens: list[Token], source: Source, recovery: Recovery) -> Tree | list[Diagnostic]:
+    """The tree of tokens of the mapping language, else what is wrong with them."""
+
+    def unexpected(place: Span, kind: str, expected: frozenset[str]) -> Diagnostic:
+        return words.unexpected(place, kind, expected)
+
+    return parse_tokens(grammar(), source, tokens, recovery, unexpected)
 
 
 def _is_in(problem: Diagnostic, place: Span) -> bool:

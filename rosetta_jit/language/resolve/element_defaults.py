@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import rest as words
-from rosetta_jit.catalogue.resolve import many_defaults
 from rosetta_jit.language.limits import MAX_DEFAULTS
 from rosetta_jit.language.places import field_names, value_inside
 from rosetta_jit.language.resolve.defaults import ManyDefaultsError, default_rules
@@ -98,7 +98,7 @@ def with_defaults(rules: tuple[Rule, ...], wanted: Sequence[tuple[Elements, Span
     try:
         return in_one_loop(tuple(made for rule in rules for made in _with(rule, wanted, scope.messages[scope.target], 0)))
     except ManyDefaultsError:
-        scope.problems.append(many_defaults(wanted[0][1], MAX_DEFAULTS))
+        scope.problems.append(resolve.many_defaults(wanted[0][1], MAX_DEFAULTS))
         return rules
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from rosetta_jit.catalogue import pipeline
 from rosetta_jit.catalogue import resolve as words
-from rosetta_jit.catalogue.pipeline import too_large
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.constants import constants_of
 from rosetta_jit.language.functions.user_functions import signatures
@@ -27,7 +27,7 @@ def checked_message(schema: Schema, name: str, span: Span | None, problems: list
     found = _type_named(schema, name)
     if isinstance(found, Struct):
         why = excess(found, schema)
-        problems += [too_large(found.name, span, why)] if why else []
+        problems += [pipeline.too_large(found.name, span, why)] if why else []
         return None if why else Message(found, schema)
     if found is None:
         problems.append(words.unknown_type(span, name, [known for known, type_ in schema.types.items() if isinstance(type_, Struct)]))

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
+from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import units as words
-from rosetta_jit.catalogue.resolve import written_at
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.conversions import FLOAT64, describe
 from rosetta_jit.language.function import Function
@@ -107,7 +107,7 @@ def _element_of(value: Expr) -> str:
     """How an element is written of an array that a rule names as a whole; empty of all other values."""
     if not (isinstance(value, Access) and isinstance(value.place.steps[-1], IndexStep)):
         return ""
-    written = written_at(value.span)
+    written = resolve.written_at(value.span)
     name = written if written.startswith(".") else "." + ".".join(field_names(value.place))
     return "" if name.endswith("]") else f"{name}[]"
 

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import assert_never, cast
 
-from rosetta_jit.catalogue.pipeline import endless_copy
+from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.nodes import Block, Compare, Copy, Expr, For, If, IsText, Local, Wire
 from rosetta_jit.kernel.terms import add, index
@@ -240,7 +240,7 @@ class Runner:
         source, path, _ = self.source.descend(origin, values)
         target, target_path, _ = self.target.descend(place, values)
         if is_endless(source.layout, source.find(path).slot):
-            raise MappingError((endless_copy(place.span),))
+            raise MappingError((words.endless_copy(place.span),))
         if isinstance(place.type, Array | Map):
             self.bound(place, self.source.count(origin, values), values)
         with self.writer.nested() as there:
