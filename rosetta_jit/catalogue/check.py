@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.diagnostics import Diagnostic, Mistake, error, warning
@@ -12,8 +12,9 @@ from rosetta_jit.source import Span
 BEYOND = "indices count from 0 and stay below the length: correct the index, or the length"
 
 
-Block = Literal["rules", "unpack-rules", "pack-rules", ""]
-"""Where a missing rule is to be written; empty where the mapping has blocks for one direction alone, and it goes without saying."""
+if TYPE_CHECKING:
+    Block = Literal["rules", "unpack-rules", "pack-rules", ""]
+    """Where a missing rule is to be written; empty where the mapping has blocks for one direction alone, and it goes without saying."""
 
 
 def never_set(span: Span | None, side: str, path: str, declared: Span | None, *, kind: str, block: Block) -> Diagnostic:

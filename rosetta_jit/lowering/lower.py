@@ -19,7 +19,7 @@ from rosetta_jit.language.check.discriminators import Discriminator, discriminat
 from rosetta_jit.language.check.wire_shares import Share
 from rosetta_jit.language.scope import Message
 from rosetta_jit.language.typed import Rule
-from rosetta_jit.lowering.codec.ending import end
+from rosetta_jit.lowering.codec.ending import end, length_first
 from rosetta_jit.lowering.codec.holder_fields import HolderFields, root_fields
 from rosetta_jit.lowering.codec.walk import walk
 from rosetta_jit.lowering.codec.wire_fields import Found, WireFields
@@ -142,10 +142,12 @@ class _Lowering:
     def kernel(self, name: str, relate: Relate) -> Kernel:
         writer = Writer(self.direction, [*(lane.stride for lane in self.layout.lanes), SCRATCH_STRIDE], references=self.references)
         own = len(writer.strides)
-        bodies = tuple(self.body(writer, attempt, relate) for attempt in self.attempts)
+        bodies = [self.body(writer, attempt, relate) for attempt in self.attempts]
+        expected = self.encoding.expected if self.direction == "decode" else 0
+        bodies[:expected] = [length_first(writer, body) for body in bodies[:expected]]
         strides, routines = tuple(writer.strides), tuple(writer.routines.values())
         sites, hidden = tuple(writer.sites), len(strides) - own
-        return Kernel(name, self.direction, strides, bodies, sites, routines, hidden, self.registers, self.kept)
+        return Kernel(name, self.direction, strides, tuple(bodies), sites, routines, hidden, self.registers, self.kept)
 
     def body(self, writer: Writer, attempt: Codec, relate: Relate) -> Block:
         writer.registers = {}

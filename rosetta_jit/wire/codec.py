@@ -361,7 +361,8 @@ class Encoding:
     ``recursive`` are the messages of recursive structs; where the message is not `Tagged`, ``nested`` are their codecs, for each attempt.
     ``origin`` is where alignment counts from, in bytes behind the begin of the message. At its end there is what ``ending`` says, and
     ``spare`` bytes may be left over. Of the leniency ``trailing`` of the encoding, so many could: ``forgivable``, 0 where it has none.
-    The last attempt is for messages that hardly ever come, if there is ``rare``.
+    The last attempt is for messages that hardly ever come, if there is ``rare``. The first ``expected`` attempts read the usual form alone:
+    a later one reads all that they read, and says what is wrong with what they do not.
     """
 
     name: str
@@ -374,6 +375,7 @@ class Encoding:
     spare: int = 0
     forgivable: int = 0
     rare: Rare | None = None
+    expected: int = 0
 
     @property
     def usual(self) -> Encoding:

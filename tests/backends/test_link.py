@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 import re
 import struct
 import time
@@ -144,3 +145,13 @@ def _took_to_compile(kernels):
     started = time.process_time()
     object_file(kernels, "decode", with_numba=False)
     return time.process_time() - started
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="reads the assembler text of one processor")
+def test_what_unusual_messages_need_is_no_part_of_the_usual_call():
+    """Up to its first return the call saves no register, and calls nothing."""
+    text = assembly([kernels.attempts()], "decode", with_numba=False)
+    usual = re.search(r"^call:\n(.*?)\tretq\n", text, re.DOTALL | re.MULTILINE)
+    assert usual is not None
+    assert not re.search(r"\t(push|pop|call|sub)", usual[1])
+    assert "kernel.next" in text

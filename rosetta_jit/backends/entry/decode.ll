@@ -2,12 +2,13 @@
 ;
 ; A bytes object alone is decoded here, by a kernel that is part of this function if it is short: then its row is known to be 0, and its first byte
 ; to be the message's. Else little is kept across its call, so that few registers are saved for the caller. The program's own holder belongs to
-; one thread, and the slow path has one for each other thread. What a borrowing decoder does besides is `retain`.
+; one thread, and the slow path has one for each other thread. What a borrowing decoder does besides is `retain`. Where the kernel's first body
+; alone is part of this function, the message that it leaves to the next one is `call_of_next`'s (`first_body.ll`): a function that calls nothing
+; but at its very end needs no stack.
 declare ptr @any_call(ptr, ptr, i64, ptr)
 
 define ptr @call(ptr %self, ptr %args, i64 %nargsf, ptr %names) {
-  %count = call i64 @positional(i64 %nargsf, ptr %names)
-  %alone = icmp eq i64 %count, 1
+  %alone = call i1 @is_alone(i64 %nargsf, ptr %names)
   br i1 %alone, label %look, label %other, !prof !1
 look:
   %message = load ptr, ptr %args
@@ -22,9 +23,9 @@ bytes:
   %epoch = call i64 @epoch(ptr %state)
   %free = icmp sge i64 %epoch, 0
   %unshared = call i1 @registers_are_free(ptr %context)
-  %known = and i1 %mine, %free
+  %lent = and i1 %mine, %free
   %ready = call i1 @is_ready(ptr %state)
-  %fit = and i1 %known, %unshared
+  %fit = and i1 %lent, %unshared
   %usable = and i1 %fit, %ready
   br i1 %usable, label %decode, label %other, !prof !1
 decode:
@@ -34,27 +35,38 @@ decode:
   call void @enter(ptr %state, i64 %epoch, i64 1)
   call void @lend_registers(ptr %context, ptr %state)
   call void @tell(ptr %context, ptr %state)
-  %result = call i64 @kernel(ptr %data, i64 0, i64 %size, ptr %state, i64 0) #0
+  %result = call i64 @usual(ptr %data, i64 %size, ptr %state)
+  %known = icmp ne i64 %result, -9223372036854775808
+  br i1 %known, label %finish, label %ask, !prof !0
+finish:
   call void @leave(ptr %state, i64 %epoch, i64 1)
+  %state.now = call ptr @state_behind(ptr %context, ptr %state)
+  %answer = tail call ptr @finish(ptr %context, ptr %state.now, ptr %args, ptr %message, i64 %result)
+  ret ptr %answer
+ask:
+  %other.answer = tail call ptr @call_of_next(ptr %self, ptr %args)
+  ret ptr %other.answer
+other:
+  %found = musttail call ptr @any_call(ptr %self, ptr %args, i64 %nargsf, ptr %names)
+  ret ptr %found
+}
+
+; What a call ends with: the holder, or what the slow path says.
+define internal ptr @finish(ptr %context, ptr %state, ptr %args, ptr %message, i64 %result) alwaysinline {
   %good = icmp sge i64 %result, 0
   br i1 %good, label %return, label %failed, !prof !0
 return:
-  %good.state = load ptr, ptr %context
-  store i64 1, ptr %good.state
+  store i64 1, ptr %state
   call void @retain(ptr %context, ptr %message)
   %holder.at = getelementptr ptr, ptr %context, i64 1
   %holder = load ptr, ptr %holder.at
   call void @keep(ptr %holder)
   ret ptr %holder
 failed:
-  %bad.state = load ptr, ptr %context
-  store i64 0, ptr %bad.state
-  call void @untell(ptr %context, ptr %bad.state)
+  store i64 0, ptr %state
+  call void @untell(ptr %context, ptr %state)
   call void @say_failed(ptr %context)
-  call void @note(i64 %result, ptr %bad.state)
+  call void @note(i64 %result, ptr %state)
   %answer = tail call ptr @slow(ptr %context, ptr %args, i64 1, ptr null)
   ret ptr %answer
-other:
-  %found = musttail call ptr @any_call(ptr %self, ptr %args, i64 %nargsf, ptr %names)
-  ret ptr %found
 }

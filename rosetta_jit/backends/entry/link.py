@@ -147,7 +147,12 @@ def _own(kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMac
 def _has_unusual_apart(kernels: Sequence[Kernel], options: Options) -> bool:
     """Whether the bodies for unusual messages are optimised for themselves: LLVM's slow passes are for the arithmetic of the usual one."""
     first = kernels[0]
-    return len(first.bodies) > 1 and not (first.routines or options["with_numba"]) and are_straight_and_compute(kernels)
+    return len(first.bodies) > 1 and not (first.routines or _is_typed(kernels, options)) and are_straight_and_compute(kernels)
+
+
+def _is_typed(kernels: Sequence[Kernel], options: Options) -> bool:
+    """Whether the first kernel goes through numba."""
+    return options["with_numba"] and not is_large(kernels[0]) and not calls_to_host(kernels)
 
 
 def _optimise(
@@ -187,10 +192,11 @@ def _own_parts(
     What is for unusual messages goes into a module of its own, if one is given.
     """
     opening = options.get("opening")
-    if options["with_numba"] and not is_large(kernels[0]) and not calls_to_host(kernels):
+    has_usual = _has_usual(kernels, entry, options)
+    if _is_typed(kernels, options):
         yield from _typed(kernels[0])
     else:
-        yield _emitted(kernels[0], FUNCTIONS[0], whole=whole, unusual=unusual)
+        yield _emitted(kernels[0], FUNCTIONS[0], whole=whole, has_usual=has_usual, unusual=unusual)
     yield from (_emitted(kernel, name, whole=whole) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
     if opening is not None:
         yield _going_on(kernels[0], opening)
@@ -203,7 +209,7 @@ def _own_parts(
     if entry == "bridge":
         yield references_text(options.get("references", ()))
     if _is_inside(kernels, entry):
-        yield _usual(_entry_text(USUAL[entry], kernels), SYMBOLS[entry])
+        yield _usual(_entry_text((*USUAL[entry], "first_body.ll" if has_usual else "all_bodies.ll"), kernels), SYMBOLS[entry])
     if _has_own_many(kernels, entry):
         yield from _own_many(kernels[0], whole=whole)
 
@@ -213,13 +219,20 @@ def _surrounding_texts(kernels: Sequence[Kernel], entry: EntryName) -> tuple[str
     rest = ALONE if _has_own_many(kernels, entry) else REST[entry]
     if entry == "encode" and leaves_something(kernels[1]):
         rest = tuple("leaving.ll" if each == "unmeasured.ll" else each for each in rest)
-    around = (rest,) if _is_inside(kernels, entry) else (USUAL[entry], rest)
+    around = (rest,) if _is_inside(kernels, entry) else ((*USUAL[entry], "all_bodies.ll"), rest)
     return tuple(_entry_text(templates, kernels) for templates in around if templates)
 
 
 def _is_inside(kernels: Sequence[Kernel], entry: EntryName) -> bool:
     """Whether the usual call is compiled with the kernels, of which those that are short become a part of it."""
     return entry == "bridge" or is_short_and_straight(kernels[0])
+
+
+def _has_usual(kernels: Sequence[Kernel], entry: EntryName, options: Options) -> bool:
+    """Whether of the kernel the first of several bodies alone becomes a part of the usual call."""
+    kernel = kernels[0]
+    several = len(kernel.bodies) > 1 and not kernel.hidden and is_short_and_straight(kernel)
+    return entry in ("decode", "borrow") and several and not (calls_to_host(kernels) or _is_typed(kernels, options))
 
 
 def _has_own_many(kernels: Sequence[Kernel], entry: EntryName) -> bool:
@@ -277,9 +290,9 @@ def _support(name: str) -> bytes:
     return kept("support", name, lambda: object_of([definitions.text((name,))], (name,)))
 
 
-def _emitted(kernel: Kernel, name: str, *, whole: bool, unusual: ir.Module | None = None) -> str:
+def _emitted(kernel: Kernel, name: str, *, whole: bool, has_usual: bool = False, unusual: ir.Module | None = None) -> str:
     module = ir.Module(name)
-    llvm.emit(module, kernel, name, whole=whole, unusual=unusual)
+    llvm.emit(module, kernel, name, whole=whole, has_usual=has_usual, unusual=unusual)
     text = str(module)
     _empty(module)
     return text

@@ -50,6 +50,15 @@ define internal i64 @positional(i64 %nargsf, ptr %names) alwaysinline {
   ret i64 %answer
 }
 
+; Whether a call has one positional argument and nothing else. No call has 2^32 of them, so that half a word says it.
+define internal i1 @is_alone(i64 %nargsf, ptr %names) alwaysinline {
+  %low = trunc i64 %nargsf to i32
+  %single = icmp eq i32 %low, 1
+  %unnamed = icmp eq ptr %names, null
+  %answer = and i1 %single, %unnamed
+  ret i1 %answer
+}
+
 define internal ptr @slow(ptr %context, ptr %args, i64 %nargsf, ptr %names) alwaysinline {
   %at = getelementptr ptr, ptr %context, i64 2
   %callable = load ptr, ptr %at

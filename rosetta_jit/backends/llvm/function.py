@@ -49,22 +49,60 @@ SEVERAL = 4
 MANY_STATEMENTS = 512
 """Statements of a body from which on its failures are so many that each stores what it reports."""
 
+UNUSUAL = -1 << 63
+"""What a kernel's first body gives where the next one is to be asked: no place in a message, and the number of no failure."""
+
 TINY, SHORT = 8, 24
 """Statements up to which a routine is part of its callers: if it does not loop, and if its callers are not many."""
 
 
-def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, unusual: ir.Module | None = None) -> ir.Function:
+def emit(
+    module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, has_usual: bool = False, unusual: ir.Module | None = None
+) -> ir.Function:
     """Define the kernel's function in the module.
 
-    The kernel must have passed `verify`: what it promises there is handed to LLVM as a fact. Unless the module is to be ``whole``, it only
-    declares the functions of `support` that the kernel calls. The next kernel of one that goes on is declared in any case. If a module is
-    given for them, the bodies for unusual messages are defined there; it is for kernels without routines, which all bodies call.
+    The kernel must have passed `verify`: what it promises there is handed to LLVM as a fact.
+
+    Parameters
+    ----------
+    whole
+        Whether the functions of `support` that the kernel calls are defined, too, or only declared. The next kernel of one that goes on is
+        declared in any case.
+    has_usual
+        Whether the first body of several is a function for others, too, to be put into what calls it: `NAME.usual`, which gives `UNUSUAL`
+        where `NAME.next` is to be asked.
+    unusual
+        A module for all bodies but the first. It is for kernels without routines, which all bodies call.
     """
-    function = _function(module, SIGNATURE, f"{name}.inside" if kernel.hidden else name, ARGUMENTS)
-    _attempt(function, kernel, kernel.bodies, _routines(module, kernel, name), unusual)
+    routines = _routines(module, kernel, name)
+    inside = f"{name}.inside" if kernel.hidden else name
+    usual = _function(module, SIGNATURE, f"{name}.usual", ARGUMENTS) if has_usual and len(kernel.bodies) > 1 else None
+    function = _function(module, SIGNATURE, inside, ARGUMENTS)
+    following = _following(unusual or module, kernel, 1, f"{inside}.next", routines)
+    if following is not None and (has_usual or unusual is not None):
+        following.linkage = ""  # others call it
+        following = following if unusual is None else _of_next(module, following.name)
+    if usual is None or following is None:
+        _attempt(function, kernel, 0, routines, following)
+    else:
+        usual.attributes.add("alwaysinline")
+        _attempt(usual, kernel, 0, routines, constant(UNUSUAL))
+        _usual_or_next(function, usual, following)
     if whole:
         definitions.define(module)
     return _behind_check(module, kernel, function, name) if kernel.hidden else function
+
+
+def _usual_or_next(function: ir.Function, usual: ir.Function, following: ir.Function) -> None:
+    """The body of a kernel's function whose bodies all have functions of their own."""
+    builder = ir.IRBuilder(function.append_basic_block("entry"))
+    result = builder.call(usual, function.args)
+    done, other = function.append_basic_block("done"), function.append_basic_block("other")
+    builder.cbranch(builder.icmp_signed("!=", result, constant(UNUSUAL)), done, other).set_weights(COLD)
+    builder.position_at_end(done)
+    builder.ret(result)
+    builder.position_at_end(other)
+    builder.ret(builder.call(following, function.args))
 
 
 def _routines(module: ir.Module, kernel: Kernel, name: str) -> Mapping[str, ir.Function | Routine]:
@@ -169,25 +207,28 @@ def _give(target: Exit, outcome: ir.LiteralStructType, values: Sequence[ir.Value
 def _attempt(
     function: ir.Function,
     kernel: Kernel,
-    bodies: Sequence[Block],
+    number: int,
     routines: Mapping[str, ir.Function | Routine],
-    elsewhere: ir.Module | None = None,
+    otherwise: ir.Function | ir.Constant | None,
 ) -> None:
-    """The first of the bodies, whose failures lead to the next one, ``elsewhere`` or beside it. What has failed so far stands in the state.
+    """One of the bodies. What has failed so far stands in the state.
 
-    Each body has a function of its own, so that those behind the first take no part in what it keeps in registers.
+    Parameters
+    ----------
+    otherwise
+        Where failures lead to: a function of the same arguments, or a result; None for the failure's own.
     """
     entry, first = Lines(function.append_basic_block("entry")), function.append_basic_block("body")
-    is_first = len(bodies) == len(kernel.bodies)
+    body, is_first = kernel.bodies[number], number == 0
     done, failed = _exit(entry, "done", 1), _failed(entry, kernel, function.args[3], is_first=is_first)
     parameters, lanes, emptied = Parameters(*function.args), (kernel.strides, kernel.lanes), emptied_lanes(kernel)
     frame = Frame(function.module, entry, entry.beside(first), parameters, *lanes, {}, done, failed, emptied, routines)
     frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
-    counted = counted_lanes(kernel, bodies[0])
-    frame.alike, frame.counting = found(kernel, bodies[0]), bool(counted)
+    counted = counted_lanes(kernel, body)
+    frame.alike, frame.counting = found(kernel, body), bool(counted)
     if frame.alike and counted:
         begin_rows(frame, kernel.direction)
-    llvm_checks.body(frame, bodies[0])
+    llvm_checks.body(frame, body)
     if not frame.builder.block.is_terminated:
         frame.builder.unreachable()  # verified: every path that gets here has ended in a Return before
     _finish(frame, counted)
@@ -197,24 +238,36 @@ def _attempt(
         return
     builder = ir.IRBuilder(failed.block)
     site = _record(builder, parameters.state, failed, is_first=is_first)
-    if len(bodies) == 1 and not kernel.goes_on:
-        builder.ret(builder.sub(constant(-1), site))
-        return
-    following = _following(function, function.module)
-    if len(bodies) > 1:
-        defined = following if elsewhere is None else _following(function, elsewhere)
-        if elsewhere is None:
-            defined.linkage = "internal"
-        _attempt(defined, kernel, bodies[1:], routines)
-    builder.ret(builder.call(following, function.args))
+    match otherwise:
+        case None:
+            builder.ret(builder.sub(constant(-1), site))
+        case ir.Function():
+            builder.ret(builder.call(otherwise, function.args))
+        case _:
+            builder.ret(otherwise)
 
 
-def _following(function: ir.Function, module: ir.Module) -> ir.Function:
+def _following(
+    module: ir.Module, kernel: Kernel, number: int, name: str, routines: Mapping[str, ir.Function | Routine]
+) -> ir.Function | None:
+    """The function of the bodies from one on, or of the next kernel, which others define; None behind the last one.
+
+    Each body has a function of its own, so that those behind the first take no part in what it keeps in registers.
+    """
+    if number == len(kernel.bodies):
+        return _of_next(module, name) if kernel.goes_on else None
+    function = _of_next(module, name)
+    function.linkage = "internal"
+    _attempt(function, kernel, number, routines, _following(module, kernel, number + 1, f"{name}.next", routines))
+    return function
+
+
+def _of_next(module: ir.Module, name: str) -> ir.Function:
     """A function that goes on where another one failed. It saves the registers that it uses, so that those that call it need not."""
-    following = _function(module, SIGNATURE, f"{function.name}.next", ARGUMENTS)
-    following.attributes.add("noinline")
-    following.calling_convention = "preserve_mostcc"
-    return following
+    function = _function(module, SIGNATURE, name, ARGUMENTS)
+    function.attributes.add("noinline")
+    function.calling_convention = "preserve_mostcc"
+    return function
 
 
 def _width(kernel: Kernel) -> int:

@@ -10,6 +10,7 @@ first attempt, and the general one comes after it.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
@@ -34,7 +35,7 @@ def encode_type(struct: Struct, schema: Schema, dialect: str, choices: Choices) 
     """
     if dialect != "yarp":
         attempts = _attempts(struct, schema, DIALECTS[dialect])
-        return Encoding(dialect, _codecs(attempts), attempts[-1].codec, nested=_nested(attempts))
+        return Encoding(dialect, _codecs(attempts), attempts[-1].codec, nested=_nested(attempts), expected=len(attempts) - 1)
     usable = [each for each in (YARP2012, YARP3, YARP4) if not _missing(struct, schema, each)]
     if not usable:
         return encode_type(struct, schema, "yarp4", choices)
@@ -43,7 +44,9 @@ def encode_type(struct: Struct, schema: Schema, dialect: str, choices: Choices) 
     forms = [_attempts(struct, schema, each) for each in usable]
     ordered = [form[0] for form in forms] + [each for form in forms for each in form[1:]]
     different = [*dict.fromkeys(ordered)]
-    return Encoding("yarp", _codecs(different), None, nested=_nested(different))
+    general = {form[-1] for form in forms}
+    expected = sum(1 for _ in takewhile(lambda each: each not in general, different))
+    return Encoding("yarp", _codecs(different), None, nested=_nested(different), expected=expected)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,8 +2,23 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.nodes import WIDTH, Binary, Compare, Const, Convert, Expr, For, If, Load, Local, Store
-from rosetta_jit.kernel.terms import BEGIN, END, add, index
+from rosetta_jit.kernel.nodes import (
+    WIDTH,
+    Binary,
+    Block,
+    Compare,
+    Const,
+    Convert,
+    Expect,
+    Expr,
+    For,
+    If,
+    Load,
+    Local,
+    Return,
+    Store,
+)
+from rosetta_jit.kernel.terms import BEGIN, END, add, index, split
 from rosetta_jit.lowering.codec.leaves import align, distance
 from rosetta_jit.lowering.writer import MESSAGE, Writer, block, integer
 from rosetta_jit.wire.codec import Encoding, Ending
@@ -11,9 +26,12 @@ from rosetta_jit.wire.codec import Encoding, Ending
 BITS = 3
 """Those of the byte that say how much padding there is."""
 LEFT_OVER = "bytes are left over"
+UNUSUAL_LENGTH = "not of the usual length: the next attempt says what is wrong"
 REMEDY = 'lenient=["trailing"]'
 ANY = 1 << 31
 """Where so many bytes may be left over, there are no more in any message."""
+NOT_TRIED = index(-1)
+"""Where an attempt fails that has not looked at the message: whatever the next one finds lies farther."""
 
 
 def end(writer: Writer, encoding: Encoding) -> None:
@@ -36,6 +54,18 @@ def end(writer: Writer, encoding: Encoding) -> None:
         _at_most(writer, most)
         _zeros(writer, 1 if ending is None else ending.unstated, stated, f"{LEFT_OVER}; {REMEDY} forgives up to {most}")
     writer.emit(If(Compare("lt", writer.position, END), block(longer)))
+
+
+def length_first(writer: Writer, body: Block) -> Block:
+    """The body of an attempt that leaves what is wrong to a later one: where all its messages have one length, it begins with that.
+
+    What it asks of the length field by field follows from it, and is not asked any more (`rosetta_jit.kernel.passes.drop`).
+    """
+    match body:
+        case (*before, Expect(Compare("eq", place, end) as is_usual), Return() as last) if end == END and split(place)[0] == BEGIN:
+            return (Expect(is_usual, writer.failure("trailing", MESSAGE, UNUSUAL_LENGTH, at=NOT_TRIED)), *before, last)
+        case _:
+            return body
 
 
 def _skip(writer: Writer, ending: Ending) -> Expr:

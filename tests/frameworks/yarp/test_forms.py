@@ -148,3 +148,29 @@ def test_an_element_by_a_difference_that_may_be_anything():
         with pytest.raises(rj.DecodeError) as found:
             decode(encode({**values, **wrong}))
         assert found.value.path.startswith(".xs[")
+
+
+@pytest.mark.parametrize("backend", ["interpreter", "python", "llvm"])
+@pytest.mark.parametrize("encoding", ["yarp3", "yarp"])
+def test_a_bottle_of_one_length_is_known_by_it(encoding, backend):
+    """What is longer or shorter is left to the general form, which says what is wrong, and where."""
+    schema = {"t.bottle-schema": '"t.T"\n( ("a" :double) ("b" :double) )'}
+    decode = rj.Decoder.of("t.T", schema=schema, encoding=encoding, backend=backend)
+    assert "body 0:\n  expect ((begin + 24) == end)" in decode.stage("kernel")
+    usual, other = struct.pack("<iidd", 256 | 10, 2, 1.5, -2.0), struct.pack("<iiidid", 256, 2, 10, 1.5, 10, -2.0)
+    assert decode(usual).to_dict() == decode(other).to_dict() == {"a": 1.5, "b": -2.0}
+    where = {0: "byte 0", 4: "byte 4", 8: "`.a`, byte 8", 16: "`.b`, byte 16"}
+    for cut in range(len(usual)):
+        place = where[max(each for each in where if each <= cut)]
+        with pytest.raises(rj.DecodeError, match=f"^truncated: .*{place}$"):
+            decode(usual[:cut])
+    with pytest.raises(rj.DecodeError, match=r"^trailing: .* at byte 24"):
+        decode(usual + b"\0")
+    assert decode(usual).b == -2.0
+
+
+def test_a_form_that_is_the_only_one_says_itself_what_is_wrong():
+    decode, _ = programs(':packed ("a" :double) ("b" :double)')
+    assert "body 1" not in decode.stage("kernel")
+    with pytest.raises(rj.DecodeError, match=r"^truncated: .*`.b`, byte 8"):
+        decode(bytes(8))

@@ -48,16 +48,10 @@
 (defparameter *decode-sites*
   (vector
     (site :count "" "the message asks for more memory than its size allows" "")
-    (site :truncated "" "the message ends here" "")
+    (site :trailing "" "not of the usual length: the next attempt says what is wrong" "")
     (site :tag "" "must be 266" "")
-    (site :truncated
-          ""
-          "the message ends here"
-          ""
-          :parts
-          '((0 4 0 "") (4 8 0 ".yaw") (12 8 0 ".roll") (20 8 0 ".pitch")))
     (site :count "" "must be 3" "")
-    (site :trailing "" "bytes are left over" "")
+    (site :truncated "" "the message ends here" "")
     (site :truncated
           ""
           "the message ends here"
@@ -79,7 +73,8 @@
     (site :tag ".yaw" "must be 10" "")
     (site :tag ".roll" "must be 10" "")
     (site :tag ".pitch" "must be 10" "")
-    (site :tag "" "must be one of 266, 256" "")))
+    (site :tag "" "must be one of 266, 256" "")
+    (site :trailing "" "bytes are left over" "")))
 
 (defun decode-kernel (codec data end attempt)
   (declare (optimize (speed 1) (safety 0) (debug 0) (compilation-speed 2)) (type codec codec) (type octets data)
@@ -92,15 +87,13 @@
                 (start 0))
            (declare (type octets message angles) (type i64 angles-used start)
                     (ignorable message angles angles-used start))
+           (when (/= 32 end)
+             (return-from decode-1 (fail codec 1 -1)))  ; trailing: not of the usual length: the next attempt says what is wrong
            (fill-octets message 0 32 0)
-           (when (< end 4)
-             (return-from decode-1 (fail codec 1 0)))  ; truncated: the message ends here
            (when (/= (i32-at data 0) 266)
              (return-from decode-1 (fail codec 2 0)))  ; tag: must be 266
-           (when (< end 32)
-             (return-from decode-1 (fail codec 3 4)))  ; truncated: the message ends here
            (when (/= (i32-at data 4) 3)
-             (return-from decode-1 (fail codec 4 4)))  ; count: must be 3
+             (return-from decode-1 (fail codec 3 4)))  ; count: must be 3
            (reserve (angles (codec.angles codec) 4) angles-used 3 codec (return-from decode-1 (full codec ".angles")))
            (setf start angles-used)
            (setf angles-used (i64+ angles-used 3))
@@ -112,8 +105,6 @@
            (setf (f32-at angles (row 4 (i64+ start 1))) (f32-of-f64 (* (f64-at data 16) 0.017453292519943295d0)))
            ;; torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch))
            (setf (f32-at angles (row 4 (i64+ start 2))) (f32-of-f64 (* (f64-at data 24) 0.017453292519943295d0)))
-           (when (/= 32 end)
-             (return-from decode-1 (fail codec 5 32)))  ; trailing: bytes are left over
            (return-from decode-1 32)))
        (decode-2 ()
          (let* ((message (codec.message codec))
@@ -130,7 +121,7 @@
                     (ignorable message angles angles-used code yaw-2 roll-2 pitch-2 next start-2))
            (fill-octets message 0 32 0)
            (when (< end 4)
-             (return-from decode-2 (fail codec 1 0)))  ; truncated: the message ends here
+             (return-from decode-2 (fail codec 4 0)))  ; truncated: the message ends here
            (setf code (i32-at data 0))
            (setf yaw-2 0.0d0)
            (setf roll-2 0.0d0)
@@ -139,30 +130,30 @@
            (case code
              (266
               (when (< end 32)
-                (return-from decode-2 (fail codec 6 4)))  ; truncated: the message ends here
+                (return-from decode-2 (fail codec 5 4)))  ; truncated: the message ends here
               (when (/= (i32-at data 4) 3)
-                (return-from decode-2 (fail codec 4 4)))  ; count: must be 3
+                (return-from decode-2 (fail codec 3 4)))  ; count: must be 3
               (setf yaw-2 (f64-at data 8))
               (setf roll-2 (f64-at data 16))
               (setf pitch-2 (f64-at data 24))
               (setf next 32))
              (256
               (when (< end 44)
-                (return-from decode-2 (fail codec 7 4)))  ; truncated: the message ends here
+                (return-from decode-2 (fail codec 6 4)))  ; truncated: the message ends here
               (when (/= (i32-at data 4) 3)
-                (return-from decode-2 (fail codec 4 4)))  ; count: must be 3
+                (return-from decode-2 (fail codec 3 4)))  ; count: must be 3
               (when (/= (i32-at data 8) 10)
-                (return-from decode-2 (fail codec 8 8)))  ; tag .yaw: must be 10
+                (return-from decode-2 (fail codec 7 8)))  ; tag .yaw: must be 10
               (setf yaw-2 (f64-at data 12))
               (when (/= (i32-at data 20) 10)
-                (return-from decode-2 (fail codec 9 20)))  ; tag .roll: must be 10
+                (return-from decode-2 (fail codec 8 20)))  ; tag .roll: must be 10
               (setf roll-2 (f64-at data 24))
               (when (/= (i32-at data 32) 10)
-                (return-from decode-2 (fail codec 10 32)))  ; tag .pitch: must be 10
+                (return-from decode-2 (fail codec 9 32)))  ; tag .pitch: must be 10
               (setf pitch-2 (f64-at data 36))
               (setf next 44))
              (t
-              (return-from decode-2 (fail codec 11 0))))  ; tag: must be one of 266, 256
+              (return-from decode-2 (fail codec 10 0))))  ; tag: must be one of 266, 256
            (reserve (angles (codec.angles codec) 4) angles-used 3 codec (return-from decode-2 (full codec ".angles")))
            (setf start-2 angles-used)
            (setf angles-used (i64+ angles-used 3))
@@ -175,7 +166,7 @@
            ;; torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch))
            (setf (f32-at angles (row 4 (i64+ start-2 2))) (f32-of-f64 (* pitch-2 0.017453292519943295d0)))
            (when (/= next end)
-             (return-from decode-2 (fail codec 5 next)))  ; trailing: bytes are left over
+             (return-from decode-2 (fail codec 11 next)))  ; trailing: bytes are left over
            (return-from decode-2 next))))
     (case attempt (1 (decode-1)) (t (decode-2)))))
 

@@ -256,7 +256,7 @@ static int64_t reach(size_t size)
     return given < (UINT64_C(1) << 60) ? (int64_t)given : (INT64_C(1) << 60);
 }
 
-static const struct part decode_parts_3[] = {
+static const struct part decode_parts_5[] = {
     {0, 4, 0, ""},
     {4, 8, 0, TEXT(".yaw")},
     {12, 8, 0, TEXT(".roll")},
@@ -264,13 +264,6 @@ static const struct part decode_parts_3[] = {
 };
 
 static const struct part decode_parts_6[] = {
-    {0, 4, 0, ""},
-    {4, 8, 0, TEXT(".yaw")},
-    {12, 8, 0, TEXT(".roll")},
-    {20, 8, 0, TEXT(".pitch")},
-};
-
-static const struct part decode_parts_7[] = {
     {0, 4, 0, ""},
     {4, 4, 0, TEXT(".yaw")},
     {8, 8, 0, TEXT(".yaw")},
@@ -282,17 +275,17 @@ static const struct part decode_parts_7[] = {
 
 static const struct site decode_sites[] = {
     {TORSO_STATE_FULL, "", TEXT("a lane is too small"), "", -1, 0, NULL},
-    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 0, NULL},
+    {TORSO_STATE_TRAILING, "", TEXT("not of the usual length: the next attempt says what is wrong"), "", -1, 0, NULL},
     {TORSO_STATE_TAG, "", TEXT("must be 266"), "", -1, 0, NULL},
-    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 4, decode_parts_3},
     {TORSO_STATE_COUNT, "", TEXT("must be 3"), "", -1, 0, NULL},
-    {TORSO_STATE_TRAILING, "", TEXT("bytes are left over"), "", -1, 0, NULL},
-    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 4, decode_parts_6},
-    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 7, decode_parts_7},
+    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 0, NULL},
+    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 4, decode_parts_5},
+    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 7, decode_parts_6},
     {TORSO_STATE_TAG, TEXT(".yaw"), TEXT("must be 10"), "", -1, 0, NULL},
     {TORSO_STATE_TAG, TEXT(".roll"), TEXT("must be 10"), "", -1, 0, NULL},
     {TORSO_STATE_TAG, TEXT(".pitch"), TEXT("must be 10"), "", -1, 0, NULL},
     {TORSO_STATE_TAG, "", TEXT("must be one of 266, 256"), "", -1, 0, NULL},
+    {TORSO_STATE_TRAILING, "", TEXT("bytes are left over"), "", -1, 0, NULL},
 };
 
 static int64_t decode_1(torso_state_holder *holder, const unsigned char *restrict bytes, int64_t end, struct failure *failure)
@@ -300,18 +293,15 @@ static int64_t decode_1(torso_state_holder *holder, const unsigned char *restric
     torso_state_JointAngles *restrict const message = &holder->message;
     float *restrict const angles = holder->angles.rows;
     int64_t angles_used = 0;
-    memset(message, 0, 32);
-    if (end < 4) {
-        return fail(failure, 1, 0); /* truncated: the message ends here */
+    if (32 != end) {
+        return fail(failure, 1, -1); /* trailing: not of the usual length: the next attempt says what is wrong */
     }
+    memset(message, 0, 32);
     if (load_i32_le(bytes, 0) != 266) {
         return fail(failure, 2, 0); /* tag: must be 266 */
     }
-    if (end < 32) {
-        return fail(failure, 3, 4); /* truncated: the message ends here */
-    }
     if (load_i32_le(bytes, 4) != 3) {
-        return fail(failure, 4, 4); /* count: must be 3 */
+        return fail(failure, 3, 4); /* count: must be 3 */
     }
     if (3 > holder->angles.capacity - angles_used) {
         return full(failure, 2, 3 - (holder->angles.capacity - angles_used));
@@ -323,9 +313,6 @@ static int64_t decode_1(torso_state_holder *holder, const unsigned char *restric
     angles[start] = (float)(load_f64_le(bytes, 8) * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
     angles[start + 1] = (float)(load_f64_le(bytes, 16) * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
     angles[start + 2] = (float)(load_f64_le(bytes, 24) * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
-    if (32 != end) {
-        return fail(failure, 5, 32); /* trailing: bytes are left over */
-    }
     holder->unknown.used = 0;
     holder->angles.used = angles_used;
     return 32;
@@ -338,7 +325,7 @@ static int64_t decode_2(torso_state_holder *holder, const unsigned char *restric
     int64_t angles_used = 0;
     memset(message, 0, 32);
     if (end < 4) {
-        return fail(failure, 1, 0); /* truncated: the message ends here */
+        return fail(failure, 4, 0); /* truncated: the message ends here */
     }
     const int64_t code = (int64_t)load_i32_le(bytes, 0);
     double yaw_2 = 0.0;
@@ -348,10 +335,10 @@ static int64_t decode_2(torso_state_holder *holder, const unsigned char *restric
     switch (code) {
     case 266: {
         if (end < 32) {
-            return fail(failure, 6, 4); /* truncated: the message ends here */
+            return fail(failure, 5, 4); /* truncated: the message ends here */
         }
         if (load_i32_le(bytes, 4) != 3) {
-            return fail(failure, 4, 4); /* count: must be 3 */
+            return fail(failure, 3, 4); /* count: must be 3 */
         }
         yaw_2 = load_f64_le(bytes, 8);
         roll_2 = load_f64_le(bytes, 16);
@@ -361,28 +348,28 @@ static int64_t decode_2(torso_state_holder *holder, const unsigned char *restric
     }
     case 256: {
         if (end < 44) {
-            return fail(failure, 7, 4); /* truncated: the message ends here */
+            return fail(failure, 6, 4); /* truncated: the message ends here */
         }
         if (load_i32_le(bytes, 4) != 3) {
-            return fail(failure, 4, 4); /* count: must be 3 */
+            return fail(failure, 3, 4); /* count: must be 3 */
         }
         if (load_i32_le(bytes, 8) != 10) {
-            return fail(failure, 8, 8); /* tag .yaw: must be 10 */
+            return fail(failure, 7, 8); /* tag .yaw: must be 10 */
         }
         yaw_2 = load_f64_le(bytes, 12);
         if (load_i32_le(bytes, 20) != 10) {
-            return fail(failure, 9, 20); /* tag .roll: must be 10 */
+            return fail(failure, 8, 20); /* tag .roll: must be 10 */
         }
         roll_2 = load_f64_le(bytes, 24);
         if (load_i32_le(bytes, 32) != 10) {
-            return fail(failure, 10, 32); /* tag .pitch: must be 10 */
+            return fail(failure, 9, 32); /* tag .pitch: must be 10 */
         }
         pitch_2 = load_f64_le(bytes, 36);
         next = 44;
         break;
     }
     default: {
-        return fail(failure, 11, 0); /* tag: must be one of 266, 256 */
+        return fail(failure, 10, 0); /* tag: must be one of 266, 256 */
     }
     }
     if (3 > holder->angles.capacity - angles_used) {
@@ -396,7 +383,7 @@ static int64_t decode_2(torso_state_holder *holder, const unsigned char *restric
     angles[start_2 + 1] = (float)(roll_2 * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
     angles[start_2 + 2] = (float)(pitch_2 * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
     if (next != end) {
-        return fail(failure, 5, next); /* trailing: bytes are left over */
+        return fail(failure, 11, next); /* trailing: bytes are left over */
     }
     holder->unknown.used = 0;
     holder->angles.used = angles_used;

@@ -192,7 +192,7 @@ static inline void store_f64_le(unsigned char *bytes, int64_t at, double number)
     store_u64_le(bytes, at, bits_of_f64(number));
 }
 
-const part borrow_parts_3[] = {
+const part borrow_parts_5[] = {
     {0, 4, 0, ""},
     {4, 8, 0, ".yaw"},
     {12, 8, 0, ".roll"},
@@ -200,13 +200,6 @@ const part borrow_parts_3[] = {
 };
 
 const part borrow_parts_6[] = {
-    {0, 4, 0, ""},
-    {4, 8, 0, ".yaw"},
-    {12, 8, 0, ".roll"},
-    {20, 8, 0, ".pitch"},
-};
-
-const part borrow_parts_7[] = {
     {0, 4, 0, ""},
     {4, 4, 0, ".yaw"},
     {8, 8, 0, ".yaw"},
@@ -218,17 +211,17 @@ const part borrow_parts_7[] = {
 
 const site borrow_sites[] = {
     {status::full, "", "a lane is too small", "", -1, 0, nullptr},
-    {status::truncated, "", "the message ends here", "", -1, 0, nullptr},
+    {status::trailing, "", "not of the usual length: the next attempt says what is wrong", "", -1, 0, nullptr},
     {status::tag, "", "must be 266", "", -1, 0, nullptr},
-    {status::truncated, "", "the message ends here", "", -1, 4, borrow_parts_3},
     {status::count, "", "must be 3", "", -1, 0, nullptr},
-    {status::trailing, "", "bytes are left over", "", -1, 0, nullptr},
-    {status::truncated, "", "the message ends here", "", -1, 4, borrow_parts_6},
-    {status::truncated, "", "the message ends here", "", -1, 7, borrow_parts_7},
+    {status::truncated, "", "the message ends here", "", -1, 0, nullptr},
+    {status::truncated, "", "the message ends here", "", -1, 4, borrow_parts_5},
+    {status::truncated, "", "the message ends here", "", -1, 7, borrow_parts_6},
     {status::tag, ".yaw", "must be 10", "", -1, 0, nullptr},
     {status::tag, ".roll", "must be 10", "", -1, 0, nullptr},
     {status::tag, ".pitch", "must be 10", "", -1, 0, nullptr},
     {status::tag, "", "must be one of 266, 256", "", -1, 0, nullptr},
+    {status::trailing, "", "bytes are left over", "", -1, 0, nullptr},
 };
 
 static int64_t borrow_1(torso_state_holder *holder, const unsigned char *restrict bytes, int64_t end, struct failure *failure)
@@ -236,18 +229,15 @@ static int64_t borrow_1(torso_state_holder *holder, const unsigned char *restric
     torso_state_JointAngles *restrict const message = &holder->message;
     float *restrict angles = holder->angles.rows;
     int64_t angles_used = 0;
-    memset(message, 0, 32);
-    if (end < 4) {
-        return fail(failure, 1, 0); /* truncated: the message ends here */
+    if (32 != end) {
+        return fail(failure, 1, -1); /* trailing: not of the usual length: the next attempt says what is wrong */
     }
+    memset(message, 0, 32);
     if (load_i32_le(bytes, 0) != 266) {
         return fail(failure, 2, 0); /* tag: must be 266 */
     }
-    if (end < 32) {
-        return fail(failure, 3, 4); /* truncated: the message ends here */
-    }
     if (load_i32_le(bytes, 4) != 3) {
-        return fail(failure, 4, 4); /* count: must be 3 */
+        return fail(failure, 3, 4); /* count: must be 3 */
     }
     if (3 > holder->angles.capacity - angles_used) {
         if (!holder->angles.grow(3 - (holder->angles.capacity - angles_used), holder->most)) {
@@ -262,9 +252,6 @@ static int64_t borrow_1(torso_state_holder *holder, const unsigned char *restric
     angles[start] = (float)(load_f64_le(bytes, 8) * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
     angles[start + 1] = (float)(load_f64_le(bytes, 16) * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
     angles[start + 2] = (float)(load_f64_le(bytes, 24) * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
-    if (32 != end) {
-        return fail(failure, 5, 32); /* trailing: bytes are left over */
-    }
     holder->unknown.used = 0;
     holder->angles.used = angles_used;
     return 32;
@@ -277,7 +264,7 @@ static int64_t borrow_2(torso_state_holder *holder, const unsigned char *restric
     int64_t angles_used = 0;
     memset(message, 0, 32);
     if (end < 4) {
-        return fail(failure, 1, 0); /* truncated: the message ends here */
+        return fail(failure, 4, 0); /* truncated: the message ends here */
     }
     const int64_t code = (int64_t)load_i32_le(bytes, 0);
     double yaw_2 = 0.0;
@@ -287,10 +274,10 @@ static int64_t borrow_2(torso_state_holder *holder, const unsigned char *restric
     switch (code) {
     case 266: {
         if (end < 32) {
-            return fail(failure, 6, 4); /* truncated: the message ends here */
+            return fail(failure, 5, 4); /* truncated: the message ends here */
         }
         if (load_i32_le(bytes, 4) != 3) {
-            return fail(failure, 4, 4); /* count: must be 3 */
+            return fail(failure, 3, 4); /* count: must be 3 */
         }
         yaw_2 = load_f64_le(bytes, 8);
         roll_2 = load_f64_le(bytes, 16);
@@ -300,28 +287,28 @@ static int64_t borrow_2(torso_state_holder *holder, const unsigned char *restric
     }
     case 256: {
         if (end < 44) {
-            return fail(failure, 7, 4); /* truncated: the message ends here */
+            return fail(failure, 6, 4); /* truncated: the message ends here */
         }
         if (load_i32_le(bytes, 4) != 3) {
-            return fail(failure, 4, 4); /* count: must be 3 */
+            return fail(failure, 3, 4); /* count: must be 3 */
         }
         if (load_i32_le(bytes, 8) != 10) {
-            return fail(failure, 8, 8); /* tag .yaw: must be 10 */
+            return fail(failure, 7, 8); /* tag .yaw: must be 10 */
         }
         yaw_2 = load_f64_le(bytes, 12);
         if (load_i32_le(bytes, 20) != 10) {
-            return fail(failure, 9, 20); /* tag .roll: must be 10 */
+            return fail(failure, 8, 20); /* tag .roll: must be 10 */
         }
         roll_2 = load_f64_le(bytes, 24);
         if (load_i32_le(bytes, 32) != 10) {
-            return fail(failure, 10, 32); /* tag .pitch: must be 10 */
+            return fail(failure, 9, 32); /* tag .pitch: must be 10 */
         }
         pitch_2 = load_f64_le(bytes, 36);
         next = 44;
         break;
     }
     default: {
-        return fail(failure, 11, 0); /* tag: must be one of 266, 256 */
+        return fail(failure, 10, 0); /* tag: must be one of 266, 256 */
     }
     }
     if (3 > holder->angles.capacity - angles_used) {
@@ -338,7 +325,7 @@ static int64_t borrow_2(torso_state_holder *holder, const unsigned char *restric
     angles[start_2 + 1] = (float)(roll_2 * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
     angles[start_2 + 2] = (float)(pitch_2 * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
     if (next != end) {
-        return fail(failure, 5, next); /* trailing: bytes are left over */
+        return fail(failure, 11, next); /* trailing: bytes are left over */
     }
     holder->unknown.used = 0;
     holder->angles.used = angles_used;
