@@ -54,7 +54,7 @@ from rosetta_jit.startup.garbage import imported
 from rosetta_jit.wire.codec import Encoding, Rare
 
 if TYPE_CHECKING:
-    from rosetta_jit.backends.entry.link import Options
+    from rosetta_jit.backends.entry.program import Options
 
 
 class Build:

@@ -10,7 +10,7 @@ from rosetta_jit.backends.backend import Backend
 from rosetta_jit.backends.installed import backend_named
 
 if TYPE_CHECKING:
-    from rosetta_jit.backends.entry.link import Options
+    from rosetta_jit.backends.entry.program import Options
     from rosetta_jit.kernel.entries import EntryName
     from rosetta_jit.kernel.ir import Kernel
     from rosetta_jit.pipeline.types import Types

@@ -7,7 +7,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.programs import _build
-from rosetta_jit.backends.entry.link import _has_own_many
+from rosetta_jit.backends.entry.program import Program
 
 FILES = {
     "lab/msg/Joint.msg": "float64 position\nint64 seq\nstring name\n",
@@ -35,7 +35,7 @@ unpack-rules:
 @pytest.fixture(scope="module")
 def made():
     decode = rj.Decoder("m.mapping", schema=FILES, encoding="cdr")
-    assert _has_own_many(_build(decode._request).kernels, "decode")
+    assert Program(_build(decode._request).kernels, "decode", {"with_numba": False}).has_own_many
     writers = [
         rj.Encoder.of("lab/msg/Joint", schema=FILES, imports=["lab/msg/Joint.msg"], encoding="cdr", byte_order=order)
         for order in ("little", "big")

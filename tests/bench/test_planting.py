@@ -19,7 +19,7 @@ from rosetta_jit.runtime.code import assembler
 planting.plant()
 texts = []
 linked = assembler.linked
-assembler.linked = lambda parts: linked(texts.append(each) or each for each in parts)
+assembler.linked = lambda parts, *context: linked((texts.append(each) or each for each in parts), *context)
 from rosetta_jit.backends.entry import link
 link.linked = assembler.linked
 import rosetta_jit as rj

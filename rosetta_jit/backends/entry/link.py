@@ -20,36 +20,22 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from string import Template
-from typing import TYPE_CHECKING, NotRequired, TypedDict, Unpack
+from typing import Unpack
 
 from llvmlite import binding, ir
 
 from rosetta_jit.backends.entry.host_table import table_text
+from rosetta_jit.backends.entry.program import Options, Program
 from rosetta_jit.backends.entry.references import references_text
 from rosetta_jit.backends.llvm import definitions, support
 from rosetta_jit.backends.llvm import function as llvm
-from rosetta_jit.kernel.entries import HOST, ON_DEMAND, SYMBOLS, EntryName
+from rosetta_jit.kernel.entries import SYMBOLS, EntryName
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.state import ERROR_SITE, USED, lane_word, state_words
-from rosetta_jit.kernel.traits import (
-    are_straight_and_compute,
-    are_vast,
-    asks_host,
-    calls_to_host,
-    has_loops_for_vectors,
-    is_large,
-    is_moderate,
-    is_short,
-    is_short_and_straight,
-    leaves_something,
-    our_functions,
-)
+from rosetta_jit.kernel.traits import has_loops_for_vectors, is_moderate, leaves_something, our_functions
 from rosetta_jit.runtime.cache.texts import kept
 from rosetta_jit.runtime.code.assembler import linked, make_private, object_of, run_few_passes, run_passes, shortened, target_machine
 from rosetta_jit.runtime.code.prelink import is_prelinking, prelinked
-
-if TYPE_CHECKING:
-    from rosetta_jit.kernel.host import UserFunction
 
 USUAL: dict[EntryName, tuple[str, ...]] = {
     "decode": ("owning.ll", "decode.ll"),
@@ -76,22 +62,6 @@ FUNCTIONS = ("kernel", "size", "write")
 REST_SYMBOL = "any_call"
 
 
-class Options(TypedDict):
-    """What a program is compiled with, besides its kernels.
-
-    ``with_numba`` says whether the first kernel is typed by numba on its way, unless it is large: that optimises it once more; the code
-    does the same. ``functions`` are those of the user's that the kernels call; they need numba. ``references`` are, of a bridge, the lanes
-    that become the message when it is decoded. ``thorough`` takes the time for LLVM's slow passes, whatever the kernels look like.
-    ``opening`` is what messages begin with that are left to another program, which is made on demand (`rosetta_jit.runtime.on_demand`).
-    """
-
-    with_numba: bool
-    functions: NotRequired[Sequence[UserFunction]]
-    references: NotRequired[Sequence[int]]
-    thorough: NotRequired[bool]
-    opening: NotRequired[bytes | None]
-
-
 def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:
     """Code for this machine's CPU, to be loaded by `runtime.code.native`: prelinked, or else an object file.
 
@@ -99,84 +69,72 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpa
     """
     if not is_prelinking():
         return object_file(kernels, entry, **options)
-    machine = target_machine(hurried=are_vast(kernels))
-    module = _own(kernels, entry, machine, options)
-    images = machine.emit_object(module), *_surroundings(module, kernels, entry)
-    return prelinked(*images, gives=(*SYMBOLS[entry], HOST, ON_DEMAND)) or object_file(kernels, entry, **options)
+    program = Program(kernels, entry, options)
+    machine = target_machine(hurried=program.is_vast)
+    module = _own(program, machine)
+    images = machine.emit_object(module), *_surroundings(module, program)
+    return prelinked(*images, gives=program.exported) or object_file(kernels, entry, **options)
 
 
 def object_file(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:
     """The same as one object file, which only a linker can load."""
-    machine = target_machine(hurried=are_vast(kernels))
-    return machine.emit_object(optimised(kernels, entry, machine, options))
+    program = Program(kernels, entry, options)
+    machine = target_machine(hurried=program.is_vast)
+    return machine.emit_object(_optimised(program, machine))
 
 
 def llvm_text(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> str:
     """The optimised LLVM module as text."""
-    return str(optimised(kernels, entry, target_machine(), options))
+    return str(_optimised(Program(kernels, entry, options), target_machine()))
 
 
 def assembly(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> str:
     """The machine code as assembler text."""
-    machine = target_machine(hurried=are_vast(kernels))
-    return machine.emit_assembly(optimised(kernels, entry, machine, options))
+    program = Program(kernels, entry, options)
+    machine = target_machine(hurried=program.is_vast)
+    return machine.emit_assembly(_optimised(program, machine))
 
 
-def optimised(kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, options: Options) -> binding.ModuleRef:
+def _optimised(program: Program, machine: binding.TargetMachine) -> binding.ModuleRef:
     """The whole program in one module, after one run of LLVM's passes."""
-    module = linked((*_own_parts(kernels, entry, options, whole=True), *_surrounding_texts(kernels, entry)))
-    _optimise(module, kernels, entry, machine, options)
+    module = linked((*_own_parts(program, whole=True), *_surrounding_texts(program)))
+    _optimise(module, program, machine)
     return module
 
 
-def _own(kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, options: Options) -> binding.ModuleRef:
+def _own(program: Program, machine: binding.TargetMachine) -> binding.ModuleRef:
     """A program's own module, after LLVM's passes: for what unusual messages need, which is much and seldom runs, a few of them do."""
-    unusual = ir.Module("unusual") if _has_unusual_apart(kernels, options) else None
+    unusual = ir.Module("unusual") if program.has_unusual_apart else None
     context = binding.create_context()
-    module = linked(_own_parts(kernels, entry, options, whole=False, unusual=unusual), context)
-    _optimise(module, kernels, entry, machine, options)
+    module = linked(_own_parts(program, whole=False, unusual=unusual), context)
+    _optimise(module, program, machine)
     if unusual is not None:
         rest = linked((str(unusual),), context)
         _empty(unusual)
         run_few_passes(rest, machine)
         module.link_in(rest)
-        make_private(module, (*SYMBOLS[entry], HOST, ON_DEMAND))
+        make_private(module, program.exported)
     return module
 
 
-def _has_unusual_apart(kernels: Sequence[Kernel], options: Options) -> bool:
-    """Whether the bodies for unusual messages are optimised for themselves: LLVM's slow passes are for the arithmetic of the usual one."""
-    first = kernels[0]
-    return len(first.bodies) > 1 and not (first.routines or _is_typed(kernels, options)) and are_straight_and_compute(kernels)
-
-
-def _is_typed(kernels: Sequence[Kernel], options: Options) -> bool:
-    """Whether the first kernel goes through numba."""
-    return options["with_numba"] and not is_large(kernels[0]) and not calls_to_host(kernels)
-
-
-def _optimise(
-    module: binding.ModuleRef, kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, options: Options
-) -> None:
+def _optimise(module: binding.ModuleRef, program: Program, machine: binding.TargetMachine) -> None:
     """Run LLVM's passes once.
 
     Kernels leave little for LLVM to find, and a few passes find it, in time that is in proportion to the kernel. Those of O3, which take
     five times as long, are for loops over elements that become loops over vectors; those of O1 for such loops in large kernels and, with
     vectors made of statements that stand side by side, for arithmetic without loops. docs/performance.md has the figures.
     """
-    make_private(module, (*SYMBOLS[entry], HOST, ON_DEMAND))
-    wants_thorough = bool(options.get("functions") or options.get("thorough"))
-    loops = [kernel for kernel in kernels if has_loops_for_vectors(kernel)]
-    is_straight = are_straight_and_compute(kernels)
-    is_vast = are_vast(kernels)
-    if is_vast or not (wants_thorough or loops or is_straight):
+    make_private(module, program.exported)
+    wants_thorough = bool(program.options.get("functions") or program.options.get("thorough"))
+    loops = [kernel for kernel in program.kernels if has_loops_for_vectors(kernel)]
+    if program.is_vast or not (wants_thorough or loops or program.is_straight):
         # Of protobuf's TestAllTypesProto3, to combine costs the encoder 0.3 s, of branches and of instructions.
         # A call of it is a twentieth quicker with fewer branches, and 1.5 % with fewer instructions.
-        run_few_passes(module, machine, combining=not (is_vast and entry == "encode"))
+        run_few_passes(module, machine, combining=not (program.is_vast and program.entry == "encode"))
         return
     thorough = wants_thorough or any(map(is_moderate, loops))
     tuning = binding.create_pipeline_tuning_options(speed_level=3 if thorough else 1)
-    tuning.loop_vectorization, tuning.slp_vectorization = True, thorough or is_straight
+    tuning.loop_vectorization, tuning.slp_vectorization = True, thorough or program.is_straight
     builder = binding.create_pass_builder(machine, tuning)
     run_passes(builder.getModulePassManager(), module, builder)
 
@@ -184,64 +142,42 @@ def _optimise(
 # --- parts ---------------------------------------------------------------------------------------------------------------
 
 
-def _own_parts(
-    kernels: Sequence[Kernel], entry: EntryName, options: Options, *, whole: bool, unusual: ir.Module | None = None
-) -> Iterator[str]:
+def _own_parts(program: Program, *, whole: bool, unusual: ir.Module | None = None) -> Iterator[str]:
     """The modules that a program's own is linked from, as LLVM text; if it is to be ``whole``, they define what they call of `support`.
 
     What is for unusual messages goes into a module of its own, if one is given.
     """
+    kernels, options = program.kernels, program.options
     opening = options.get("opening")
-    has_usual = _has_usual(kernels, entry, options)
-    if _is_typed(kernels, options):
-        yield from _typed(kernels[0])
+    if program.is_typed:
+        yield from _typed(program.first)
     else:
-        yield _emitted(kernels[0], FUNCTIONS[0], whole=whole, has_usual=has_usual, unusual=unusual)
+        yield _emitted(program.first, FUNCTIONS[0], whole=whole, has_usual=program.has_usual, unusual=unusual)
     yield from (_emitted(kernel, name, whole=whole) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
     if opening is not None:
-        yield _going_on(kernels[0], opening)
+        yield _going_on(program.first, opening)
     for function in options.get("functions", ()):
         from rosetta_jit.backends.numba.user_functions import compile_function
 
         yield str(compile_function(function))
-    if our_functions(kernels):
+    if program.calls_host and our_functions(kernels):
         yield table_text(kernels)
-    if entry == "bridge":
+    if program.entry == "bridge":
         yield references_text(options.get("references", ()))
-    if _is_inside(kernels, entry):
-        yield _usual(_entry_text((*USUAL[entry], "first_body.ll" if has_usual else "all_bodies.ll"), kernels), SYMBOLS[entry])
-    if _has_own_many(kernels, entry):
-        yield from _own_many(kernels[0], whole=whole)
+    if program.is_inside:
+        usual = (*USUAL[program.entry], "first_body.ll" if program.has_usual else "all_bodies.ll")
+        yield _usual(_entry_text(usual, program), SYMBOLS[program.entry])
+    if program.has_own_many:
+        yield from _own_many(program.first, whole=whole)
 
 
-def _surrounding_texts(kernels: Sequence[Kernel], entry: EntryName) -> tuple[str, ...]:
+def _surrounding_texts(program: Program) -> tuple[str, ...]:
     """The modules that a program's surroundings are linked from."""
-    rest = ALONE if _has_own_many(kernels, entry) else REST[entry]
-    if entry == "encode" and leaves_something(kernels[1]):
+    rest = ALONE if program.has_own_many else REST[program.entry]
+    if program.entry == "encode" and leaves_something(program.kernels[1]):
         rest = tuple("leaving.ll" if each == "unmeasured.ll" else each for each in rest)
-    around = (rest,) if _is_inside(kernels, entry) else ((*USUAL[entry], "all_bodies.ll"), rest)
-    return tuple(_entry_text(templates, kernels) for templates in around if templates)
-
-
-def _is_inside(kernels: Sequence[Kernel], entry: EntryName) -> bool:
-    """Whether the usual call is compiled with the kernels, of which those that are short become a part of it."""
-    return entry == "bridge" or is_short_and_straight(kernels[0])
-
-
-def _has_usual(kernels: Sequence[Kernel], entry: EntryName, options: Options) -> bool:
-    """Whether of the kernel the first of several bodies alone becomes a part of the usual call."""
-    kernel = kernels[0]
-    several = len(kernel.bodies) > 1 and not kernel.hidden and is_short_and_straight(kernel)
-    return entry in ("decode", "borrow") and several and not (calls_to_host(kernels) or _is_typed(kernels, options))
-
-
-def _has_own_many(kernels: Sequence[Kernel], entry: EntryName) -> bool:
-    """Whether the loop over many messages is compiled with the kernel, whose usual body becomes a part of it.
-
-    That is so where messages depend on those before them: what one keeps, the next one must not wait for.
-    """
-    kernel = kernels[0]
-    return entry == "decode" and kernel.registers > 0 and is_short(kernel) and not calls_to_host(kernels)
+    around = (rest,) if program.is_inside else ((*USUAL[program.entry], "all_bodies.ll"), rest)
+    return tuple(_entry_text(templates, program) for templates in around if templates)
 
 
 def _own_many(kernel: Kernel, *, whole: bool) -> Iterator[str]:
@@ -271,9 +207,9 @@ def _usual(text: str, exported: tuple[str, ...]) -> str:
     return kept("call", text, lambda: shortened(text, exported).encode()).decode()
 
 
-def _surroundings(module: binding.ModuleRef, kernels: Sequence[Kernel], entry: EntryName) -> Iterator[bytes]:
+def _surroundings(module: binding.ModuleRef, program: Program) -> Iterator[bytes]:
     """The object files of what stands around a program's own module."""
-    around = _surrounding_texts(kernels, entry)
+    around = _surrounding_texts(program)
     if around:
         yield _entries(*around)
     wanted = {each.name for each in module.functions if each.is_declaration} & set(support.SIGNATURES)
@@ -322,16 +258,17 @@ def _typed(kernel: Kernel) -> tuple[str, str]:
     return text, _template("numba.ll").replace("@typed", f'@"{name}"')
 
 
-def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel]) -> str:
+def _entry_text(templates: Sequence[str], program: Program) -> str:
     """A module of an entry's functions. `#0` to `#2` are the attributes of the calls of kernels that are to be quick."""
-    stamps = "time_and_number.ll" if asks_host(kernels) else "no_time_or_number.ll"
-    hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
+    kernels = program.kernels
+    stamps = "time_and_number.ll" if program.asks_host else "no_time_or_number.ll"
+    hosted = "hosted.ll" if program.calls_host else "unhosted.ll"
     count = max(kernel.registers for kernel in kernels)
     kept = _template("registers.ll").replace("COUNT", str(count)) if count else _template("no_registers.ll")
     joined = "joined.ll" if any(kernel.kept for kernel in kernels) else "alone.ll"
     shared = ("shared.ll", stamps, hosted, joined, _thread_template(), "thread_check.ll", _large_template())
     texts = (*map(_template, shared), kept, *map(_template, templates))
-    inline = ("alwaysinline" if is_short_and_straight(kernel) else "" for kernel in kernels)
+    inline = ("alwaysinline" if is_short else "" for is_short in program.are_short)
     attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline))
     return "\n".join((*texts, *attributes))
 

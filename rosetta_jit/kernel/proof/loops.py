@@ -59,6 +59,10 @@ class Loop:
     count: Linear = ZERO
 
 
+Made = tuple[tuple[str, ...], set[str]]
+"""The names that a statement gives values to, and those that these are made of; no names where it gives none."""
+
+
 @dataclass(frozen=True, slots=True)
 class Entry:
     """Where a loop begins: a mark to go back to, used lengths, and the variables and lanes that the loop changes."""
@@ -139,33 +143,41 @@ def changed_names(body: Block) -> set[str]:
     return {stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign)}
 
 
-def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Container[str], reads: dict[int, set[str]]) -> set[Guess]:
+def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Container[str], made: dict[int, Made]) -> set[Guess]:
     """That a variable does not fall below its first value, where a loop sets it to what is not made of that, or says what it keeps.
 
-    What grows in each round is tried all the same: a loop around this one may grow by it. ``reads`` keeps the names that statements read,
-    by their ids: those of a loop are asked for again by each loop around it.
+    What grows in each round is tried all the same: a loop around this one may grow by it. ``made`` keeps what statements make, by their
+    ids: those of a loop are asked for again by each loop around it.
     """
     variables = {name for name in changed_names(body) if name in known}
     named = {name for expr in said for name in locals_in(expr)} - (set[str]() if measure is None else locals_in(measure))
     found = variables & named
     if variables - named:
-        found |= _not_made_of_themselves(body, variables - named, reads)
+        found |= _not_made_of_themselves(body, variables - named, made)
     return {Guess(name, 2, 1) for name in found}
 
 
-def _not_made_of_themselves(body: Block, names: set[str], reads: dict[int, set[str]]) -> set[str]:
+def _not_made_of_themselves(body: Block, names: set[str], made: dict[int, Made]) -> set[str]:
     """Of some variables those that a loop sets to what is not computed from them."""
     users: dict[str, set[str]] = {}
     assigned: dict[str, list[set[str]]] = {}
     for stmt, _ in statements(body):
-        read = reads.get(id(stmt))
-        if read is None:
-            read = reads[id(stmt)] = set[str]().union(*map(locals_in, expressions_of(stmt)))
-        if isinstance(stmt, Assign):
+        found = made.get(id(stmt))
+        if found is None:
+            found = made[id(stmt)] = _made(stmt)
+        targets, read = found
+        if not targets:
+            continue
+        if type(stmt) is Assign:
             assigned.setdefault(stmt.name, []).append(read)
         for name in read:
-            users.setdefault(name, set()).update((stmt.name,) if isinstance(stmt, Assign) else bound_names(stmt))
+            users.setdefault(name, set()).update(targets)
     return {name for name in names if not all(map(_made_of(name, users).intersection, assigned[name]))}
+
+
+def _made(stmt: Stmt) -> Made:
+    targets = (stmt.name,) if isinstance(stmt, Assign) else bound_names(stmt)
+    return targets, set[str]().union(*map(locals_in, expressions_of(stmt))) if targets else set[str]()
 
 
 def _made_of(name: str, users: Mapping[str, set[str]]) -> set[str]:

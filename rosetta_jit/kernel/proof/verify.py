@@ -18,7 +18,7 @@ from rosetta_jit.kernel.printer import statement_text
 from rosetta_jit.kernel.proof import claims, contracts, effects, paths
 from rosetta_jit.kernel.proof.formula import All, Formula, equal, negated
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted
-from rosetta_jit.kernel.proof.loops import ZERO, Guess, Loop, bounds, needless, walk_rounds
+from rosetta_jit.kernel.proof.loops import ZERO, Guess, Loop, Made, bounds, needless, walk_rounds
 from rosetta_jit.kernel.proof.obligations import UnprovenError, demand, oblige
 from rosetta_jit.kernel.proof.scope import Scope, Typed, entry
 from rosetta_jit.kernel.proof.symbolic import condition, evaluate, integer, linear
@@ -46,7 +46,7 @@ class _Walk:
     dropped: dict[int, set[Guess]] = field(default_factory=dict[int, "set[Guess]"])
     seen: dict[int, nodes.Stmt] = field(default_factory=dict[int, "nodes.Stmt"])
     needed: set[int] = field(default_factory=set[int])
-    reads: dict[int, set[str]] = field(default_factory=dict[int, "set[str]"])
+    made: dict[int, Made] = field(default_factory=dict[int, "Made"])
 
 
 def verify(kernel: ir.Kernel, record: Record | None = None) -> None:
@@ -332,6 +332,6 @@ def _rounds(
     dropped = walk.dropped.get(id(loop))
     if dropped is None:
         said, measure = (loop.invariant, loop.measure) if isinstance(loop, nodes.While) else ((), None)
-        dropped = walk.dropped[id(loop)] = set() if walk.tries_all else needless(loop.body, said, measure, walk.scope.locals, walk.reads)
+        dropped = walk.dropped[id(loop)] = set() if walk.tries_all else needless(loop.body, said, measure, walk.scope.locals, walk.made)
     variable = loop.variable if isinstance(loop, nodes.For) else ""
     walk_rounds(walk.scope, Loop(loop.body, enter, partial(_block, walk, loop.body), leave, variable, count), dropped)

@@ -1,0 +1,111 @@
+"""What is compiled together: kernels, the entry that stands around them, and what that decides about both."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NotRequired, TypedDict
+
+from rosetta_jit.kernel import traits
+from rosetta_jit.kernel.entries import HOST, ON_DEMAND, SYMBOLS, EntryName
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.startup.cached import cached_property
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.host import UserFunction
+
+
+class Options(TypedDict):
+    """What a program is compiled with, besides its kernels.
+
+    ``with_numba`` says whether the first kernel is typed by numba on its way, unless it is large: that optimises it once more; the code
+    does the same. ``functions`` are those of the user's that the kernels call; they need numba. ``references`` are, of a bridge, the lanes
+    that become the message when it is decoded. ``thorough`` takes the time for LLVM's slow passes, whatever the kernels look like.
+    ``opening`` is what messages begin with that are left to another program, which is made on demand (`rosetta_jit.runtime.on_demand`).
+    """
+
+    with_numba: bool
+    functions: NotRequired[Sequence[UserFunction]]
+    references: NotRequired[Sequence[int]]
+    thorough: NotRequired[bool]
+    opening: NotRequired[bytes | None]
+
+
+class Program:
+    """Kernels that are compiled together, as `link.compile_program` takes them. Large ones are looked through once for each question.
+
+    Attributes
+    ----------
+    kernels
+        The first is the decoder or the encoder.
+    entry, options
+        What stands around them, and what else they are compiled with.
+    """
+
+    def __init__(self, kernels: Sequence[Kernel], entry: EntryName, options: Options) -> None:
+        self.kernels = kernels
+        self.entry: EntryName = entry
+        self.options = options
+
+    @property
+    def first(self) -> Kernel:
+        """The decoder or the encoder."""
+        return self.kernels[0]
+
+    @property
+    def exported(self) -> tuple[str, ...]:
+        """The symbols that others may ask for."""
+        return (*SYMBOLS[self.entry], HOST, ON_DEMAND)
+
+    @cached_property
+    def is_vast(self) -> bool:
+        """Whether only work in proportion to the kernels' size is done on them."""
+        return traits.are_vast(self.kernels)
+
+    @cached_property
+    def calls_host(self) -> bool:
+        """Whether kernels call functions of their host."""
+        return bool(traits.calls_to_host(self.kernels))
+
+    @cached_property
+    def asks_host(self) -> bool:
+        """Whether kernels ask for the time, or for the number of a message."""
+        return traits.asks_host(self.kernels)
+
+    @cached_property
+    def are_short(self) -> tuple[bool, ...]:
+        """Of each kernel, whether it takes no longer than a call of it by much."""
+        return tuple(map(traits.is_short_and_straight, self.kernels))
+
+    @cached_property
+    def is_straight(self) -> bool:
+        """Whether usual messages are arithmetic without loops."""
+        return traits.are_straight_and_compute(self.kernels)
+
+    @cached_property
+    def is_typed(self) -> bool:
+        """Whether the first kernel goes through numba."""
+        return self.options["with_numba"] and not traits.is_large(self.first) and not self.calls_host
+
+    @cached_property
+    def is_inside(self) -> bool:
+        """Whether the usual call is compiled with the kernels, of which those that are short become a part of it."""
+        return self.entry == "bridge" or self.are_short[0]
+
+    @cached_property
+    def has_usual(self) -> bool:
+        """Whether of the kernel the first of several bodies alone becomes a part of the usual call."""
+        several = len(self.first.bodies) > 1 and not self.first.hidden and self.are_short[0]
+        return self.entry in ("decode", "borrow") and several and not (self.calls_host or self.is_typed)
+
+    @cached_property
+    def has_unusual_apart(self) -> bool:
+        """Whether bodies for unusual messages are optimised for themselves: LLVM's slow passes are for the arithmetic of the usual one."""
+        return len(self.first.bodies) > 1 and not (self.first.routines or self.is_typed) and self.is_straight
+
+    @cached_property
+    def has_own_many(self) -> bool:
+        """Whether the loop over many messages is compiled with the kernel, whose usual body becomes a part of it.
+
+        That is so where messages depend on those before them: what one keeps, the next one must not wait for.
+        """
+        return self.entry == "decode" and self.first.registers > 0 and traits.is_short(self.first) and not self.calls_host
