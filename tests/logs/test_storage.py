@@ -114,3 +114,14 @@ def test_copies_go_with_the_log(logs, monkeypatch, tmp_path):
     assert list(log.messages(raw=True))
     log.close()
     assert not list(tmp_path.iterdir())
+
+
+def test_a_log_that_is_closed_is_not_read(logs, tmp_path):
+    """The number of its file is another one's then."""
+    log = rj.open(logs["a.mcap"])
+    assert len(log.channels)
+    log.close()
+    other = tmp_path / "other"
+    other.write_bytes(bytes(logs["a.mcap"].stat().st_size))
+    with other.open("rb"), pytest.raises(ValueError, match="closed file"):
+        list(log.messages(raw=True))

@@ -40,6 +40,7 @@ class Storage:
         self._lock = Lock()
         self._ends: list[Callable[[], object]] = [finalize(self, file.close)]  # who opens a log for one expression closes nothing
         self.size = file.seek(0, os.SEEK_END)
+        self._has_places = isinstance(file, io.BufferedReader) and hasattr(os, "preadv")
         self._copy: Path | None = None
 
     @property
@@ -71,11 +72,16 @@ class Storage:
         """As many bytes as there is memory for; fewer where the file ends. Fresh memory would take as long as reading into it."""
         view = memory[: max(0, min(memory.size, self.size - at))].data
         filled = 0
-        with self._lock:
-            self._file.seek(at)
-            while filled < len(view) and (count := cast("Any", self._file).readinto(view[filled:])):
+        with self._lock:  # also where the system needs no place to be sought, so that nobody closes the file meanwhile
+            if not self._has_places:
+                self._file.seek(at)
+            while filled < len(view) and (count := self._fill(view[filled:], at + filled)):
                 filled += count
         return view[:filled]
+
+    def _fill(self, view: memoryview, at: int) -> int:
+        """Read once into some memory: from a place, or where the file is; how many bytes."""
+        return os.preadv(self._file.fileno(), [view], at) if self._has_places else cast("Any", self._file).readinto(view)
 
     def array(self, at: int, size: int) -> NDArray[np.uint8]:
         """The same as an array."""
@@ -83,8 +89,9 @@ class Storage:
 
     def close(self) -> None:
         """Close the file, and remove its copy."""
-        for end in self._ends:
-            end()
+        with self._lock:
+            for end in self._ends:
+                end()
 
 
 def open_storage(name: str) -> Storage:
