@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rosetta_jit.errors import warn
-from rosetta_jit.runtime.cache.texts import kept
+from rosetta_jit.runtime.cache.texts import kept, known
 from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.allowed import ForeignCodeError
 from rosetta_jit.runtime.memory import address_of
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 LEAST = 4096
 """Rows below which it takes longer to load the code than numpy does."""
+
+WORTH_COMPILING = 1 << 17
+"""Rows for which the code is compiled where the cache has it not: that takes as long as numpy takes for some hundred thousand."""
 
 _TRANSPOSE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
 """Of rows, of the bytes from one to the next, of how many rows and words there are; of the places of the columns."""
@@ -37,7 +40,8 @@ def transposed(rows: Indices, room: Callable[[int], Indices]) -> list[Indices] |
         The words of a row lie together.
     """
     count, words = rows.shape
-    transpose = _transpose() if count >= LEAST and rows.flags.writeable else None
+    prepare(count)
+    transpose = _transpose() if count >= LEAST and rows.flags.writeable and _is_there() else None
     if transpose is None:
         return None
     columns = [room(count) for _ in range(words)]
@@ -45,6 +49,17 @@ def transposed(rows: Indices, room: Callable[[int], Indices]) -> list[Indices] |
     begin = ctypes.addressof(ctypes.c_char.from_buffer(rows[0].data))
     transpose(begin, rows.strides[0], count, words, address_of(places))
     return columns
+
+
+def prepare(rows: int) -> None:
+    """Before tables of so many rows together: compile the code, if that is worth while and the cache has it not."""
+    if rows >= WORTH_COMPILING:
+        _transpose()
+
+
+def _is_there() -> bool:
+    """Whether the code is loaded, or can be without a compiler."""
+    return _transpose.cache_info().currsize > 0 or known(_text()) is not None
 
 
 @cache
@@ -56,15 +71,18 @@ def _transpose() -> Callable[[int, int, int, int, int], None] | None:
 
 @cache
 def _library() -> native.Library | None:
-    text = Path(__file__).with_name("transpose.ll").read_text("utf-8")
-
     def compiled() -> bytes:
         from rosetta_jit.runtime.code.assembler import assembled  # imports LLVM
 
-        return assembled(text, ("transpose",))
+        return assembled(_text(), ("transpose",))
 
     try:
-        return native.load(kept("rows as columns", text, compiled), ("transpose",))
+        return native.load(kept("rows as columns", _text(), compiled), ("transpose",))
     except ForeignCodeError as error:
         warn(f"rows become columns without compiled code, which takes longer: {error}", RuntimeWarning)
         return None
+
+
+@cache
+def _text() -> str:
+    return Path(__file__).with_name("transpose.ll").read_text("utf-8")

@@ -5,13 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pyarrow as pa
 import pytest
+from mcap.writer import Writer
 
 import rosetta_jit as rj
 from rosetta_jit.runtime import transposing
 from rosetta_jit.runtime.rows import numpys
-from rosetta_jit.runtime.transposing import LEAST, transposed
+from rosetta_jit.runtime.transposing import LEAST, WORTH_COMPILING, prepare, transposed
 
 SCHEMA = "string name\nfloat64 x\nint32 small\nfloat64[3] fixed\nint64 number\nbool flag"
+
+
+@pytest.fixture(autouse=True)
+def _compiled():
+    prepare(WORTH_COMPILING)
 
 
 @pytest.mark.parametrize("count", [LEAST + rest for rest in range(9)])
@@ -47,7 +53,7 @@ def test_tables_are_the_same_without_the_code(monkeypatch, first):
     found = table(count, first)
     found.validate(full=True)
     assert found.num_rows == count - first
-    monkeypatch.setattr(transposing, "_transpose", lambda: None)
+    monkeypatch.setattr(transposing, "_is_there", lambda: False)
     assert found.equals(table(count, first))
     assert found.column("x").to_pylist() == [number / 7 for number in range(first, count)]
 
@@ -59,3 +65,31 @@ def test_a_table_keeps_what_it_shows():
     assert kept < 1.1 * found.nbytes
     found = found.select(["x"])
     assert pa.total_allocated_bytes() - before <= 8 * LEAST + 128
+
+
+def test_few_messages_compile_nothing(monkeypatch, tmp_path):
+    """In a process that is the first one of a machine, numpy is done sooner."""
+    monkeypatch.setenv("ROSETTA_JIT_CACHE_DIR", str(tmp_path))
+    transposing._library.cache_clear()
+    transposing._transpose.cache_clear()
+    rows = np.arange(3 * LEAST).reshape(LEAST, 3)
+    assert transposed(rows, numpys) is None
+    assert not list(tmp_path.glob("*.kernel"))
+    prepare(WORTH_COMPILING)
+    assert len(list(tmp_path.glob("*.kernel"))) == 1
+    assert transposed(rows, numpys) is not None
+
+
+def test_a_long_log_compiles_it(monkeypatch, tmp_path):
+    prepared = []
+    monkeypatch.setattr("rosetta_jit.logs.channel.prepare", prepared.append)
+    path = tmp_path / "a.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        topic = writer.register_channel("/x", "cdr", writer.register_schema("t/msg/X", "ros2msg", b"uint8 x"))
+        for number in range(7):
+            writer.add_message(topic, log_time=number, publish_time=number, data=b"\0\1\0\0" + bytes([number]))
+        writer.finish()
+    assert rj.open(path)["/x"].to_arrow()["x"].to_pylist() == list(range(7))
+    assert prepared == [7]
