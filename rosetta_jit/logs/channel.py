@@ -233,6 +233,8 @@ class Channel:
         """The same with the messages that each table is of, which are not to be written to: the table has taken their large arrays."""
         from rosetta_jit.logs.tables import table_of
 
+        if isinstance(columns, str):
+            raise TypeError(f"columns is a list of names: columns=[{columns!r}]")
         prepare(self.count or 0)
         names, chosen, is_any = None if columns is None else list(columns), tuple(clocks), False
         for part in self._parts_of_tables(self._wanted(start, end, pieces), on_error):
