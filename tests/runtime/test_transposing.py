@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -11,6 +14,9 @@ import rosetta_jit as rj
 from rosetta_jit.runtime import transposing
 from rosetta_jit.runtime.rows import numpys
 from rosetta_jit.runtime.transposing import LEAST, WORTH_COMPILING, prepare, transposed
+
+sys.path.insert(0, str(Path(__file__).parent))
+from test_arrow import filled
 
 SCHEMA = "string name\nfloat64 x\nint32 small\nfloat64[3] fixed\nint64 number\nbool flag"
 
@@ -93,3 +99,15 @@ def test_a_long_log_compiles_it(monkeypatch, tmp_path):
         writer.finish()
     assert rj.open(path)["/x"].to_arrow()["x"].to_pylist() == list(range(7))
     assert prepared == [7]
+
+
+@pytest.mark.parametrize("options", [{}, {"flatten": True}, {"octets": "binary"}, {"columns": "every second"}])
+def test_all_kinds_of_fields_are_the_same_without_the_code(monkeypatch, options):
+    """Unions, absent fields, enums, maps and arrays of structs, in rows that lie anywhere."""
+    monkeypatch.setattr(transposing, "LEAST", 64)
+    batch = filled(101, 3)
+    options = {name: list(batch._family.tree.root.entries)[::2] if name == "columns" else value for name, value in options.items()}
+    found = batch.to_arrow(**options)
+    found.validate(full=True)
+    monkeypatch.setattr(transposing, "_is_there", lambda: False)
+    assert found.equals(batch.to_arrow(**options))
