@@ -202,7 +202,9 @@ def not_carried(name: str, topic: str, encoding: str, carried: str) -> Diagnosti
     return error("log-encoding", wrong, help_="write .mcap, which holds all")
 
 
-def which_topic(name: str, topics: Iterable[str]) -> Diagnostic:
+def which_topic(name: str, topics: Sequence[str]) -> Diagnostic:
+    if not topics:
+        return error("log-topic", f"{name} has no topics")
     return error("log-topic", f"{name} has several topics: {', '.join(topics)}", help_="name one: --topic")
 
 

@@ -89,7 +89,9 @@ def _moment(text: str) -> int:
     try:
         return moment_of(text)
     except ValueError as error:
-        said = str(error) if text.replace(".", "", 1).isdigit() else f"{text!r} is neither seconds since 1970 nor ISO 8601"
+        said = (
+            str(error) if text.removeprefix("-").replace(".", "", 1).isdigit() else f"{text!r} is neither seconds since 1970 nor ISO 8601"
+        )
         raise ArgumentTypeError(said) from error
 
 

@@ -14,6 +14,7 @@ from rosetta_jit.errors import DecodeError, LogError, SchemaError
 from rosetta_jit.logs.base import Block, Connection, Wanted
 from rosetta_jit.logs.decoded_parts import CLOCKS, Collector, OnError, Part, nothing
 from rosetta_jit.logs.moments import nanoseconds, shown
+from rosetta_jit.runtime.transposing import prepare
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
@@ -232,6 +233,9 @@ class Channel:
         """The same with the messages that each table is of, which are not to be written to: the table has taken their large arrays."""
         from rosetta_jit.logs.tables import table_of
 
+        if isinstance(columns, str):
+            raise TypeError(f"columns is a list of names: columns=[{columns!r}]")
+        prepare(self.count or 0)
         names, chosen, is_any = None if columns is None else list(columns), tuple(clocks), False
         for part in self._parts_of_tables(self._wanted(start, end, pieces), on_error):
             yield part, table_of(part, names, chosen, form)

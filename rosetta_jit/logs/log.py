@@ -250,8 +250,11 @@ def open_log(
     **options: Unpack[Options],
 ) -> Log:
     """Open a log: see `rosetta_jit.open`."""
-    import os
-
+    if not isinstance(path, str | os.PathLike):  # pyright: ignore[reportUnnecessaryIsInstance] - what users give
+        raise TypeError(
+            f"a log is opened by its path or its address, not by an object of the type {type(path).__name__}; one in memory is written to "
+            "a file first, or to fsspec's memory://"
+        )
     storage = open_storage(os.fspath(path))
     try:
         return Log(storage, format_of(storage, format), on_problem or _warn, check=check, options=options)
@@ -273,6 +276,8 @@ def format_of(storage: Storage, wanted: str | None = None) -> Format:
         It is none that is known.
     """
     known, name = formats(), storage.name
+    if storage.is_unpacked:  # drive.bag.gz
+        name = name.rpartition(".")[0]
     if wanted is not None:
         if wanted not in known:
             raise LogError((words.unknown_format(f"`{wanted}`", known),))

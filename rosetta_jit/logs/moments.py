@@ -19,21 +19,25 @@ _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
 def nanoseconds(moment: Moment | None) -> int | None:
-    """Nanoseconds since 1970. A `datetime` without a zone is in UTC.
+    """Nanoseconds since 1970. A `datetime` without a zone is in UTC; one of pandas has nanoseconds.
 
     Raises
     ------
     TypeError
         It is a float, which has no room for nanoseconds, or nothing of time.
+    ValueError
+        It is no time (``NaT``).
     """
     match moment:
         case None:
             return None
+        case np.datetime64() | datetime() if moment != moment:  # noqa: PLR0124 - as NaT is not itself
+            raise ValueError("NaT is no moment")
         case np.datetime64():
             return int(moment.astype("datetime64[ns]").astype(np.int64))
         case datetime():
             since = (moment if moment.tzinfo is not None else moment.replace(tzinfo=UTC)) - _EPOCH
-            return (since // timedelta(microseconds=1)) * 1000
+            return int(since // timedelta(microseconds=1)) * 1000 + int(getattr(moment, "nanosecond", 0))
         case _:
             return _integer(moment)
 
@@ -54,11 +58,20 @@ def shown(time_ns: int) -> str:
 def moment_of(text: str) -> int:
     """A moment as a person writes it: seconds since 1970, or ISO 8601; ValueError if it is neither, or too far to be meant.
 
-    Seconds are read as digits, not as a float, which has no room for nanoseconds.
+    Digits are read as they are: a float has no room for nanoseconds, and `datetime` has none.
     """
-    seconds, _, fraction = text.partition(".")
-    if seconds.isdigit() and len(seconds) > MOST_DIGITS:
+    seconds, _, fraction = text.replace(",", ".").partition(".")
+    digits = seconds.removeprefix("-")
+    if digits.isdigit() and len(digits) > MOST_DIGITS:
         raise ValueError(f"{text} s is beyond the year 5138: seconds since 1970 are meant, not a part of them")
-    if seconds.isdigit() and (fraction.isdigit() or not fraction):
-        return int(seconds) * 10**9 + int(fraction[:9].ljust(9, "0"))
-    return nanoseconds(datetime.fromisoformat(text)) or 0
+    if digits.isdigit() and (fraction.isdigit() or not fraction):
+        size = int(digits) * 10**9 + _nanoseconds_of(fraction)
+        return -size if seconds.startswith("-") else size
+    whole = nanoseconds(datetime.fromisoformat(text)) or 0
+    return whole + _nanoseconds_of(fraction) % 1000
+
+
+def _nanoseconds_of(fraction: str) -> int:
+    """The digits behind a point, up to what follows them, as nanoseconds."""
+    digits = fraction[: len(fraction) - len(fraction.lstrip("0123456789"))]
+    return int(digits[:9].ljust(9, "0"))

@@ -8,7 +8,7 @@ What is read may be changed by another thread meanwhile. `Lanes.consistent` read
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
 
 import numpy as np
@@ -18,6 +18,7 @@ from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder.record import Bit, Case, Cell, Presence
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.run import readable
+from rosetta_jit.runtime.transposing import transposed
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -47,13 +48,13 @@ BLOCK = 256
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Words:
-    """Some words of rows, transposed, so that a column lies together: shape (words, rows). The first is word ``start`` of each row.
+    """Some words of rows, transposed: a column of each, which lies together. The first is word ``start`` of each row.
 
     To read columns one by one out of rows costs three times as much: each passes through all of the rows' memory.
     """
 
     start: int
-    words: Indices
+    words: Sequence[Indices]
 
     def column(self, index: int, dtype: np.dtype[Any]) -> NDArray[Any] | None:
         """The scalar that lies so many scalars behind the row's begin, if it is among the words."""
@@ -110,10 +111,13 @@ class Rows:
         if self.words is not None or not first < behind:
             return self
         rows = lanes.row_words(lane, 0, lanes.capacity(lane))[:, first:behind]
-        words = self.room((behind - first) * self.count).reshape(behind - first, self.count)
-        for begin in range(0, self.count, BLOCK):
-            words[:, begin : begin + BLOCK] = rows[self._block(begin)].T
-        return Rows(self.at, self.count, self.live, Words(first, words), self.room)
+        columns = transposed(rows[self.at], self.room) if isinstance(self.at, slice) else None
+        if columns is None:
+            words = self.room((behind - first) * self.count).reshape(behind - first, self.count)
+            for begin in range(0, self.count, BLOCK):
+                words[:, begin : begin + BLOCK] = rows[self._block(begin)].T
+            columns = list(words)
+        return Rows(self.at, self.count, self.live, Words(first, columns), self.room)
 
     def _block(self, begin: int) -> slice | Indices:
         if isinstance(self.at, slice):

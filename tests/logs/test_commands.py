@@ -255,3 +255,13 @@ def test_a_name_that_does_not_say_what_to_write(folder, tmp_path, capsys):
         assert "the name does not say what to write" in said
         assert "a folder of tables with `/`" in said
     assert not list(tmp_path.iterdir())
+
+
+def test_a_log_without_topics(command, tmp_path):
+    with (tmp_path / "empty.mcap").open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        writer.finish()
+    path = str(tmp_path / "empty.mcap")
+    assert "empty.mcap has no topics" in command("convert", path, "-o", str(tmp_path / "x.parquet"), code=1).err
+    assert "0 messages read" in command("doctor", path).out

@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 import pytest
+from mcap.writer import Writer
 
 import rosetta_jit as rj
 from rosetta_jit.errors import DecodeError, LogError, SchemaError
@@ -291,3 +292,29 @@ def test_a_definition_that_is_empty(folder, size):
     with pytest.raises(LogError, match="has no definition of `z/msg/Unknown`, the type of the messages of `/x`"):
         rj.open(path)["/x"].to_arrow()
     assert rj.open(path, search_path=[folder])["/x"].to_arrow()["x"].to_pylist() == [[0] * 5]
+
+
+@pytest.mark.parametrize("chunk_size", [40, 1 << 20])
+def test_times_before_1970(tmp_path, chunk_size):
+    """MCAP writes times without sign; ROS 2's have one."""
+    times, path = [-3, -2, -1, 0, 1, 2], tmp_path / "a.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file, chunk_size=chunk_size)
+        writer.start()
+        topic = writer.register_channel("/x", "cdr", writer.register_schema("t/msg/X", "ros2msg", b"uint8 x"))
+        for number, time in enumerate(times):
+            writer.add_message(topic, log_time=time % 2**64, publish_time=time % 2**64, data=b"\0\1\0\0" + bytes([number]))
+        writer.finish()
+    log = rj.open(path)
+    assert [each.time for each in log.messages()] == times
+    assert log["/x"].to_arrow()["publish_time"].cast("int64").to_pylist() == times
+    for start, end in ((-2, 1), (-9, 0), (-3, -1), (0, 9), (None, -1), (2, None)):
+        wanted = [each for each in times if (start is None or each >= start) and (end is None or each < end)]
+        assert [each.time for each in log.messages(start=start, end=end)] == wanted
+        assert log["/x"].to_arrow(start=start, end=end).num_rows == len(wanted)
+    assert (log.start, log.end) == ((-3, 2) if chunk_size == 40 else (None, None))  # one chunk has both kinds, and says neither bound
+
+
+def test_columns_are_a_list_of_names(tmp_path):
+    with pytest.raises(TypeError, match=r"columns=\['x'\]"):
+        rj.open(write_mcap(tmp_path / "a.mcap", 3))["/a"].to_arrow(columns="x")

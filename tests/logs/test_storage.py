@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import gzip
 import io
 import lzma
+import pickle
 import shutil
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import fsspec
 import pytest
+import zstandard
 
 import rosetta_jit as rj
 from rosetta_jit.errors import LogError
@@ -114,3 +118,61 @@ def test_copies_go_with_the_log(logs, monkeypatch, tmp_path):
     assert list(log.messages(raw=True))
     log.close()
     assert not list(tmp_path.iterdir())
+
+
+def test_a_log_that_is_closed_is_not_read(logs, tmp_path):
+    """The number of its file is another one's then."""
+    log = rj.open(logs["a.mcap"])
+    assert len(log.channels)
+    log.close()
+    other = tmp_path / "other"
+    other.write_bytes(bytes(logs["a.mcap"].stat().st_size))
+    with other.open("rb"), pytest.raises(ValueError, match="closed file"):
+        list(log.messages(raw=True))
+
+
+PACKINGS = {".gz": gzip.compress, ".zst": zstandard.ZstdCompressor().compress}
+
+
+@pytest.mark.parametrize("suffix", PACKINGS)
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_log_that_is_compressed_as_a_whole(kind, suffix, logs, tmp_path, monkeypatch):
+    packed, pack = tmp_path / f"{kind}{suffix}", PACKINGS[suffix]
+    data = logs[kind].read_bytes()
+    packed.write_bytes(pack(data[:50]) + pack(data[50:]))
+    form, channels, messages = read(logs[kind])
+    found = read(packed)
+    assert [(each.time, each.message) for each in found[2]] == [(each.time, each.message) for each in messages]
+    assert (found[0], [each[1:] for each in found[1]]) == (form, [each[1:] for each in channels])
+    again = pickle.loads(pickle.dumps(rj.open(packed)))  # noqa: S301 - our own
+    assert list(again.messages(raw=True)) == found[2]
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(packed.read_bytes())))
+    if not kind.startswith(("a.rec", "a.delim")):
+        assert read("-")[2] == messages
+
+
+@pytest.mark.parametrize("damaged", [lambda data: data[:-9], lambda data: data[: len(data) // 2], lambda data: data[:-200] + b"x" * 200])
+def test_what_is_whole_of_a_packed_log_is_read(damaged, tmp_path):
+    path = write_mcap(tmp_path / "a.mcap", 5000, chunk_size=1000)
+    packed = tmp_path / "a.mcap.gz"
+    packed.write_bytes(damaged(gzip.compress(path.read_bytes())))
+    problems, whole = [], list(rj.open(path).messages(["/a"], raw=True))
+    with rj.open(packed, on_problem=problems.append) as log:
+        found = list(log.messages(["/a"], raw=True))
+    assert 1000 < len(found) <= len(whole)
+    assert found == whole[: len(found)]
+    assert problems or len(found) == len(whole)
+
+
+def test_a_packed_log_leaves_room_on_the_disk(tmp_path, monkeypatch):
+    packed = tmp_path / "a.mcap.gz"
+    packed.write_bytes(gzip.compress(bytes(1 << 20)))
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=1 << 20))
+    with pytest.raises(LogError, match="more than half of the disk"):
+        rj.open(packed)
+
+
+@pytest.mark.parametrize("value", [b"a.mcap", io.BytesIO(), 7, None])
+def test_what_is_no_path(value):
+    with pytest.raises(TypeError, match="by its path or its address"):
+        rj.open(value)

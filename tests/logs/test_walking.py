@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rosetta_jit.logs.reading.walking import FEW, Rows
+from rosetta_jit.logs.reading.walking import FEW, Rows, walk
 
 
 @pytest.mark.parametrize("count", [0, 1, FEW, FEW + 1, 9])
@@ -22,3 +22,17 @@ def test_rows_of_which_all_are_wanted_are_not_copied():
     assert rows.of_channels(frozenset({0, 7})) is rows
     nothing = rows.only(slice(0, 0))
     assert len(nothing.of_channels(frozenset({1}))) == 0
+
+
+def test_rows_in_memory_that_is_given():
+    """A walk writes its rows there, as it does otherwise; they are of no other walk."""
+    record = b"\x05" + (25).to_bytes(8, "little") + bytes(range(25))
+    data, given = np.frombuffer(bytearray(record * 700), np.uint8), np.full(5 * 800, -1)
+    found, stop = walk("mcap", data, 0, memory=lambda size: given[:size])
+    own, same = walk("mcap", data, 0)
+    assert stop == same
+    assert len(found) == 700
+    for name in ("channels", "log_ns", "publish_ns", "begins", "ends"):
+        assert getattr(found, name).tolist() == getattr(own, name).tolist()
+        assert np.shares_memory(getattr(found, name), given)
+        assert not np.shares_memory(getattr(own, name), given)

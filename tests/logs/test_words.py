@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 
-from rosetta_jit.catalogue import logs as words
+import rosetta_jit.catalogue.logs as words  # the module itself, not what loads it when a word is needed
 from rosetta_jit.diagnostics import render
 from tests.golden import GOLDEN, check_golden
 

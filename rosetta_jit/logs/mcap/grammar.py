@@ -20,6 +20,9 @@ STATISTICS, DATA_END = 0x0B, 0x0F
 PREFIX = struct.Struct("<BQ")
 """Opcode and length of each record."""
 
+SIGN = 1 << 63
+"""The sign of a time, in a number of 64 bits."""
+
 CONTENT = struct.Struct("<16xQI")
 """Of a chunk: its size before it was compressed, and its checksum, behind the times of its messages."""
 
@@ -44,6 +47,15 @@ class Schema:
     data: bytes
 
 
+def times_between(first: int, last: int) -> tuple[int, int] | None:
+    """The first time and the last of some, in nanoseconds since 1970: those of 2⁶³ and more are before it, as ROS 2 writes them.
+
+    MCAP calls its times unsigned, so some before 1970 and some after are the other way round, and say neither bound: None.
+    """
+    early, late = (first ^ SIGN) - SIGN, (last ^ SIGN) - SIGN
+    return (early, late) if early <= late else None
+
+
 class McapGrammar:
     """What is defined so far, and what each record is."""
 
@@ -59,9 +71,8 @@ class McapGrammar:
         kind, size = KINDS.get(opcode, "other"), PREFIX.size + length
         times = None
         if kind == "chunk" and len(peek) >= PREFIX.size + 16:
-            times = struct.unpack_from("<QQ", peek, PREFIX.size)
-            if times == (0, 0):  # what writers say of a chunk without messages
-                times = None
+            first, last = struct.unpack_from("<QQ", peek, PREFIX.size)
+            times = times_between(first, last) if first or last else None  # writers say 0 and 0 of a chunk without messages
         return Head(kind, size, times)
 
     def define(self, record: bytes) -> None:

@@ -12,7 +12,18 @@ from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.limits import MAX_SUMMARY_BYTES
-from rosetta_jit.logs.mcap.grammar import CHANNEL, CHUNK_INDEX, FOOTER, HEADER, MAGIC, PREFIX, SCHEMA, STATISTICS, McapGrammar
+from rosetta_jit.logs.mcap.grammar import (
+    CHANNEL,
+    CHUNK_INDEX,
+    FOOTER,
+    HEADER,
+    MAGIC,
+    PREFIX,
+    SCHEMA,
+    STATISTICS,
+    McapGrammar,
+    times_between,
+)
 from rosetta_jit.logs.reading.chunked_records import Records
 from rosetta_jit.logs.reading.fields import Fields
 from rosetta_jit.logs.reading.scan import Scanned
@@ -100,7 +111,7 @@ class McapReader:
     def _of_records(self, data: bytes, end: int) -> Summary | None:
         chunks, behind = list[Chunk](), dict[int, int]()
         counts: dict[int, int | None] | None = None
-        extent, facts = None, self._header()
+        times, facts = None, self._header()
         fields = Fields(data)
         compressions: set[str] = set()
         while fields.left:
@@ -114,7 +125,7 @@ class McapReader:
                 behind[chunk.at] = index_size
                 compressions.add(compression)
             elif opcode == STATISTICS:
-                counts, extent = _statistics(content)
+                counts, times = _statistics(content)
         if counts is None:
             return None
         segments = segments_of(chunks, len(MAGIC), end, behind)
@@ -122,7 +133,7 @@ class McapReader:
             raise ValueError("the places of chunks cannot be true")
         if chunks:
             facts |= {"chunks": str(len(chunks)), "compression": ", ".join(sorted(each or "none" for each in compressions))}
-        return Summary(segments, counts, extent, facts, end)
+        return Summary(segments, counts, _extent(times, counts, chunks), facts, end)
 
     def _header(self) -> dict[str, str]:
         """What the first record says."""
@@ -152,12 +163,22 @@ def _chunk_index(fields: Fields) -> tuple[Chunk, int, str]:
         channels[each.u16()] = None
         each.u64()
     index_size, compression = fields.u64(), fields.text()
-    return Chunk(at, size, (first, last) if channels or first or last else None, channels or None), index_size, compression
+    times = times_between(first, last) if channels or first or last else None
+    return Chunk(at, size, times, channels or None), index_size, compression
 
 
-def _statistics(fields: Fields) -> tuple[dict[int, int | None], Extent | None]:
+def _statistics(fields: Fields) -> tuple[dict[int, int | None], tuple[int, int] | None]:
+    """How many messages each channel has, and the first time and the last, if they are told."""
     messages = fields.u64()
     fields.view(2 + 4 + 4 + 4 + 4)
-    start_ns, end_ns = fields.u64(), fields.u64()
-    extent = Extent(start_ns, end_ns) if messages else None
-    return {each.u16(): each.u64() for each in fields.inner().while_left()}, extent
+    times = times_between(fields.u64(), fields.u64()) if messages else None
+    return {each.u16(): each.u64() for each in fields.inner().while_left()}, times
+
+
+def _extent(times: tuple[int, int] | None, counts: Mapping[int, int | None], chunks: Sequence[Chunk]) -> Extent | None:
+    """When the first and the last message of a log came: by its statistics, else by its chunks."""
+    found = [times] if times is not None else [each.times for each in chunks if each.counts]
+    if not any(counts.values()) or None in found or not found:
+        return None
+    known = [each for each in found if each is not None]
+    return Extent(min(first for first, _ in known), max(last for _, last in known))

@@ -259,7 +259,9 @@ class Records:
     def _unpacked(self, sealed: Packed | Content, at: int, scratch: Scratch) -> Content:
         """The content of a chunk, with its first messages."""
         content = unpacked(sealed, self._storage.name, at, scratch, check=self._check)
-        return Content(content.data, content.problem, walk(self._grammar.walk, content.data, 0)) if content.data.size else content
+        if not content.data.size:
+            return content
+        return Content(content.data, content.problem, walk(self._grammar.walk, content.data, 0, memory=scratch.rows))
 
     def _sealed(self, record: memoryview, at: int) -> Packed | Content:
         """What a chunk says of its content."""

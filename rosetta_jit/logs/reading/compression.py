@@ -46,13 +46,13 @@ class Scratch:
     """Memory that is used for one chunk after another: fresh memory would take as long as reading into it. Threads may share it."""
 
     def __init__(self) -> None:
-        self._contents, self._records = list["Bytes"](), list["Bytes"]()
+        self._contents, self._records, self._rows = list["Bytes"](), list["Bytes"](), list["Bytes"]()
         self._lock, self._of_thread = Lock(), local()
 
     def settle(self) -> None:
         """Keep some of the memory for the next reading."""
         with self._lock:
-            for memory in (self._contents, self._records):
+            for memory in (self._contents, self._records, self._rows):
                 while sum(each.size for each in memory) > KEPT_BYTES // 2:
                     del memory[-1]
 
@@ -71,6 +71,11 @@ class Scratch:
         """The same for a chunk as it is in the file, which is its content where it is not compressed."""
         with self._lock:
             return _unused(self._records, size)
+
+    def rows(self, size: int) -> NDArray[np.int64]:
+        """The same for so many numbers of rows."""
+        with self._lock:
+            return _unused(self._rows, 8 * size).view(np.int64)
 
 
 def _unused(memory: list[Bytes], size: int) -> Bytes:

@@ -1,6 +1,7 @@
 ; The same as fold.ll with registers of 64 bytes, for CPUs that have AVX-512 and VPCLMULQDQ: 256 bytes at a time are folded into 256, those into 64, and
 ; those into 16. It takes half the time.
 
+declare void @llvm.prefetch.p0(ptr, i32, i32, i32)
 declare <8 x i64> @llvm.x86.pclmulqdq.512(<8 x i64>, <8 x i64>, i8 immarg)
 declare <2 x i64> @llvm.x86.pclmulqdq(<2 x i64>, <2 x i64>, i8 immarg)
 
@@ -62,6 +63,14 @@ body:
   %at.b = getelementptr i8, ptr %at.a, i64 64
   %at.c = getelementptr i8, ptr %at.a, i64 128
   %at.d = getelementptr i8, ptr %at.a, i64 192
+  %soon.a = getelementptr i8, ptr %at.a, i64 2048
+  %soon.b = getelementptr i8, ptr %at.b, i64 2048
+  %soon.c = getelementptr i8, ptr %at.c, i64 2048
+  %soon.d = getelementptr i8, ptr %at.d, i64 2048
+  call void @llvm.prefetch.p0(ptr %soon.a, i32 0, i32 3, i32 1)
+  call void @llvm.prefetch.p0(ptr %soon.b, i32 0, i32 3, i32 1)
+  call void @llvm.prefetch.p0(ptr %soon.c, i32 0, i32 3, i32 1)
+  call void @llvm.prefetch.p0(ptr %soon.d, i32 0, i32 3, i32 1)
   %next.a = load <8 x i64>, ptr %at.a, align 1
   %next.b = load <8 x i64>, ptr %at.b, align 1
   %next.c = load <8 x i64>, ptr %at.c, align 1

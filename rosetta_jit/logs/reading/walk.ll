@@ -21,6 +21,7 @@ define private i64 @little64(ptr %at) alwaysinline {
   ret i64 %value
 }
 
+declare void @llvm.prefetch.p0(ptr, i32, i32, i32)
 declare i32 @llvm.bswap.i32(i32)
 declare i64 @llvm.bswap.i64(i64)
 
@@ -91,6 +92,9 @@ inside:
   %tiny = icmp ult i64 %length, 22
   br i1 %tiny, label %broken, label %message
 message:
+  %distance = mul i64 %length, 6
+  %later = getelementptr i8, ptr %here, i64 %distance
+  call void @llvm.prefetch.p0(ptr %later, i32 0, i32 3, i32 1)
   %channel.at = getelementptr i8, ptr %here, i64 9
   %channel = call i64 @little16(ptr %channel.at)
   %log.at = getelementptr i8, ptr %here, i64 15

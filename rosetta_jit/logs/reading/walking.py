@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import threading
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from enum import IntEnum
 from functools import cache
 from pathlib import Path
@@ -99,27 +99,35 @@ class Stop:
     size: int
 
 
-def walk(records: Literal["mcap", "lcm", "bag"], data: NDArray[np.uint8], at: int, *, seed: int = 0) -> tuple[Rows, Stop]:
-    """The messages from a place on."""
+def walk(
+    records: Literal["mcap", "lcm", "bag"],
+    data: NDArray[np.uint8],
+    at: int,
+    *,
+    seed: int = 0,
+    memory: Callable[[int], NDArray[np.int64]] | None = None,
+) -> tuple[Rows, Stop]:
+    """The messages from a place on. ``memory`` gives memory for so many numbers, in which the rows then are; else they have their own."""
     assert 0 <= at <= data.size
     state = np.array([at, 0, 0, seed], np.uint64)
     room = min(ROOM, (data.size - at) // _LEAST[records] + 1)
-    rows = _rows(room)
+    rows = (memory or _of_thread)(5 * room)[: 5 * room].reshape(5, room)
     count = _function(records)(pointer_to(data), data.size, address_of(state), address_of(rows), room)
     at, why, size = map(int, state[:3].tolist())
-    return Rows.of(rows[:, :count].copy()), Stop(at, Why(why), size)
+    found = rows[:, :count]
+    return Rows.of(found.copy() if memory is None else found), Stop(at, Why(why), size)
 
 
 _SCRATCH = threading.local()
 """Of each thread the memory that walks write to. Fresh memory for as many messages as there could be would take as long as the walk."""
 
 
-def _rows(room: int) -> NDArray[np.int64]:
-    """Shape (5, room): what was there before is gone."""
+def _of_thread(size: int) -> NDArray[np.int64]:
+    """Room for so many numbers: what was there before is gone."""
     memory: NDArray[np.int64] | None = getattr(_SCRATCH, "memory", None)
-    if memory is None or memory.size < 5 * room:
-        memory = _SCRATCH.memory = np.empty(5 * room, np.int64)
-    return memory[: 5 * room].reshape(5, room)
+    if memory is None or memory.size < size:
+        memory = _SCRATCH.memory = np.empty(size, np.int64)
+    return memory
 
 
 _LEAST = {"mcap": 31, "lcm": 28, "bag": 8}
