@@ -271,10 +271,10 @@ class Trip:
             return True
         return False if place.side != self.origin and is_left_absent(place, self.rules) else None
 
-    def is_absent(self, names: tuple[str, ...], message: Message) -> bool:
-        """Whether a place is known not to be there, or another case of its union is."""
+    def is_absent(self, names: tuple[str, ...], message: Message, *, in_rounds: bool = False) -> bool:
+        """Whether a place is known not to be there, or another case of its union is; or that of an element, in some rounds of loops."""
         for condition, (holds, ranges) in self.truths.items():
-            if isinstance(condition, Has) and not ranges and condition.place.side == self.origin:
+            if isinstance(condition, Has) and bool(ranges) == in_rounds and condition.place.side == self.origin:
                 subject = field_names(condition.place)
                 unions = union_depths(condition.place, message)
                 if not holds and names[: len(subject)] == subject:

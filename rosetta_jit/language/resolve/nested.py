@@ -134,7 +134,7 @@ def _too_deep(most: int, place: typed.Place, origin: typed.Place, span: Span | N
         there: typed.Binary | typed.Has = typed.Binary("!=", typed.LenOf(origin), typed.Const(0, typed.INT64), typed.BOOL)
     else:
         there = typed.Has(origin)
-    return (typed.When(there, (typed.Reject(words.too_deep(most), span),), (), span), typed.Default(place, span))
+    return (typed.When(there, (typed.Reject(words.too_deep(most), span),), (), span), *_left_out(place, origin, span))
 
 
 def _at(use: Use, scope: Scope, rules_of: RulesOf) -> tuple[typed.Rule, ...]:
