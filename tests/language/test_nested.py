@@ -335,3 +335,32 @@ rules:
     laws = rj.check("m.mapping", schema=files).laws
     assert {each.why for each in laws.holders.losses} == {"it cannot be shown by which block of a `when` it comes back"}
     assert str(rj.check("e.mapping", schema=files).laws.holders) == "exact inverse"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_an_array_of_a_fixed_length_takes_as_many_messages(backend):
+    files = {
+        "arm.proto": 'syntax = "proto3"; package lab; message Joint { double q = 1; } message Arm { repeated Joint joints = 1; }',
+        "t/msg/Joint.msg": "float64 q\n",
+        "t/msg/Arm.msg": "Joint[2] joints\n",
+        "joint.mapping": """import "t/msg/Joint.msg"
+import "arm.proto"
+data-holder: lab.Joint
+wire-schema: t/msg/Joint
+rules:
+  .q <-> .q * 2.0
+""",
+        "m.mapping": """import "t/msg/Arm.msg"
+import "arm.proto"
+data-holder: lab.Arm
+wire-schema: t/msg/Arm
+rules:
+  .joints <-> .joints via "joint.mapping"
+""",
+    }
+    decode, encode = (each("m.mapping", schema=files, backend=backend) for each in (rj.Decoder, rj.Encoder))
+    arm = {"joints": [{"q": 1.0}, {"q": -2.5}]}
+    assert decode(encode(encode.holder_type.from_dict(arm))).to_dict() == arm
+    for joints in ([], [{"q": 1.0}], [{"q": 1.0}] * 3):
+        with pytest.raises(rj.EncodeError, match="the arrays have different lengths"):
+            encode(encode.holder_type.from_dict({"joints": joints}))
