@@ -104,6 +104,12 @@ def unsettled_presence(span: Span | None, place: str, *, holds: bool) -> Diagnos
     condition, found = ("holds", "does not set") if holds else ("does not hold", "may set")
     message = f"to pack, the block where the condition {condition} {found} `{shown}`"
     help_ = f"relate the holder to `{shown}`, or to something in it, in the block where it is there alone; or {_by_hand([place])}"
+    if "[." in place:  # an element by its key: which others there are decides where it stands
+        array, _, key = place.partition("[")
+        help_ = (
+            f"write this `when` in `unpack-rules:`; `pack-rules:` ask the holder, and each of their blocks says how long `{array}` is "
+            f"and sets all elements of it: `len({array}) = 2`, `{array}[0]{key.partition(' ')[0]} = ...`"
+        )
     return error("undetermined-field", message, span, "the condition asks whether it is there", help_=help_)
 
 

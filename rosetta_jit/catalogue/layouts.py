@@ -133,8 +133,9 @@ def no_divisor(span: Span | None, total: int, size: int) -> Diagnostic:
 
 
 def not_flat(span: Span | None, function: str) -> Diagnostic:
-    help_ = "use it first: `planar(rows(...), 3)`"
-    return error("layout-order", f"`{function}` needs an array that no other function has put in rows or planes", span, help_=help_)
+    loop = "for y from 0 to .h ... .a[y * .w + x] ... end"
+    help_ = f"a rule has one such order, as in `planar(rows(...), 3)` or `reversed(transposed(...))`; write others as a loop: `{loop}`"
+    return error("layout-order", f"`{function}` does not nest with the order around it, or within it", span, help_=help_)
 
 
 padded_inside = Mistake(

@@ -55,9 +55,11 @@ TO_LOCAL = (
         dy = place.y - origin.y
         dz = place.z - origin.z
         away = origin.co * dx + origin.so * dy
-        east = origin.co * dy - origin.so * dx
-        north = origin.cl * dz - origin.sl * away
-        up = origin.cl * away + origin.sl * dz
+        nan = sqrt(-1.0)
+        there = abs(place.latitude) <= 90 and abs(origin.latitude) <= 90
+        east = origin.co * dy - origin.so * dx if there else nan
+        north = origin.cl * dz - origin.sl * away if there else nan
+        up = origin.cl * away + origin.sl * dz if there else nan
     """
 )
 
@@ -89,13 +91,15 @@ TO_GEODETIC = (
     + f"""
         angle = atan2(rise2, run2)
         sine = sin(angle)
-        latitude = degrees(angle)
-        longitude = degrees(atan2(y, x))
-        altitude = level * cos(angle) + z * sine - {SEMI_MAJOR!r} * sqrt(1 - {ECCENTRICITY!r} * sine * sine)
+        nan = sqrt(-1.0)
+        there = abs(origin.latitude) <= 90
+        latitude = degrees(angle) if there else nan
+        longitude = degrees(atan2(y, x)) if there else nan
+        altitude = level * cos(angle) + z * sine - {SEMI_MAJOR!r} * sqrt(1 - {ECCENTRICITY!r} * sine * sine) if there else nan
     """
 )
 
-POLES = "longitudes come back within half a turn, and at a pole as any"
+POLES = "longitudes come back within half a turn, at a pole as any, and beyond it as NaN"
 
 GROUP_FUNCTIONS = (
     group_function(
@@ -108,7 +112,7 @@ GROUP_FUNCTIONS = (
         row(
             "`enu(place, origin)`",
             "latitude and longitude in degrees, and altitude in metres (WGS84), of a place and of an origin",
-            "east, north and up of the origin, in metres",
+            "east, north and up of the origin, in metres; NaN beyond the poles",
         ),
     ),
     group_function(

@@ -51,6 +51,7 @@ GRID = Group("a place in a zone", (Member(("easting", "east", "x"), "meter"), Me
 ZONE = Group("a zone of UTM", (Member(("zone",)),))
 
 FAR = "; NaN far from the zone, and of a number that is none"
+NOWHERE = "; NaN far from the zone, beyond the poles, and of a number that is none"
 
 
 def _polynomial(x: str, coefficients: list[float]) -> str:
@@ -132,7 +133,7 @@ TO_GRID = (
         ca = cos(away)
         level = sqrt(tc * tc + ca * ca)
         h0 = sin(away) / level
-        near = known and abs(h0) <= 1
+        near = known and abs(h0) <= 1 and abs(place.latitude) <= 90
         sx = tc / level
         cx = ca / level
         s2 = 2 * sx * cx
@@ -206,7 +207,7 @@ GROUP_FUNCTIONS = (
         TO_GRID,
         (lambda arguments, value: called("geodetic_of_utm", value, arguments[1]), SEVERAL),
         "",
-        row("`utm(place, zone)`", f"latitude and longitude in degrees (WGS84), and {ZONES}", f"easting and northing in metres{FAR}"),
+        row("`utm(place, zone)`", f"latitude and longitude in degrees (WGS84), and {ZONES}", f"easting and northing in metres{NOWHERE}"),
     ),
     group_function(
         "geodetic_of_utm",
@@ -214,7 +215,7 @@ GROUP_FUNCTIONS = (
         PLACE,
         TO_PLACE,
         (lambda arguments, value: called("utm", value, arguments[1]), SEVERAL),
-        POLES,
+        f"{POLES}, as those far from the zone do",
         row("`geodetic_of_utm(grid, zone)`", "easting and northing in a zone, and its number", f"latitude and longitude in degrees{FAR}"),
     ),
 )

@@ -17,7 +17,6 @@ from rosetta_jit.runtime.holder.family import family_of
 from rosetta_jit.runtime.holder.paths import entries_to
 from rosetta_jit.runtime.lanes import Lanes, in_use
 from rosetta_jit.runtime.memory_for_arrow import Handed
-from rosetta_jit.runtime.memory_plan import plan
 from rosetta_jit.runtime.nested_columns import Origin, of_batch
 
 if TYPE_CHECKING:
@@ -72,7 +71,7 @@ class Batch(WithColumns):
     def room(cls, holder_class: type[Holder], count: int) -> Batch:
         """Room for so many messages of a type that are going to be decoded."""
         family = holder_class.family_
-        return cls(family, Lanes(plan(family.layout, count, family.tree.initial), family.array_type))
+        return cls(family, Lanes(family.plan_of(count), family.array_type).prepared())
 
     @classmethod
     def from_arrow(cls, holder_class: type[Holder], source: Any) -> Batch:
@@ -122,13 +121,11 @@ class Batch(WithColumns):
     def __getitem__(self, index: slice | ArrayLike) -> Batch: ...
     def __getitem__(self, index: int | np.integer[Any] | slice | ArrayLike) -> Any:
         """A view of one message; or a new batch with copies of those that a slice, a mask or an array of numbers chooses."""
-        match index:
-            case int() | np.integer() if not isinstance(index, bool):
-                return self._row(int(index))
-            case _:
-                part = Batch(self._family, joined([(self.lanes, index)]))
-                part.errors, part._kept = errors_of_part(self.errors, self._kept, index, len(self))
-                return part
+        if isinstance(index, int | np.integer) and not isinstance(index, bool):
+            return self._row(int(cast("int", index)))
+        part = Batch(self._family, joined([(self.lanes, index)]))
+        part.errors, part._kept = errors_of_part(self.errors, self._kept, index, len(self))
+        return part
 
     def _row(self, index: int) -> Any:
         epoch = self.lanes.words[EPOCH]
@@ -152,9 +149,8 @@ class Batch(WithColumns):
             If they are of different types.
         """
         parts = list(batches)
-        strange = next((each for each in parts if not isinstance(each, Batch)), None)  # pyright: ignore[reportUnnecessaryIsInstance]
-        if strange is not None:
-            raise TypeError(f"batches are needed, not {type(strange).__name__}")
+        if strange := [each for each in parts if not isinstance(each, Batch)]:  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise TypeError(f"batches are needed, not {type(strange[0]).__name__}")
         if not parts:
             raise ValueError("there is no batch, whose type would be that of the whole")
         family = family_in(parts[0])
@@ -298,8 +294,7 @@ class Batch(WithColumns):
         KeyError
             If there is no such field.
         TypeError
-            If messages contain each other: leave that field out. If a field that is to be a moment is none. If one name is given
-            instead of several.
+            If messages contain each other: leave that field out. If what is to be a moment is none. If ``columns`` is one name.
         ValueError
             If an option has no such value, or ``errors`` is the name of a column.
         EncodeError
@@ -381,6 +376,11 @@ def begin_anew(batch: Batch) -> None:
     object.__setattr__(batch, "_kept", None)
     if batch._handed is not None:  # noqa: SLF001
         batch._handed.renew(batch.lanes)  # noqa: SLF001
+
+
+def is_handed_over(batch: Batch) -> bool:
+    """Whether tables may take memory of a batch (`hand_over`)."""
+    return batch._handed is not None  # noqa: SLF001
 
 
 def keep_only(batch: Batch, kept: NDArray[np.int64]) -> None:

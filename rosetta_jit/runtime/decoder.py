@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+import struct
 from _thread import get_ident
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 from weakref import WeakKeyDictionary
 
 from rosetta_jit.kernel.state import CLEAN, NUMBER, VALID
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.methods import turning
 from rosetta_jit.runtime.callable import FAILED, THREAD
 from rosetta_jit.runtime.holder import Holder
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.runtime.memory import LARGE
-from rosetta_jit.runtime.message_spans import MessageSpans, laid_out, source_of
+from rosetta_jit.runtime.message_spans import MessageSpans, laid_out, source_of, together
 from rosetta_jit.runtime.program import Loaded, Program, is_foreign
 from rosetta_jit.runtime.row_counts import roomier
 from rosetta_jit.startup.cached import cached_property
@@ -172,17 +174,51 @@ class DecoderBase(Program):
         InUse
             Another thread is filling, changing or encoding the batch.
         """
-        source, spans = laid_out(messages, offsets)
-        data = run.readable(source)
-        filling = self._filling(len(spans), into, on_error)
-        lanes = filling.batch.lanes
+        if offsets is None:
+            messages, offsets = together(messages)
+        batch = self._batch(len(laid_out(messages, offsets)[1])) if into is None else into
+        lanes = self._lanes_to_fill(batch, on_error)
         before = lanes.source[0]
-        with lanes:
-            self._fill(filling, data, spans, len(spans))
-            lanes.source[0] = source if self._loaded.borrow else None
-            batch = filling.end()
+        with lanes, self._keeping(lanes):
+            done = self._filled(batch, lanes, messages, offsets)
+            if done is not None:
+                self._go_on(batch, lanes, messages, offsets, on_error, done)
         del before  # outside: what ends with it may run any code
         return batch
+
+    def _filled(self, batch: Batch, lanes: Lanes, messages: Any, offsets: Any) -> int | None:
+        """Inside ``with lanes:``, decode all messages in one compiled step. None where that was done; else how many messages were."""
+        fill_rows = self._fill_rows
+        if fill_rows is None or not batches.can_be_at_once(batch):
+            return 0
+        lanes.is_filled = False
+        count = fill_rows(messages, offsets, lanes.address)
+        if count < 0:
+            return -1 - count
+        batches.end_at_once(batch, count)
+        return None
+
+    @cached_property
+    def _fill_rows(self) -> Callable[[Any, Any, int], int] | None:
+        """The compiled step of `many`; None where it would leave something out, or there is no code."""
+        loaded = self._loaded
+        if library() is None or loaded.library is None or loaded.borrow or loaded.asks_host:
+            return None
+        return partial(functions()["fill_rows"], struct.pack("=2q", loaded.library["many"], len(self._holder.lanes_.plan.strides)))
+
+    def _go_on(self, batch: Batch, lanes: Lanes, messages: Any, offsets: Any, on_error: OnError, done: int) -> None:
+        """Inside ``with lanes:``, decode messages step by step, behind so many that are."""
+        source, spans = laid_out(messages, offsets)
+        data, count = run.readable(source), len(spans)
+        filling = batches.Filling(self._loaded, batch, on_error, count, self._compiled_many, self._made_for)
+        if done:
+            filling.resume(done)
+        else:
+            filling.begin()
+            self._tell(lanes, count)
+        filling.add(data, spans, count)
+        lanes.source[0] = source if self._loaded.borrow else None
+        filling.end()
 
     @property
     def _borrows(self) -> bool:
@@ -199,12 +235,17 @@ class DecoderBase(Program):
         TypeError
             The batch is of another type.
         """
-        self._refuse_part("with many others")
+        batch = self._batch(count) if into is None else into
+        self._lanes_to_fill(batch, on_error)
+        return batches.Filling(self._loaded, batch, on_error, count, self._compiled_many, self._made_for)
+
+    def _lanes_to_fill(self, batch: Batch, on_error: OnError) -> Lanes:
+        """The lanes of a batch that many messages fill. Raises as `_filling`."""
+        if self._loaded.wire is not None:
+            self._refuse_part("with many others")
         if on_error not in ("raise", "skip", "mask"):
             raise ValueError(f'on_error is "raise", "skip" or "mask", not {on_error!r}')
-        batch = self._batch(count) if into is None else into
-        self._lanes_of(batch)
-        return batches.Filling(self._loaded, batch, on_error, count, self._compiled_many, self._made_for)
+        return self._lanes_of(batch)
 
     def _fill(self, filling: Filling, data: NDArray[np.uint8], spans: MessageSpans, count: int) -> None:
         """One step, inside ``with lanes:``. Message ``i`` of all steps lies at place ``i``; there are ``count`` behind this step."""

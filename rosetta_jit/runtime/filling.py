@@ -10,7 +10,7 @@ import numpy as np
 from rosetta_jit.errors import DecodeError
 from rosetta_jit.kernel.state import CAPACITY, CLEAN, LANE_WORDS, USED, VALID, lane_word
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.batch import Batch, begin_anew, keep_only
+from rosetta_jit.runtime.batch import Batch, begin_anew, is_handed_over, keep_only
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.memory import pointer_to
 from rosetta_jit.runtime.program import Loaded, one_by_one
@@ -55,6 +55,11 @@ class Filling:
         for used in range(lane_word(0, USED), lane_word(len(lanes.plan.strides), USED), LANE_WORDS):
             words[used] = 0
         lanes.rows = 0
+
+    def resume(self, done: int) -> None:
+        """Go on where so many messages have been decoded already, and nothing but that has been done."""
+        begin_anew(self.batch)
+        self.count = done
 
     def add(self, data: NDArray[np.uint8], spans: MessageSpans, count: int) -> None:
         """Decode messages, so that there are ``count``: message ``i`` of all lies at place ``i``. Room is made on the way.
@@ -128,6 +133,18 @@ class Filling:
 
 
 _ROWS_CAPACITY, _ROWS_USED = lane_word(0, CAPACITY), lane_word(0, USED)
+
+
+def can_be_at_once(batch: Batch) -> bool:
+    """Whether a batch can be filled as it is: nothing is borrowed in it, and no table takes its memory."""
+    return batch.lanes.source[0] is None and not is_handed_over(batch)
+
+
+def end_at_once(batch: Batch, count: int) -> None:
+    """Inside ``with lanes:``, behind the compiled step that has decoded so many messages: the batch has these, and can be read."""
+    begin_anew(batch)
+    batch.lanes.rows = count
+    batch.lanes.words[VALID] = CLEAN
 
 
 def _make_rows(lanes: Lanes, count: int) -> None:

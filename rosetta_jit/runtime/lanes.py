@@ -123,6 +123,13 @@ class Lanes:
         self.is_filled = True
         self.rows = plan.rows
 
+    def prepared(self) -> Self:
+        """The lanes, which nobody else has yet, with all that a batch is asked for when it is filled."""
+        self.memory = memory = _memory(self)
+        self.words = memory.first[: self.plan.state_bytes].cast("q")
+        self.lock, self.source, self.hidden = allocate_lock(), [None], None
+        return self
+
     if not TYPE_CHECKING:  # for which the slots are always there
 
         def __getattr__(self, name):

@@ -91,24 +91,32 @@ def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | 
     ValueError
         The offsets are of another type or shape.
     """
-    is_buffer = _is_buffer(messages)
-    if offsets is not None:
-        if is_buffer:
-            return source_of(messages), MessageSpans.of(offsets)
+    if offsets is None:
+        messages, offsets = together(messages)
+    elif not _is_buffer(messages):
         raise TypeError(
             f"offsets are places in one buffer, and not in a {type(messages).__name__}; the batch that is to be filled is `into=…`"
         )
-    if is_buffer:
-        raise TypeError("messages in one buffer take offsets, which say where each begins; without them, give a list of messages")
-    if isinstance(messages, str) or not isinstance(messages, Iterable):
-        raise TypeError(f"a list of messages is needed, or a buffer and offsets, not {type(messages).__name__}")
+    return source_of(messages), MessageSpans.of(offsets)
+
+
+def together(messages: Any) -> tuple[bytes, NDArray[np.int64]]:
+    """Messages one behind the other, and where each begins and the last ends. Raises as `laid_out`."""
+    if not isinstance(messages, list) and (isinstance(messages, str) or not isinstance(messages, Iterable) or _is_buffer(messages)):
+        raise _no_messages(messages)
     pieces = list(cast("Iterable[Any]", messages))
     try:
         sizes = [len(each) if type(each) is bytes else _size_of(each) for each in pieces]
     except TypeError:
         number, strange = next((number, each) for number, each in enumerate(pieces) if not _is_buffer(each))
         raise TypeError(f"message {number} is no bytes-like object, but of the type {type(strange).__name__}") from None
-    return b"".join(pieces), MessageSpans.of(np.cumsum([0, *sizes], dtype=np.int64))
+    return b"".join(pieces), np.cumsum([0, *sizes], dtype=np.int64)
+
+
+def _no_messages(messages: Any) -> TypeError:
+    if _is_buffer(messages):
+        return TypeError("messages in one buffer take offsets, which say where each begins; without them, give a list of messages")
+    return TypeError(f"a list of messages is needed, or a buffer and offsets, not {type(messages).__name__}")
 
 
 def _size_of(message: Any) -> int:

@@ -73,15 +73,16 @@ class Registers:
         Where they lie.
     """
 
-    __slots__ = ("_initial", "_lock", "_variables", "_words", "address", "values")
+    __slots__ = ("_in_use", "_initial", "_lock", "_variables", "address", "values")
 
     def __init__(self, variables: tuple[tuple[str, str, int], ...]) -> None:
         count = len(variables)
         self._variables = tuple((name, type_) for name, type_, _ in variables)
         self._initial = np.array([word for _, _, word in variables], np.int64)
-        self._words = np.zeros(1 + 2 * count, np.int64)
+        words = np.zeros(1 + 2 * count, np.int64)
         self._lock = allocate_lock()
-        self.values = self._words[1 : 1 + count]
+        self._in_use = words[:1].data
+        self.values = words[1 : 1 + count]
         self.address: int = self.values.ctypes.data
         self.values[:] = self._initial
 
@@ -93,13 +94,13 @@ class Registers:
         InUse
             Another call has them.
         """
-        if not self._lock.acquire(blocking=False):
+        if not self._lock.acquire(False):
             raise InUse(OTHERS)
-        self._words[0] = 1
+        self._in_use[0] = 1
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._words[0] = 0
+        self._in_use[0] = 0
         self._lock.release()
 
     def lent(self, lanes: Lanes) -> Lent:

@@ -94,13 +94,9 @@ def test_c_keeps_what_the_library_keeps(tmp_path, options):
 
 @needs_cpp
 def test_cpp_keeps_what_the_library_keeps(tmp_path):
-    """The usual driver encodes twice, which here gives two messages: this one encodes once."""
-    text, once = cpp.MAIN.read_text(), tmp_path / "once.cpp"
-    begin, end = text.index("    std::string again;"), text.index('    std::printf("ok ");')
-    once.write_text(text[:begin] + text[end:])
     name = cpp.write(tmp_path, generated(REQUEST, "cpp", BOTH, "unit"))
     every = messages()
-    assert answers(cpp.program(tmp_path, name, main=once), every) == wanted(every)
+    assert answers(cpp.program(tmp_path, name, main=cpp.encoding_once(tmp_path)), every) == wanted(every)
 
 
 def test_python_keeps_what_the_library_keeps(monkeypatch):

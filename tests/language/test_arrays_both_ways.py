@@ -161,3 +161,14 @@ rules:
     with pytest.raises(rj.EncodeError) as error:
         encode(encode.holder_type.from_dict(values))
     assert error.value.kind == "rejected"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("rules", ["  .xs <-> .xs\n  .n <-> int32(2 * len(.xs))\n", "  .n <-> int32(2 * len(.xs))\n  .xs <-> .xs\n"])
+def test_the_length_of_an_array_that_is_assigned_as_a_whole_is_a_check(rules, backend):
+    made = pair('("xs" (:list :double))', "required int32 n = 1; repeated double xs = 2;", f"rules:\n{rules}", backend)
+    assert str(made.decode.mapping.laws) == "messages: exact inverse\nholders: exact inverse"
+    for xs in ([], [1.0, 2.0]):
+        assert made.unpack(xs=xs) == {"n": 2 * len(xs), "xs": xs}
+        assert made.pack(n=2 * len(xs), xs=xs) == {"xs": xs}
+    assert "`.n` is not `int32(2 * len(.xs))`, as the mapping says" in str(made.refused(n=3, xs=[1.0]))

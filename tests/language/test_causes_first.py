@@ -221,3 +221,25 @@ def test_fields_that_no_rule_sets_come_behind_what_is_wrong_in_rules():
     found = reports(MAPPING.replace(".seq <-> .seq", ".seq <-> .positions").replace("  .big <-> .big\n", ""))
     assert found is not None
     assert [each.code for each in found.diagnostics] == ["type-clash", "never-set"]
+
+
+def test_what_is_wrong_in_a_schema_comes_alone_where_a_mapping_uses_another():
+    """Types that could not be read say nothing of how the used mapping's relations are turned round."""
+    files = {
+        "lab.idl": """module lab { enum Kind { FREE }; struct Joint { unsigned short flags; Kind kind; };
+struct Arm { sequence<Joint> joints; }; };""",
+        "j.proto": 'syntax = "proto3"; package lab; message J { bool on = 1; uint32 mode = 2; } message Js { repeated J joints = 1; }',
+        "j.mapping": """import "lab.idl"
+import "j.proto"
+data-holder: lab.J
+wire-schema: lab::Joint
+rules:
+  .on <-> .flags & 1 != 0
+  .mode <-> .flags >> 2 & 7
+""",
+    }
+    text = 'import "lab.idl"\nimport "j.proto"\ndata-holder: lab.Js\nwire-schema: lab::Arm\nrules:\n  .joints <-> .joints via "j.mapping"\n'
+    front_ends = Readers({name: installed()[name] for name in ("protobuf", "corba")})
+    with pytest.raises(MappingError) as error:
+        check(parse(Source("m.mapping", text)), front_ends, SearchPath(files=tuple(files.items())))
+    assert [each.code for each in error.value.diagnostics] == ["used-name"]

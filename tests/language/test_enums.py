@@ -60,3 +60,19 @@ def test_an_enum_of_no_package_is_turned_round_too(package):
     message = encode(encode.holder_type.from_dict(held))
     assert message == b"\x05\x03\0\0\0LOW"
     assert decode(message).to_dict() == held
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_one_enum_becomes_another_by_number_in_both_directions(backend):
+    files = {
+        "rtc.idl": "module RTC { enum Power { OFF, ON, AUTO }; struct Command { Power state; }; };",
+        "lab.proto": """syntax = "proto2"; package lab; enum Mode { IDLE = 0; ACTIVE = 1; BROKEN = 9; }
+message Command { required Mode mode = 1; }""",
+        "m.mapping": f"{HEAD}rules:\n  .mode <-> lab.Mode(int32(.state))\n",
+    }
+    decode, encode = (each("m.mapping", schema=files, backend=backend) for each in (rj.Decoder, rj.Encoder))
+    for name in ("IDLE", "ACTIVE"):
+        assert decode(encode(encode.holder_type.from_dict({"mode": name}))).to_dict() == {"mode": name}
+    with pytest.raises(rj.EncodeError) as error:
+        encode(encode.holder_type.from_dict({"mode": "BROKEN"}))
+    assert (error.value.kind, error.value.path) == ("range", ".state")

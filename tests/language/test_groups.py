@@ -240,6 +240,25 @@ def test_places_come_back(lat, lon, alt):
     assert abs(back["alt"] - alt) < 1e-6
 
 
+FROM = one_way(
+    f'{FIX} ("origin" :double)',
+    "required double east = 1; required double north = 2; required double up = 3;",
+    "unpack-rules:\n  .east, .north, .up = enu([.lat, .lon, .alt], [.origin, 8.5, 100.0])\n",
+)
+
+
+@pytest.mark.parametrize("lat", [90.0000001, -91.0, 450.0, math.inf, math.nan])
+def test_beyond_the_poles_there_is_no_place(lat):
+    assert all(map(math.isnan, LOCAL.unpack(lat=lat, lon=8.5, alt=100.0).values()))
+    assert all(map(math.isnan, FROM.unpack(lat=1.0, lon=8.5, alt=100.0, origin=lat).values()))
+
+
+@pytest.mark.parametrize("lat", [90.0, -90.0])
+def test_the_poles_are_places(lat):
+    back = LOCAL.pack(**LOCAL.unpack(lat=lat, lon=8.5, alt=100.0))
+    assert (back["lat"], back["alt"]) == pytest.approx((lat, 100.0), abs=1e-6)
+
+
 UTM = {
     zone: pair(
         '("lat" :double) ("lon" :double)',
@@ -294,7 +313,8 @@ ZONED = pair(
 
 
 @pytest.mark.parametrize(
-    ("lat", "lon", "zone"), [(50.0, 9.0, 61), (50.0, 9.0, 0), (0.0, 60.0, 32), (math.nan, 9.0, 32), (50.0, math.inf, 32)]
+    ("lat", "lon", "zone"),
+    [(50.0, 9.0, 61), (50.0, 9.0, 0), (0.0, 60.0, 32), (math.nan, 9.0, 32), (50.0, math.inf, 32), (91.0, 9.0, 32), (-1e9, 9.0, 32)],
 )
 def test_far_from_a_zone_there_is_no_number(lat, lon, zone):
     found = ZONED.unpack(lat=math.radians(lat), lon=lon, zone=zone)

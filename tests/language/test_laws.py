@@ -164,3 +164,18 @@ def test_one_way_mappings_have_none():
     assert mapping is not None
     assert mapping.laws is None
     assert rj.Decoder.of("wire", schema=texts, imports=["wire.bottle-schema"], backend="interpreter").mapping is None
+
+
+def test_what_a_condition_says_of_a_table_is_known():
+    """In a block for one constant its table has one key, and in the other that key no more: all of them come back."""
+    rules = """rules:
+  .s <-> table(.n) { 0 = h.Mode.GRAY, 1 = h.Mode.RGB, 2 = h.Mode.BGR }
+  when .n == 1
+    .x <-> .x
+  else
+    ignore .x
+  end
+"""
+    made = laws('("n" :int) ("x" :double)', "required Mode s = 1; optional double x = 2;", rules)
+    assert [loss.place for loss in made.holders.losses] == [".x"]
+    assert [loss.place for loss in made.messages.losses] == [".x"]

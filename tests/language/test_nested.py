@@ -283,3 +283,84 @@ def test_fields_of_elements_that_a_mapping_leaves_alone_wherever_it_is_used(rule
     assert read(encode(found)).to_dict() == {"rows": [row(3), row(0), row(2)], "one": row(1)}
     assert str(decode.mapping.laws.holders) == "exact inverse"
     assert {loss.place for loss in decode.mapping.laws.messages.losses} == {".rows[].parts[].v", ".one.parts[].v"}
+
+
+def test_what_is_refused_beyond_a_depth_is_neither_lost_nor_unread():
+    files = {
+        "leaf.proto": 'syntax = "proto3"; package lab; message Leaf { int32 value = 1; repeated Leaf leaves = 2; }',
+        "twig.proto": 'syntax = "proto3"; package lab; message Twig { int32 value = 1; repeated Twig twigs = 2; }',
+        "m.mapping": """import "leaf.proto"
+import "twig.proto"
+data-holder: lab.Twig
+wire-schema: lab.Leaf
+rules:
+  .value <-> .value
+  .twigs <-> .leaves via "m.mapping" to depth 2
+""",
+    }
+    found = rj.check("m.mapping", schema=files)
+    assert not found.checked.warnings
+    assert str(found.laws) == "messages: exact inverse\nholders: exact inverse"
+
+
+def test_cases_of_elements_are_set_in_some_blocks():
+    """Each element has another case of its union: no case is one that no rule sets."""
+    files = {
+        "t/msg/E.msg": "uint8 D=1\nuint8 I=2\nuint8 kind\nfloat64 d\nint64 i\n",
+        "t/msg/Es.msg": "E[] es\n",
+        "u.proto": 'syntax = "proto3"; package u; message E { oneof v { double d = 1; int64 i = 2; } } message Es { repeated E es = 1; }',
+        "e.mapping": """import "t/msg/E.msg"
+import "u.proto"
+data-holder: u.E
+wire-schema: t/msg/E
+rules:
+  when .kind == t/msg/E.D
+    .d <-> .d
+    ignore .i
+  else when .kind == t/msg/E.I
+    .i <-> .i
+    ignore .d
+  else
+    reject "no kind"
+  end end
+""",
+        "m.mapping": """import "t/msg/Es.msg"
+import "u.proto"
+data-holder: u.Es
+wire-schema: t/msg/Es
+rules:
+  .es <-> .es via "e.mapping"
+""",
+    }
+    laws = rj.check("m.mapping", schema=files).laws
+    assert {each.why for each in laws.holders.losses} == {"it cannot be shown by which block of a `when` it comes back"}
+    assert str(rj.check("e.mapping", schema=files).laws.holders) == "exact inverse"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_an_array_of_a_fixed_length_takes_as_many_messages(backend):
+    files = {
+        "arm.proto": 'syntax = "proto3"; package lab; message Joint { double q = 1; } message Arm { repeated Joint joints = 1; }',
+        "t/msg/Joint.msg": "float64 q\n",
+        "t/msg/Arm.msg": "Joint[2] joints\n",
+        "joint.mapping": """import "t/msg/Joint.msg"
+import "arm.proto"
+data-holder: lab.Joint
+wire-schema: t/msg/Joint
+rules:
+  .q <-> .q * 2.0
+""",
+        "m.mapping": """import "t/msg/Arm.msg"
+import "arm.proto"
+data-holder: lab.Arm
+wire-schema: t/msg/Arm
+rules:
+  .joints <-> .joints via "joint.mapping"
+""",
+    }
+    decode, encode = (each("m.mapping", schema=files, backend=backend) for each in (rj.Decoder, rj.Encoder))
+    arm = {"joints": [{"q": 1.0}, {"q": -2.5}]}
+    assert decode(encode(encode.holder_type.from_dict(arm))).to_dict() == arm
+    for joints in ([], [{"q": 1.0}], [{"q": 1.0}] * 3):
+        with pytest.raises(rj.EncodeError, match="the arrays have different lengths"):
+            encode(encode.holder_type.from_dict({"joints": joints}))

@@ -104,3 +104,32 @@ def test_what_is_wrong():
     assert found('("data" :blob)', ".a = reversed(number_bytes(.data, int8))") == ["number-bytes"]
     assert found('("n" :int) ("data" :blob)', ".a = upper_triangle(.data, .n)\n  ignore .n") == ["layout-size"]
     assert found('("data" (:list :double))', ".a = numbers(.data, float32)") == ["no-bytes"]
+
+
+LAWS = {
+    ".us <-> numbers(.data, uint16)": ("exact", "exact"),
+    ".us <-> numbers(.data, uint16, true)": ("exact", "exact"),
+    ".ds <-> numbers(.data, float64)": ("exact", "exact"),
+    ".ds[] <-> numbers(.data, uint16) * 0.001": ("exact", "it is rounded to a whole number"),
+    ".fs[] <-> float32(numbers(.data, uint16) * 0.001)": ("exact", "it is rounded to a whole number"),
+    ".fs[] <-> float32(numbers(.data, uint32) * 0.001)": ("large integers are rounded to a float", "it is rounded to a whole number"),
+    ".raw <-> number_bytes(numbers(.data, uint16) * 0.001, float32)": ("exact", "it is rounded to a whole number"),
+}
+
+
+@pytest.mark.parametrize("rule", LAWS)
+def test_laws_say_what_becomes_of_numbers_within_bytes(rule):
+    field = {
+        "us": "repeated uint32 us = 1;",
+        "ds": "repeated double ds = 1;",
+        "fs": "repeated float fs = 1;",
+        "ra": "required bytes raw = 1;",
+    }
+    made = pair('("data" :blob)', field[rule[1:3]], f"rules:\n  {rule}\n").decode.mapping.laws
+    assert tuple(each.losses[0].why if each.losses else each.kind for each in (made.messages, made.holders)) == LAWS[rule]
+
+
+def test_all_millimetres_come_back():
+    both = pair('("data" :blob)', "repeated float m = 1;", "rules:\n  .m[] <-> float32(numbers(.data, uint16) * 0.001)\n", "llvm")
+    message = {"data": np.arange(1 << 16, dtype="<u2").tobytes()}
+    assert both.pack(**both.unpack(**message)) == message

@@ -43,6 +43,18 @@ def test_texts_and_numbers(backend):
     assert [(loss.place, loss.why) for loss in laws.messages.losses] == [(".s", SPELT)]
 
 
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_texts_and_constants(backend):
+    """A part may be the name of an enum's constant; the separator is looked for in that."""
+    rules = 'rules:\n  .x <-> part(.s, ";", 0)\n  .m <-> h.Mode(part(.s, ";", 1))\n'
+    both = pair('("s" :string)', "required string x = 1; required Mode m = 2;", rules, backend)
+    assert both.unpack(s="left;RGB") == {"x": "left", "m": "RGB"}
+    assert both.pack(x="left", m="RGB") == {"s": "left;RGB"}
+    assert str(both.decode.mapping.laws.holders) == "exact inverse"
+    underscored = pair('("s" :string)', "required string x = 1; required Mode m = 2;", rules.replace('";"', '"G"'), backend)
+    assert (underscored.refused(x="left", m="RGB").kind, underscored.refused(x="left", m="RGB").path) == ("rejected", ".s")
+
+
 def test_a_text_of_numbers_comes_back():
     wire, holder = '("x" :double) ("y" :double)', "required string s = 1;"
     laws = pair(wire, holder, 'rules:\n  .s <-> text(.x) + ", " + text(.y)\n').decode.mapping.laws

@@ -283,9 +283,13 @@ def _shown(monomial: Monomial, coefficient: int) -> str:
 def shown_atom(factor: Atom) -> str:
     """An atom as text."""
     head = factor.head.replace("$", "#")
+    head = f"has({head.removeprefix('has ')})" if head.startswith("has ") else head
     if "[]" in head:
         for argument in factor.arguments:
             head = head.replace("[]", f"[{argument}]", 1)
         return head
+    if head == "choice" and len(factor.arguments) == 3:
+        condition, chosen, other = factor.arguments
+        return f"({chosen} if {condition} else {other})"
     shown = ", ".join(str(argument) for argument in factor.arguments)
     return f"({shown.replace(', ', f' {head} ', 1)})" if head in "*/%" else f"{head}({shown})" if shown else head

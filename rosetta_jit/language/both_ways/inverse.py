@@ -148,8 +148,9 @@ def step(expr: Expr, value: Expr, type_of: TypeOf) -> tuple[Expr, Expr]:
             return operand, Unary(operator, value, span)
         case Binary():
             return _operation(expr, value)
-        case Call(function, (argument, *_)) if function in CONVERSIONS or is_qualified(function):
-            return argument, value
+        case Call(function, (argument, *_), span) if function in CONVERSIONS or is_qualified(function):
+            is_by_number = isinstance(type_of(argument), Enum) and isinstance(type_of(value), Enum)  # one enum as another
+            return argument, Call(function, (value,), span) if is_by_number and not is_qualified(function) else value
         case Call(function, (array, *_)) if function in ARGUMENTS:
             return array, put_back(expr, value)
         case Call(function) if (known := written(function)) is not None:

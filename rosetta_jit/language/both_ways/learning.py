@@ -43,7 +43,8 @@ def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops, is_assigned: 
     wholes = {(rule.value, around) for rule, around in relations if isinstance(rule.value, Path)}
     done = _together(known, groups, lambda place, around: is_assigned(place) or (place, around) in wholes)
     done |= _pairs(known, [each for each in relations if id(each[0]) not in done])
-    done |= {id(rule) for rule, around in sorted(relations, key=_loss) if id(rule) not in done and _solve(known, rule, around)}
+    single = [each for each in sorted(relations, key=_loss) if not _is_size_of(*each, wholes)]
+    done |= {id(rule) for rule, around in single if id(rule) not in done and _solve(known, rule, around)}
     later = [each for each in relations if id(each[0]) not in done]
     for _ in range(2):
         later = [each for each in later if not _solve_rest(known, *each)]
@@ -70,6 +71,12 @@ def _is_left(rule: Relation, is_assigned: Callable[[Field], bool]) -> bool:
     """Whether a relation to a part of a field is left to the rules to pack, which set it."""
     call = taken_part(rule.value)
     return call is not None and rest_of(call) is None and bool(below(call)) and any(map(is_assigned, fields_in(call)))
+
+
+def _is_size_of(rule: Relation, loops: Loops, wholes: set[tuple[Path, Loops]]) -> bool:
+    """Whether a relation says how long an array is that another one sets as a whole: then it is a check."""
+    fields = fields_in(rule.value)
+    return len(fields) == 1 and isinstance(fields[0], Len) and (fields[0].path, loops) in wholes
 
 
 def _loss(relation: tuple[Relation, Loops]) -> int:

@@ -15,6 +15,7 @@ from rosetta_jit.language.both_ways.inverse_parts import until
 from rosetta_jit.language.functions.texts import separates
 from rosetta_jit.model.expr import Binary, Call, Choice, Expr, Literal, Unary
 from rosetta_jit.model.mapping import Relation
+from rosetta_jit.model.types import Enum
 from rosetta_jit.model.walk import fields_of, parts
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -38,6 +39,8 @@ class PartsOfText:
             call = _numbered_part(rule)
             assert call is not None
             spelt = until(rule.value, rule.place, call, type_of)
+            if isinstance(type_of(spelt), Enum):
+                spelt = Call("text", (spelt,), spelt.span)
             if not _is_number(rule, call):
                 spelt = self.one_part(spelt)
             whole = spelt if whole is None else Binary("+", Binary("+", whole, self.separator, rule.span), spelt, rule.span)

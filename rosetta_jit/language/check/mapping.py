@@ -134,15 +134,17 @@ def _read(mapping: Mapping, imports: Imports, parameters: Dictionary[str, object
     problems: list[Diagnostic] = []
     bound: list[Diagnostic] = []
     underived: list[Diagnostic] = []
+    underived_there: list[Diagnostic] = []
     written = bind(mapping, parameters, bound)
     read = read_usable(written, imports.search, imports.reading, problems, handed_on(written, parameters))
     imported = read_imports(written, imports, problems)
     theirs = [each for other in read.mappings() for each in read_imports(other, replace(imports, importer=other.source), problems)]
     merged = message_of_wires(mapping, merge([*imported, *theirs], problems))
     derived_mapping = derived(written, merged, read, underived)
-    usable = read.changed(lambda other: derived(other, merged, read, problems))
+    usable = read.changed(lambda other: derived(other, merged, read, underived_there))
+    problems += [] if _errors(problems) else underived_there  # what could not be turned round follows from what is wrong there
     complete = not _errors(problems)
-    problems += [*_without_handed_on(bound, mapping, usable), *(underived if complete else ())]  # it follows from what is wrong there
+    problems += [*_without_handed_on(bound, mapping, usable), *(underived if complete else ())]
     schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
     state = declared(derived_mapping, problems)
     return _Texts(written, derived_mapping, usable, imports, imported, schema, state, complete, underived, problems)

@@ -30,7 +30,7 @@ from rosetta_jit.language.typed import Call, Const, ConversionRule, Convert, Exp
 from rosetta_jit.language.units.conversion import check_arguments
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.expr import Name
-from rosetta_jit.model.types import Array, Bool, Enum, Float, Int, Type
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Type
 
 if TYPE_CHECKING:
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
@@ -173,6 +173,9 @@ def _converted(value: Expr, target: Type, rule: ConversionRule, expr: model.Call
 def type_numbers(function: Function, signature: Numbers, expr: model.Call, arguments: list[Expr], scope: Scope) -> Expr | None:
     """The typed call of a function of numbers, or what it gives of those that are known."""
     least, most = signature.count
+    if function.reduction is not None and len(arguments) == 1 and isinstance(arguments[0].type, Array | Bytes):
+        scope.problems.append(function_words.not_of_each(expr.span, expr.function))
+        return None
     if len(arguments) < least or (most is not None and len(arguments) > most):
         scope.problems.append(words.arguments(expr.span, expr.function, signature.takes, len(arguments)))
         return None

@@ -19,9 +19,10 @@ from rosetta_jit.language.laws.writes import FILTERED
 from rosetta_jit.language.limits import MAX_WORK
 from rosetta_jit.language.places import field_names, shown_names, shown_place
 from rosetta_jit.language.scope import Message
-from rosetta_jit.language.typed import Access, Const, Expr, For, Given, IndexStep, LenOf, Listed, Local, Place, Rule, Search
+from rosetta_jit.language.typed import Access, Const, Expr, For, Given, Has, IndexStep, LenOf, Listed, Local, Place, Rule, Search
 from rosetta_jit.language.untouched import untouched
 from rosetta_jit.language.walk import parts
+from rosetta_jit.model.types import Array
 from rosetta_jit.model.walk import every_rule
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
@@ -30,6 +31,7 @@ ORDINARY = (1e-30, 1e30)
 """Magnitudes beyond which a bound is not shown."""
 
 
+BY_BLOCK = Lost("it cannot be shown by which block of a `when` it comes back")
 IN_SUMS = "it is rounded, by as much as the other fields of its sums are large"
 
 
@@ -135,7 +137,8 @@ def _outcomes(path: ExecutionPath, second: tuple[Rule, ...], message: Message) -
     for names in untouched(touched, message, message.root, (), lengths):
         if trip.is_absent(names, message):
             continue
-        yield shown_names(names, message), Lost("no rule sets it on the way back"), None
+        is_in_some = trip.is_absent(names, message, in_rounds=True)
+        yield shown_names(names, message), BY_BLOCK if is_in_some else Lost("no rule sets it on the way back"), None
 
 
 def _shown(result: Result) -> str:
@@ -167,6 +170,13 @@ def _becomes(value: Expr, place: Place) -> str | None:
             return None
 
 
+def _is_empty(place: Place, trip: Trip) -> bool:
+    """Whether the first direction refuses what has anything at a place."""
+    if isinstance(place.type, Array):
+        return any(isinstance(each, Const) and each.value == 0 for each in trip.equal_to(LenOf(place)))
+    return trip.truth(Has(place)) is False
+
+
 def _value_outcome(result: Result, trip: Trip) -> Outcome:
     trip.ranges = result.ranges
     place, value = result.place, result.value
@@ -174,13 +184,13 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
     value = None if value is None else given_back(trip.towards(value, goal))
     match value:
         case None:
-            return Lost("it is left out: 0, empty or absent")
+            return None if _is_empty(place, trip) else Lost("it is left out: 0, empty or absent")
         case _ if has_state(value):
             return Lost("it depends on state, which other messages have left")
         case _ if is_part(FILTERED, value):
             return Lost("a filter drops some elements, and which it keeps is not followed")
         case Local("?"):
-            return Lost("it cannot be shown by which block of a `when` it comes back")
+            return BY_BLOCK
         case Access(other) | LenOf(other) if other.side != place.side:
             is_element = any(isinstance(step, IndexStep) for step in other.steps)
             return None if value in trip.equal_to(goal) else UNSHOWN if is_element else Lost("nothing of it is kept")

@@ -34,6 +34,8 @@ def _fits(conversion: Convert, of: Callable[[Expr], Expr]) -> bool:
     source = source_of(made)
     if isinstance(source, Access | LenOf) and same(source.type, conversion.type) and come_back(made, source) is None:
         return True
+    if not isinstance(made, Convert) and same(made.type, conversion.type):  # it has met what it undoes
+        return True
     source = of(conversion.operand).type
     if not isinstance(source, Int) or not isinstance(conversion.type, Int):
         return not isinstance(made, Convert) or made.rule != "exact"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.language.algebra.equality import (
     Ranges,
@@ -23,6 +23,8 @@ from rosetta_jit.language.algebra.equality import (
     unify,
 )
 from rosetta_jit.language.algebra.quotients import Facts
+from rosetta_jit.language.laws.byte_views import byte_of, number_of
+from rosetta_jit.language.laws.chain import table_of
 from rosetta_jit.language.laws.key_lookup import number_found
 from rosetta_jit.language.laws.loop_orders import round_of
 from rosetta_jit.language.laws.refusals import may_refuse
@@ -38,7 +40,9 @@ from rosetta_jit.language.typed import (
     Assign,
     Binary,
     Call,
+    Choice,
     Const,
+    Convert,
     Default,
     Expr,
     FieldStep,
@@ -58,7 +62,7 @@ from rosetta_jit.language.typed import (
 from rosetta_jit.language.walk import indices, placed, rebuilt, renamed
 from rosetta_jit.model.expr import Literal, Side
 from rosetta_jit.model.rules import Kept
-from rosetta_jit.model.types import Array, Float, Map, Struct, Union
+from rosetta_jit.model.types import Array, Float, Int, Map, Struct, Union
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -120,11 +124,39 @@ class Trip:
                     self.same(left, right, ranges)
                 self.true(replace(condition, operator="=="), ranges, holds=(operator == "==") == holds)
                 self.true(replace(condition, operator="!="), ranges, holds=(operator == "!=") == holds)
+                if isinstance(right, Const):
+                    self.know_key(left, right, ranges, holds=(operator == "==") == holds)
             case Binary("differs", left, right) if not holds:
                 self.same(left, right, ranges)
                 self.true(condition, ranges, holds=holds)
             case _:
                 self.true(condition, ranges, holds=holds)
+
+    def know_key(self, table: Expr, chosen: Const, ranges: Ranges, *, holds: bool) -> None:
+        """What follows for the key of a table of constants, which may be made another integer, from whether it has chosen one of them."""
+        keeps = isinstance(table, Convert) and isinstance(table.type, Int) and table.rule not in {"saturate", "wrap"}
+        choice = table.operand if isinstance(table, Convert) and keeps else table
+        found = table_of(choice) if isinstance(choice, Choice) else None
+        if found is None:
+            return
+        key, rest = found[0], found[2]
+        entries: dict[Any, Any] = found[1]
+        mine = [each for each, value in entries.items() if value == chosen.value]
+        for each in entries.keys() - mine if holds else mine:
+            self.know(Binary("==", key, Const(each, key.type), BOOL), ranges, holds=False)
+        if holds and len(mine) == 1 and (rest is None or rest.value != chosen.value):
+            self.know(Binary("==", key, Const(mine[0], key.type), BOOL), ranges, holds=True)
+        for value in {each for each in entries.values() if holds and each != chosen.value}:
+            self.true(Binary("==", table, Const(value, chosen.type), BOOL), ranges, holds=False)
+
+    def narrowed(self, expr: Expr) -> Expr:
+        """An expression whose choices have no cases that are known not to come."""
+        match expr:
+            case Choice(cases) if any(self.truth(condition) is False for condition, _ in cases):
+                left = [(condition, value) for condition, value in cases if self.truth(condition) is not False]
+                return self.narrowed(replace(expr, cases=tuple(left))) if left else expr
+            case _:
+                return rebuilt(expr, self.narrowed)
 
     def same(self, left: Expr, right: Expr, ranges: Ranges) -> None:
         self.plain = None
@@ -152,7 +184,7 @@ class Trip:
             match rule:
                 case Assign(place, value) | SetLength(place, value):
                     where = placed(place, self.of)
-                    made = self.of(changed(rule, value))
+                    made = self.narrowed(self.of(changed(rule, value)))
                     yield Result(where, isinstance(rule, SetLength), made, rule.span, self.ranges, may_refuse(value, self.of))
                 case Default(place):
                     yield Result(place, is_length=False, value=None, span=rule.span, ranges=self.ranges)
@@ -204,6 +236,8 @@ class Trip:
                 return Const(is_there, BOOL)
             case Search(place) if (number := number_found(expr, self.of(LenOf(place)), self.of, self.setters)) is not None:
                 return number
+            case Call() if (number := number_of(expr, self.of, lambda byte: self.read(byte, length=False))) is not None:
+                return number
             case _:
                 return self.simple(rebuilt(expr, self.of))
 
@@ -237,10 +271,10 @@ class Trip:
             return True
         return False if place.side != self.origin and is_left_absent(place, self.rules) else None
 
-    def is_absent(self, names: tuple[str, ...], message: Message) -> bool:
-        """Whether a place is known not to be there, or another case of its union is."""
+    def is_absent(self, names: tuple[str, ...], message: Message, *, in_rounds: bool = False) -> bool:
+        """Whether a place is known not to be there, or another case of its union is; or that of an element, in some rounds of loops."""
         for condition, (holds, ranges) in self.truths.items():
-            if isinstance(condition, Has) and not ranges and condition.place.side == self.origin:
+            if isinstance(condition, Has) and bool(ranges) == in_rounds and condition.place.side == self.origin:
                 subject = field_names(condition.place)
                 unions = union_depths(condition.place, message)
                 if not holds and names[: len(subject)] == subject:
@@ -330,7 +364,9 @@ class Trip:
         if (known := self.truth(expr)) is not None:
             return Const(known, BOOL)
         found = simplest(expr, self.own_part)
-        return (isinstance(found, Call) and found.function == "+" and whole_text(found, self.equal_to)) or found
+        if isinstance(found, Call):
+            return byte_of(found) or (found.function == "+" and whole_text(found, self.equal_to)) or found
+        return found
 
     def own_part(self, expr: Expr) -> Expr | None:
         """The part of an integer that it is the same as."""

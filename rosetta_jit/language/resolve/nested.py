@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import nested as words
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe
@@ -134,7 +135,7 @@ def _too_deep(most: int, place: typed.Place, origin: typed.Place, span: Span | N
         there: typed.Binary | typed.Has = typed.Binary("!=", typed.LenOf(origin), typed.Const(0, typed.INT64), typed.BOOL)
     else:
         there = typed.Has(origin)
-    return (typed.When(there, (typed.Reject(words.too_deep(most), span),), (), span), typed.Default(place, span))
+    return (typed.When(there, (typed.Reject(words.too_deep(most), span),), (), span), *_left_out(place, origin, span))
 
 
 def _at(use: Use, scope: Scope, rules_of: RulesOf) -> tuple[typed.Rule, ...]:
@@ -146,9 +147,13 @@ def _at(use: Use, scope: Scope, rules_of: RulesOf) -> tuple[typed.Rule, ...]:
     number = typed.Local(f"each message{scope.suffix}")  # a blank: no loop of the mapping is called so
     element, source = (_element(end, number, scope) for end in (place, origin))
     rules = _inside(use.mapping, use.side, element, source, scope, rules_of)
-    fixed = place.type.fixed
-    length: typed.Rule = typed.SetLength(place, typed.LenOf(origin) if fixed is None else typed.Const(fixed, typed.INT64), span)
-    return (length, typed.For(number.name, typed.Const(0, typed.INT64), typed.LenOf(origin), rules, span))
+    fixed, found = place.type.fixed, typed.LenOf(origin)
+    count: typed.Expr = found if fixed is None else typed.Const(fixed, typed.INT64)
+    length, loop = typed.SetLength(place, count, span), typed.For(number.name, typed.Const(0, typed.INT64), count, rules, span)
+    if fixed is None or origin.type.fixed is not None:
+        return (length, loop)
+    differs = typed.Binary("!=", found, count, typed.BOOL)
+    return (typed.When(differs, (typed.Reject(layouts.OTHER_COUNT, span),), (), span), length, loop)
 
 
 def _element(place: typed.Place, number: typed.Local, scope: Scope) -> typed.Place:

@@ -24,11 +24,11 @@ FILES = (
     *("fields/content.ll", "fields/nested.ll", "fields/sequence.ll"),
     *("fields/writing.ll", "fields/writing_numbers.ll", "fields/writing_texts.ll"),
     *("holders/making.ll", "holders/ending.ll", "holders/sameness.ll"),
-    *("programs/methods.ll", "programs/handing.ll", "objects/taking.ll"),
+    *("programs/methods.ll", "programs/handing.ll", "programs/filling.ll", "objects/taking.ll"),
 )
 """All but the templates."""
 
-FUNCTIONS = (*BEGINNING, "same", "extend_texts", "take", "take_anew")
+FUNCTIONS = (*BEGINNING, "same", "extend_texts", "take", "take_anew", "fill_rows")
 """What Python calls."""
 
 SYMBOLS = tuple(symbols())

@@ -42,6 +42,7 @@ GROUPS = (
     Group("objects of other classes", ("take", "take_anew", "method_build")),
     Group("methods", ("method_encode", "method_write", "method_decode", "method_parse", "method_make", "method_turn")),
     Group("objects handed over", ("hand_in", "hand_out")),
+    Group("many messages", ("fill_rows",)),
 )
 
 

@@ -27,6 +27,8 @@ ALLOWED = frozenset(
         "PyErr_Occurred",
         "PyErr_Restore",
         "PyErr_SetString",
+        "PyEval_RestoreThread",
+        "PyEval_SaveThread",
         "PyExc_AttributeError",
         "PyExc_Exception",
         "PyExc_TypeError",

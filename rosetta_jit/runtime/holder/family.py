@@ -70,6 +70,7 @@ class Family:
         self._shown_of: dict[int, frozenset[str]] = {}
         self._recipes: dict[int, tuple[Any, ...]] = {}
         self.latest: tuple[Any, Any, Any] = None, None, None
+        self._of_rows = self.plan
         self._begins_alike, self._offered = False, None
         self._fresh: tuple[Plan | None, Callable[[], Any]] = None, object
         self.struct = cast("Struct", self.schema.resolve(self.type))
@@ -165,6 +166,13 @@ class Family:
     def roomy(self) -> Plan:
         """The plan of holders that programs make, as far as others have needed room."""
         return self.cell[0]
+
+    def plan_of(self, rows: int) -> Plan:
+        """The plan of so many messages, as `plan` makes it; the last one is kept, because batches are mostly as long as those before."""
+        kept = self._of_rows
+        if kept is self.plan or kept.rows != rows:
+            kept = self._of_rows = plan(self.layout, rows, self.tree.initial)
+        return kept
 
     def offer(self) -> None:
         """Let compiled code make the holders that the class makes without arguments, if they are all alike: as this first one."""
