@@ -26,6 +26,11 @@ def no_manner(holder: str, kind: str, where: str) -> Diagnostic:
     return error("not-in-holder", message, help_="choose another --holder, as own")
 
 
+def of_another_framework(holder: str, type_: str, framework: str, known: Sequence[str]) -> Diagnostic:
+    help_ = f"choose another --holder, as {' or '.join(known)}, or name the header of such a class: --include HEADER"
+    return error("not-in-holder", f"`{type_}`, a type of {framework}, has no class of `{holder}`", help_=help_)
+
+
 def unusable_name(name: str) -> Diagnostic:
     help_ = "letters, digits and underscores, of which a letter comes first, up to 40; no header of C, and no word of the language"
     message = f"`{name}` cannot begin the names of functions"

@@ -111,6 +111,7 @@ def unit_of(
         wishes.numpy,
         arrival_registers([name for name, _ in state], first.wires),
         {role: share.cleared | share.alone | share.joined for role, build in builds.items() if (share := build.types.share) is not None},
+        first.holder_framework.name,
     )
 
 

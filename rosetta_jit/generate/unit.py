@@ -58,8 +58,8 @@ class Unit:
         How many rows of each lane a message can need; None where nothing bounds them.
     freestanding
         Only headers that a compiler has without a C library are included.
-    type, schema
-        The holder's type, and what declares it.
+    type, schema, framework
+        The holder's type, what declares it, and the framework whose IDL does.
     holder, include
         Which classes are filled, and the header that declares them, where the user says so.
     state
@@ -90,6 +90,7 @@ class Unit:
     numpy: bool = False
     arrivals: Mapping[str, tuple[int, int]] = field(default_factory=dict[str, "tuple[int, int]"])
     shares: Mapping[Role, Ways] = field(default_factory=dict["Role", "Ways"])
+    framework: str = ""
 
 
 def wires_of(unit: Unit) -> list[str]:

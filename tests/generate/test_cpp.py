@@ -17,6 +17,7 @@ from rosetta_jit.errors import Kind, SchemaError
 from rosetta_jit.generate.build import Wishes, generated
 from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.language import INCLUDE, SHARED
+from rosetta_jit.generate.cpp.manners import MANNERS
 from tests.generate import cpp, native
 from tests.generate.corpora import corpora
 from tests.generate.driver import answers, expected, harmed
@@ -253,7 +254,29 @@ def test_the_shared_header_has_the_version_and_all_kinds_of_errors():
 def test_classes_without_such_fields_are_refused():
     request = type_request("decode", "rst.vision.Image", {"encoding": "protobuf"})
     with pytest.raises(SchemaError, match="not-in-holder"):
-        generated(request, "cpp", BOTH, "image", Wishes(holder="ros1"))
+        generated(request, "cpp", BOTH, "image", Wishes(holder="ros1", include="image.h"))
+
+
+OTHERS = {
+    ("std_msgs/Header", "ros1"): {"ros2", "lcm", "protobuf", "rsb"},
+    ("std_msgs/Header", "cdr"): {"ros1", "lcm", "protobuf", "rsb"},
+    ("exlcm.example_t", "lcm"): {"ros1", "ros2", "protobuf", "rsb"},
+    ("rst.kinematics.JointAngles", "protobuf"): {"ros1", "ros2", "lcm"},
+}
+"""Types, and the frameworks' classes that they do not have."""
+
+
+@pytest.mark.parametrize(("type_", "encoding"), OTHERS)
+def test_types_have_classes_of_their_own_framework(type_, encoding):
+    """Who names a header has such a class."""
+    request = type_request("decode", type_, {"encoding": encoding})
+    for manners in MANNERS:
+        if manners.name not in OTHERS[type_, encoding]:
+            assert generated(request, "cpp", BOTH, "unit", Wishes(holder=manners.name))
+            continue
+        with pytest.raises(SchemaError, match="has no class of") as raised:
+            generated(request, "cpp", BOTH, "unit", Wishes(holder=manners.name))
+        assert f"as own or {'ros2' if encoding == 'cdr' else encoding}" in str(raised.value)
 
 
 REFUSED = {

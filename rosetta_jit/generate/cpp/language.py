@@ -29,6 +29,9 @@ def files(unit: Unit) -> dict[str, str]:
     manners = {each.name: each for each in MANNERS}.get(unit.holder or "own")
     if manners is None:
         raise SchemaError((words.unknown_holder(unit.holder, tuple((each.name, each.summary) for each in MANNERS)),))
+    if manners.framework not in ("", unit.framework) and not unit.include:
+        known = tuple(each.name for each in MANNERS if each.name == "own" or each.framework == unit.framework)
+        raise SchemaError((words.of_another_framework(manners.name, unit.type, unit.framework, known),))
     if manners.around and any(map(wire_of, unit.kernels)):
         raise SchemaError((words.wires_around(manners.name),))
     if manners.around and (lacking := [each for each in ("encode", "borrow") if each not in unit.kernels]):

@@ -43,6 +43,8 @@ class Manners:
         Names of fields and classes behind which the framework's generator writes an underscore.
     around
         Files of further classes around the codec, by what they are for.
+    framework
+        The framework that declares the types which have such classes; empty where all have.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Manners:
     renamed: tuple[tuple[tuple[str, str], str], ...] = ()
     reserved: frozenset[str] = frozenset()
     around: tuple[str, ...] = ()
+    framework: str = ""
 
     def sections(self) -> Mapping[str, str]:
         """The templates by what they are for."""
@@ -116,10 +119,34 @@ TIMES = tuple(((struct, field), name) for struct in ("time", "duration") for fie
 
 MANNERS = (
     Manners("own", "classes that are generated, too: vectors, strings, optional, variant", ("fields", "own")),
-    Manners("protobuf", "the classes that protoc generates", ("fields", "protobuf"), _nested, _proto_header, lower=True, reserved=PROTOC),
-    Manners("ros1", "the structs of roscpp", ("fields",), _joined, lambda struct: f"{'/'.join(name_parts(struct.name))}.h", renamed=TIMES),
-    Manners("ros2", "the structs of rclcpp", ("fields",), _joined, _ros2_header),
-    Manners("lcm", "the classes that lcm-gen generates", ("fields",), _joined, lambda struct: f"{struct.name.replace('.', '/')}.hpp"),
+    Manners(
+        "protobuf",
+        "the classes that protoc generates",
+        ("fields", "protobuf"),
+        _nested,
+        _proto_header,
+        lower=True,
+        reserved=PROTOC,
+        framework="protobuf",
+    ),
+    Manners(
+        "ros1",
+        "the structs of roscpp",
+        ("fields",),
+        _joined,
+        lambda struct: f"{'/'.join(name_parts(struct.name))}.h",
+        renamed=TIMES,
+        framework="ros1",
+    ),
+    Manners("ros2", "the structs of rclcpp", ("fields",), _joined, _ros2_header, framework="ros2"),
+    Manners(
+        "lcm",
+        "the classes that lcm-gen generates",
+        ("fields",),
+        _joined,
+        lambda struct: f"{struct.name.replace('.', '/')}.hpp",
+        framework="lcm",
+    ),
     Manners("yarp", "own classes, with a yarp::os::Portable around them", ("fields", "own"), around=("portable",)),
     Manners(
         "rsb",
@@ -130,6 +157,7 @@ MANNERS = (
         lower=True,
         reserved=PROTOC,
         around=("converter",),
+        framework="protobuf",
     ),
 )
 """Every kind, by the name of whose classes they are."""
