@@ -150,17 +150,6 @@ def test_errors_without_texts_have_status_offset_and_site(tmp_path):
     assert subprocess.run([tmp_path / "main"], check=False).returncode == 0
 
 
-@pytest.mark.skipif(shutil.which("arm-linux-gnueabihf-gcc") is None, reason="code for a Cortex-M7 is made by arm-linux-gnueabihf-gcc")
-@pytest.mark.parametrize(("words", "most"), [((), 3500), (("-DTORSO_STATE_NO_TEXTS",), 2900)])
-def test_a_cortex_m7_needs_little(words, most, tmp_path):
-    """All sections of both directions that take memory, as docs/c.md says."""
-    write(tmp_path, generated(TORSO, "c", BOTH, "torso_state", Wishes(freestanding=True)))
-    machine = ("-mcpu=cortex-m7", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv5-d16", "-std=c11", "-Os", "-ffreestanding", "-fno-pic")
-    subprocess.run(["arm-linux-gnueabihf-gcc", *machine, *words, "-c", "torso_state.c", "-o", "made.o"], check=True, cwd=tmp_path)
-    said = subprocess.run(["arm-linux-gnueabihf-size", "made.o"], check=True, cwd=tmp_path, capture_output=True, text=True).stdout
-    assert int(said.splitlines()[1].split()[3]) <= most
-
-
 @pytest.mark.parametrize("end", ["h", "c"])
 def test_the_text_is_the_same_every_time(end):
     texts = generated(TORSO, "c", BOTH, "torso_state")

@@ -1,5 +1,5 @@
 $made
-#include "$name.h"
+$roundings#include "$name.h"
 
 $includes
 
@@ -22,17 +22,15 @@ $support
 struct part {
     $number offset;
     $number size;
-    $number step;
-    const char *path;
+$step    const char *path;
 };
 
 struct site {
     unsigned char status;
+$scratch    $number parts;
     const char *path;
     const char *detail;
     const char *line;
-    $number scratch;
-    $number parts;
     const struct part *part;
 };
 
@@ -40,36 +38,7 @@ static const char *const lanes[] = {
     $lanes
 };
 
-static size_t indices_in(const char *path)
-{
-    size_t found = 0;
-    for (; *path != 0; path++) {
-        found += path[0] == '{' && path[1] == '}' ? 1u : 0u;
-    }
-    return found;
-}
-
-/* The field among those of a site that lacks bytes, of which `available` are there. */
-static void locate(${name}_error *error, const struct site *site, int64_t available)
-{
-    for (int number = 0; number < site->parts; number++) {
-        const struct part *part = &site->part[number];
-        int64_t element = 0;
-        if (part->step != 0 && available - part->offset - part->size >= 0) {
-            element = (available - part->offset - part->size) / part->step + 1;
-        }
-        if (part->step != 0 || (int64_t)part->offset + part->size > available) {
-            const size_t indices = indices_in(part->path);
-            error->path = part->path;
-            error->offset += part->offset + element * part->step;
-            if (part->step != 0 && indices > 0) {
-                error->indices[indices - 1] = element;
-            }
-            return;
-        }
-    }
-}
-
+$locate
 static size_t length_of(const char *text)
 {
     size_t length = 0;
@@ -87,7 +56,7 @@ static ${name}_status report(${name}_error *error, const struct site *sites, con
     ${name}_error found = {${status}_FULL, 0, "", {0, 0, 0, 0}, "", 0, "", 0, 0, 0};
     (void)holder;
     found.status = (${name}_status)site->status;
-    found.site = (int)failure->site;
+    found.site = failure->site;
     found.path = site->path;
     found.detail = site->detail;
     found.line = site->line;
@@ -112,6 +81,9 @@ $functions
 size_t ${name}_error_path(const ${name}_error *error, char *text, size_t size)
 {
     size_t length = 0;
+#ifdef ${status}_NO_TEXTS
+    (void)error;
+#else
     size_t index = 0;
     for (const char *at = error->path; *at != 0; at++) {
         char digits[24];
@@ -138,6 +110,7 @@ size_t ${name}_error_path(const ${name}_error *error, char *text, size_t size)
             length++;
         }
     }
+#endif
     if (size > 0) {
         text[length < size ? length : size - 1] = 0;
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
@@ -14,8 +14,9 @@ from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.rows import Struct
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
+from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.generate.unit import Purpose, Role, Unit, kind_of, wire_of
-from rosetta_jit.kernel.ir import Kernel, Site
+from rosetta_jit.kernel.ir import Kernel, Part, Site
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.functions import Attempt, Printed
@@ -91,6 +92,7 @@ STATUS_CHECK = """    if (result < 0) {{
 }}"""
 
 
+HEAD = re.compile(r"^/\* == (.*) == \*/\n", re.MULTILINE)
 ORDER: tuple[Purpose, ...] = ("decode", "borrow", "size", "encode")
 
 
@@ -110,16 +112,18 @@ def source(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...], printed: Mappi
     ]
     text = Template(Path(__file__).with_name("source.c").read_text("utf-8")).substitute(
         made=made(unit),
+        roundings=two_roundings(unit.kernels.values()),
         name=unit.name,
         status=unit.name.upper(),
         number=_number(unit),
+        step=f"    {_number(unit)} step;\n" if _has_steps(unit) else "",
         includes=_includes(unit, called),
         asserts="\n".join(f'_Static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in structs),
         support=support(without_unused(called, printed)),
         lanes=",\n    ".join([*(text_literal(_shown(each.name)) for each in unit.layout.lanes), *_scratch(lanes)]),
-        said=SAID.format(status=unit.name.upper())
-        if any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites)
-        else "",
+        scratch=f"    {_number(unit)} scratch;\n" if _says(unit) else "",
+        locate=_locate(unit),
+        said=SAID.format(status=unit.name.upper()) if _says(unit) else "",
         functions="\n\n".join([clear(unit.name, lanes), REACH, *functions]),
         texts="\n".join(f'    case {unit.name.upper()}_{each.upper()}:\n        return "{each}";' for each in STATUSES),
     )
@@ -173,24 +177,52 @@ def run(attempt: Attempt, failure: str) -> str:
     return f"{attempt.name}({', '.join(arguments)})"
 
 
+def _has_steps(unit: Unit) -> bool:
+    """Whether elements of arrays are among the parts that are checked at once."""
+    return any(part.step for kernel in unit.kernels.values() for site in kernel.sites for part in site.parts)
+
+
+def _says(unit: Unit) -> bool:
+    """Whether the mapping puts texts of errors together."""
+    return any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites)
+
+
+def _locate(unit: Unit) -> str:
+    """The function that tells parts apart, and what it and others need."""
+    _, *parts = HEAD.split(Path(__file__).with_name("locate.c").read_text("utf-8"))
+    texts = {name: Template(text).substitute(name=unit.name) for name, text in zip(parts[::2], parts[1::2], strict=True)}
+    if _has_steps(unit):
+        return texts["indices"] + texts["elements"]
+    indices = f"#ifndef {unit.name.upper()}_NO_TEXTS\n{texts['indices'].rstrip()}\n#endif\n\n" if _says(unit) else ""
+    return indices + texts["fields"]
+
+
+def part_tables(role: Role, sites: Iterable[Site]) -> dict[tuple[Part, ...], str]:
+    """The tables of parts by what they have: sites that check the same parts share one."""
+    tables: dict[tuple[Part, ...], str] = {}
+    for number, site in enumerate(sites):
+        if site.parts:
+            tables.setdefault(site.parts, f"{role}_parts_{number}")
+    return tables
+
+
 def _table(role: Role, unit: Unit, lanes: Lanes, named: tuple[int, ...]) -> str:
     """The sites of a kernel, each with the parts of the message that it checks at once."""
     kernel: Kernel = unit.kernels[role]
-    lines: list[str] = []
+    lines, steps = list[str](), _has_steps(unit)
     sites = [*(kernel.sites[number] for number in named), *([NO_ROOM] if role == "encode" else [])]
-    for number, site in enumerate(sites):
-        if site.parts:
-            lines.append(f"static const struct part {role}_parts_{number}[] = {{")
-            lines += [f"    {{{each.offset}, {each.size}, {each.step}, {text_literal(each.path)}}}," for each in site.parts]
-            lines += ["};", ""]
+    tables = part_tables(role, sites)
+    for parts, table in tables.items():
+        lines.append(f"static const struct part {table}[] = {{")
+        lines += [f"    {{{each.offset}, {each.size}, {f'{each.step}, ' if steps else ''}{text_literal(each.path)}}}," for each in parts]
+        lines += ["};", ""]
     lines.append(f"static const struct site {role}_sites[] = {{")
-    lines += [f"    {_site(role, number, site, unit, lanes)}," for number, site in enumerate(sites)]
+    kinds = ["FULL", *(site.kind.upper() for site in sites[1:])]
+    for kind, site in zip(kinds, sites, strict=True):
+        scratch = f"{scratch_of(site, lanes)}, " if _says(unit) else ""
+        texts = ", ".join(map(text_literal, (site.path, site.detail, site.line)))
+        lines.append(f"    {{{unit.name.upper()}_{kind}, {scratch}{len(site.parts)}, {texts}, {tables.get(site.parts, 'NULL')}}},")
     return "\n".join([*lines, "};"])
-
-
-def _site(role: Role, number: int, site: Site, unit: Unit, lanes: Lanes) -> str:
-    status = "FULL" if number == 0 else site.kind.upper()
-    return f"{{{unit.name.upper()}_{status}, {site_text(role, number, site, lanes, text=text_literal)}}}"
 
 
 def _number(unit: Unit) -> str:
@@ -206,8 +238,6 @@ def text_literal(text: str) -> str:
     return f"TEXT({literal(text)})" if text else literal(text)
 
 
-def site_text(role: Role, number: int, site: Site, lanes: Lanes, nothing: str = "NULL", *, text: Callable[[str], str] = literal) -> str:
-    """A row of the table of sites behind its status."""
-    scratch = -1 if site.detail_lane is None else site.detail_lane - lanes.own
-    parts = f"{len(site.parts)}, {role}_parts_{number}" if site.parts else f"0, {nothing}"
-    return f"{text(site.path)}, {text(site.detail)}, {text(site.line)}, {scratch}, {parts}"
+def scratch_of(site: Site, lanes: Lanes) -> int:
+    """The scratch memory that has the text of a site; -1 where the table has it."""
+    return -1 if site.detail_lane is None else site.detail_lane - lanes.own

@@ -1,5 +1,5 @@
 $made
-#include "$name.hpp"
+$roundings#include "$name.hpp"
 
 $includes
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.c.header import made, struct_text
 from rosetta_jit.generate.c.rows import Struct as RowStruct
-from rosetta_jit.generate.c.source import NO_ROOM, by_order, run, site_text, without_unused
+from rosetta_jit.generate.c.source import NO_ROOM, by_order, part_tables, run, scratch_of, without_unused
 from rosetta_jit.generate.c.state import MEMBERS
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
@@ -20,6 +20,7 @@ from rosetta_jit.generate.cpp.read_in_place import is_local
 from rosetta_jit.generate.cpp.reading import addressed_in, container_type, directs_of, encoder, source_struct, viewed_in, writes_apart
 from rosetta_jit.generate.cpp.set_in_place import straight_numbers
 from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
+from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.generate.shares import WHOLE, changed_lanes
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of, wires_of
 from rosetta_jit.model.types import Ref, Struct
@@ -161,6 +162,7 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
     return _filled(
         "source.cpp",
         made=made(unit),
+        roundings=two_roundings(unit.kernels.values()),
         name=unit.name,
         includes=_includes(called),
         structs="\n\n".join(_struct(unit, parts, each, walks["decode"].taken) for each in parts.structs),
@@ -233,17 +235,16 @@ def _table(role: Role, unit: Unit, parts: Parts) -> str:
     """The sites of a kernel, each with the parts of the message that it checks at once."""
     kernel, lines = unit.kernels[role], list[str]()
     sites = [*(kernel.sites[number] for number in parts.printed[role].sites), *([NO_ROOM] if role == "encode" else [])]
-    for number, site in enumerate(sites):
-        if site.parts:
-            lines.append(f"const part {role}_parts_{number}[] = {{")
-            lines += [f"    {{{each.offset}, {each.size}, {each.step}, {literal(each.path)}}}," for each in site.parts]
-            lines += ["};", ""]
+    tables = part_tables(role, sites)
+    for table, name in tables.items():
+        lines.append(f"const part {name}[] = {{")
+        lines += [f"    {{{each.offset}, {each.size}, {each.step}, {literal(each.path)}}}," for each in table]
+        lines += ["};", ""]
     lines.append(f"const site {role}_sites[] = {{")
     kinds = ["status::full", *(f"status::{each.kind}{'_' if each.kind in RESERVED else ''}" for each in sites[1:])]
-    lines += [
-        f"    {{{kind}, {site_text(role, number, site, parts.lanes, 'nullptr')}}},"
-        for number, (kind, site) in enumerate(zip(kinds, sites, strict=True))
-    ]
+    for kind, site in zip(kinds, sites, strict=True):
+        texts = ", ".join(map(literal, (site.path, site.detail, site.line)))
+        lines.append(f"    {{{kind}, {texts}, {scratch_of(site, parts.lanes)}, {len(site.parts)}, {tables.get(site.parts, 'nullptr')}}},")
     return "\n".join([*lines, "};"])
 
 

@@ -22,12 +22,12 @@ _Static_assert(sizeof(torso_state_JointAngles) == 32, "no padding is added");
 
 /* Where and why a message cannot be read or written. `site` is a row of the table of sites; 0 stands for a lane without room. */
 struct failure {
-    int64_t site;
+    int site;
     int64_t offset;
     int64_t indices[4];
 };
 
-static int64_t fail(struct failure *failure, int64_t site, int64_t offset)
+static int64_t fail(struct failure *failure, int site, int64_t offset)
 {
     failure->site = site;
     failure->offset = offset;
@@ -35,7 +35,7 @@ static int64_t fail(struct failure *failure, int64_t site, int64_t offset)
 }
 
 /* A lane lacks room. */
-static int64_t full(struct failure *failure, int64_t lane, int64_t missing)
+static int64_t full(struct failure *failure, int lane, int64_t missing)
 {
     failure->site = 0;
     failure->offset = lane;
@@ -155,17 +155,15 @@ static inline void store_f64_le(unsigned char *bytes, int64_t at, double number)
 struct part {
     int16_t offset;
     int16_t size;
-    int16_t step;
     const char *path;
 };
 
 struct site {
     unsigned char status;
+    int16_t parts;
     const char *path;
     const char *detail;
     const char *line;
-    int16_t scratch;
-    int16_t parts;
     const struct part *part;
 };
 
@@ -175,31 +173,14 @@ static const char *const lanes[] = {
     TEXT(".angles")
 };
 
-static size_t indices_in(const char *path)
-{
-    size_t found = 0;
-    for (; *path != 0; path++) {
-        found += path[0] == '{' && path[1] == '}' ? 1u : 0u;
-    }
-    return found;
-}
-
 /* The field among those of a site that lacks bytes, of which `available` are there. */
 static void locate(torso_state_error *error, const struct site *site, int64_t available)
 {
     for (int number = 0; number < site->parts; number++) {
         const struct part *part = &site->part[number];
-        int64_t element = 0;
-        if (part->step != 0 && available - part->offset - part->size >= 0) {
-            element = (available - part->offset - part->size) / part->step + 1;
-        }
-        if (part->step != 0 || (int64_t)part->offset + part->size > available) {
-            const size_t indices = indices_in(part->path);
+        if ((int64_t)part->offset + part->size > available) {
             error->path = part->path;
-            error->offset += part->offset + element * part->step;
-            if (part->step != 0 && indices > 0) {
-                error->indices[indices - 1] = element;
-            }
+            error->offset += part->offset;
             return;
         }
     }
@@ -222,7 +203,7 @@ static torso_state_status report(torso_state_error *error, const struct site *si
     torso_state_error found = {TORSO_STATE_FULL, 0, "", {0, 0, 0, 0}, "", 0, "", 0, 0, 0};
     (void)holder;
     found.status = (torso_state_status)site->status;
-    found.site = (int)failure->site;
+    found.site = failure->site;
     found.path = site->path;
     found.detail = site->detail;
     found.line = site->line;
@@ -257,35 +238,35 @@ static int64_t reach(size_t size)
 }
 
 static const struct part decode_parts_5[] = {
-    {0, 4, 0, ""},
-    {4, 8, 0, TEXT(".yaw")},
-    {12, 8, 0, TEXT(".roll")},
-    {20, 8, 0, TEXT(".pitch")},
+    {0, 4, ""},
+    {4, 8, TEXT(".yaw")},
+    {12, 8, TEXT(".roll")},
+    {20, 8, TEXT(".pitch")},
 };
 
 static const struct part decode_parts_6[] = {
-    {0, 4, 0, ""},
-    {4, 4, 0, TEXT(".yaw")},
-    {8, 8, 0, TEXT(".yaw")},
-    {16, 4, 0, TEXT(".roll")},
-    {20, 8, 0, TEXT(".roll")},
-    {28, 4, 0, TEXT(".pitch")},
-    {32, 8, 0, TEXT(".pitch")},
+    {0, 4, ""},
+    {4, 4, TEXT(".yaw")},
+    {8, 8, TEXT(".yaw")},
+    {16, 4, TEXT(".roll")},
+    {20, 8, TEXT(".roll")},
+    {28, 4, TEXT(".pitch")},
+    {32, 8, TEXT(".pitch")},
 };
 
 static const struct site decode_sites[] = {
-    {TORSO_STATE_FULL, "", TEXT("a lane is too small"), "", -1, 0, NULL},
-    {TORSO_STATE_TRAILING, "", TEXT("not of the usual length: the next attempt says what is wrong"), "", -1, 0, NULL},
-    {TORSO_STATE_TAG, "", TEXT("must be 266"), "", -1, 0, NULL},
-    {TORSO_STATE_COUNT, "", TEXT("must be 3"), "", -1, 0, NULL},
-    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 0, NULL},
-    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 4, decode_parts_5},
-    {TORSO_STATE_TRUNCATED, "", TEXT("the message ends here"), "", -1, 7, decode_parts_6},
-    {TORSO_STATE_TAG, TEXT(".yaw"), TEXT("must be 10"), "", -1, 0, NULL},
-    {TORSO_STATE_TAG, TEXT(".roll"), TEXT("must be 10"), "", -1, 0, NULL},
-    {TORSO_STATE_TAG, TEXT(".pitch"), TEXT("must be 10"), "", -1, 0, NULL},
-    {TORSO_STATE_TAG, "", TEXT("must be one of 266, 256"), "", -1, 0, NULL},
-    {TORSO_STATE_TRAILING, "", TEXT("bytes are left over"), "", -1, 0, NULL},
+    {TORSO_STATE_FULL, 0, "", TEXT("a lane is too small"), "", NULL},
+    {TORSO_STATE_TRAILING, 0, "", TEXT("not of the usual length: the next attempt says what is wrong"), "", NULL},
+    {TORSO_STATE_TAG, 0, "", TEXT("must be 266"), "", NULL},
+    {TORSO_STATE_COUNT, 0, "", TEXT("must be 3"), "", NULL},
+    {TORSO_STATE_TRUNCATED, 0, "", TEXT("the message ends here"), "", NULL},
+    {TORSO_STATE_TRUNCATED, 4, "", TEXT("the message ends here"), "", decode_parts_5},
+    {TORSO_STATE_TRUNCATED, 7, "", TEXT("the message ends here"), "", decode_parts_6},
+    {TORSO_STATE_TAG, 0, TEXT(".yaw"), TEXT("must be 10"), "", NULL},
+    {TORSO_STATE_TAG, 0, TEXT(".roll"), TEXT("must be 10"), "", NULL},
+    {TORSO_STATE_TAG, 0, TEXT(".pitch"), TEXT("must be 10"), "", NULL},
+    {TORSO_STATE_TAG, 0, "", TEXT("must be one of 266, 256"), "", NULL},
+    {TORSO_STATE_TRAILING, 0, "", TEXT("bytes are left over"), "", NULL},
 };
 
 static int64_t decode_1(torso_state_holder *holder, const unsigned char *restrict bytes, int64_t end, struct failure *failure)
@@ -410,8 +391,8 @@ torso_state_status torso_state_decode(torso_state_holder *holder, const void *by
 }
 
 static const struct site size_sites[] = {
-    {TORSO_STATE_FULL, "", TEXT("a lane is too small"), "", -1, 0, NULL},
-    {TORSO_STATE_LENGTH, TEXT(".angles"), TEXT("the holder is damaged"), "", -1, 0, NULL},
+    {TORSO_STATE_FULL, 0, "", TEXT("a lane is too small"), "", NULL},
+    {TORSO_STATE_LENGTH, 0, TEXT(".angles"), TEXT("the holder is damaged"), "", NULL},
 };
 
 static int64_t size_message(const torso_state_holder *holder, struct failure *failure)
@@ -441,22 +422,22 @@ torso_state_status torso_state_size(const torso_state_holder *holder, size_t *si
 }
 
 static const struct part encode_parts_2[] = {
-    {0, 4, 0, ""},
-    {4, 4, 0, ""},
-    {8, 8, 0, TEXT(".yaw")},
-    {16, 8, 0, TEXT(".roll")},
-    {24, 8, 0, TEXT(".pitch")},
+    {0, 4, ""},
+    {4, 4, ""},
+    {8, 8, TEXT(".yaw")},
+    {16, 8, TEXT(".roll")},
+    {24, 8, TEXT(".pitch")},
 };
 
 static const struct site encode_sites[] = {
-    {TORSO_STATE_FULL, "", TEXT("a lane is too small"), "", -1, 0, NULL},
-    {TORSO_STATE_LENGTH, TEXT(".angles"), TEXT("the holder is damaged"), "", -1, 0, NULL},
-    {TORSO_STATE_LENGTH, "", TEXT("no room for the message"), "", -1, 5, encode_parts_2},
-    {TORSO_STATE_INDEX, TEXT(".angles[{}]"), TEXT("no such element"), TEXT("torso_state.mapping:11:3"), -1, 0, NULL},
-    {TORSO_STATE_INDEX, TEXT(".angles[{}]"), TEXT("no such element"), TEXT("torso_state.mapping:12:3"), -1, 0, NULL},
-    {TORSO_STATE_INDEX, TEXT(".angles[{}]"), TEXT("no such element"), TEXT("torso_state.mapping:13:3"), -1, 0, NULL},
-    {TORSO_STATE_REJECTED, "", TEXT("`len(.angles)` is not `3`, as the mapping says"), TEXT("torso_state.mapping:10:3"), -1, 0, NULL},
-    {TORSO_STATE_LENGTH, "", TEXT("no room for the message"), "", -1, 0, NULL},
+    {TORSO_STATE_FULL, 0, "", TEXT("a lane is too small"), "", NULL},
+    {TORSO_STATE_LENGTH, 0, TEXT(".angles"), TEXT("the holder is damaged"), "", NULL},
+    {TORSO_STATE_LENGTH, 5, "", TEXT("no room for the message"), "", encode_parts_2},
+    {TORSO_STATE_INDEX, 0, TEXT(".angles[{}]"), TEXT("no such element"), TEXT("torso_state.mapping:11:3"), NULL},
+    {TORSO_STATE_INDEX, 0, TEXT(".angles[{}]"), TEXT("no such element"), TEXT("torso_state.mapping:12:3"), NULL},
+    {TORSO_STATE_INDEX, 0, TEXT(".angles[{}]"), TEXT("no such element"), TEXT("torso_state.mapping:13:3"), NULL},
+    {TORSO_STATE_REJECTED, 0, "", TEXT("`len(.angles)` is not `3`, as the mapping says"), TEXT("torso_state.mapping:10:3"), NULL},
+    {TORSO_STATE_LENGTH, 0, "", TEXT("no room for the message"), "", NULL},
 };
 
 static int64_t encode_message(const torso_state_holder *holder, unsigned char *restrict bytes, int64_t end, struct failure *failure)
@@ -519,6 +500,9 @@ torso_state_status torso_state_encode(const torso_state_holder *holder, void *by
 size_t torso_state_error_path(const torso_state_error *error, char *text, size_t size)
 {
     size_t length = 0;
+#ifdef TORSO_STATE_NO_TEXTS
+    (void)error;
+#else
     size_t index = 0;
     for (const char *at = error->path; *at != 0; at++) {
         char digits[24];
@@ -545,6 +529,7 @@ size_t torso_state_error_path(const torso_state_error *error, char *text, size_t
             length++;
         }
     }
+#endif
     if (size > 0) {
         text[length < size ? length : size - 1] = 0;
     }

@@ -70,12 +70,12 @@ struct torso_state_source {
 
 /* Where and why a message cannot be read or written. `site` is a row of the table of sites; 0 stands for a lane without room. */
 struct failure {
-    int64_t site;
+    int site;
     int64_t offset;
     int64_t indices[4];
 };
 
-ROSETTA_JIT_COLD static int64_t fail(struct failure *failure, int64_t site, int64_t offset)
+ROSETTA_JIT_COLD static int64_t fail(struct failure *failure, int site, int64_t offset)
 {
     failure->site = site;
     failure->offset = offset;
@@ -83,7 +83,7 @@ ROSETTA_JIT_COLD static int64_t fail(struct failure *failure, int64_t site, int6
 }
 
 /* A lane lacks room. */
-ROSETTA_JIT_COLD static int64_t full(struct failure *failure, int64_t lane, int64_t missing)
+ROSETTA_JIT_COLD static int64_t full(struct failure *failure, int lane, int64_t missing)
 {
     failure->site = 0;
     failure->offset = lane;
