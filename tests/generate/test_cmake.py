@@ -1,0 +1,60 @@
+"""Projects of others use the CMake package beside what they have already."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.generate.test_cpp import CMAKE
+
+PROJECT = """
+cmake_minimum_required(VERSION 3.13)
+project(node LANGUAGES C CXX)
+find_package(rosetta_jit 0.1 REQUIRED)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+add_library(messages STATIC own.c)
+set_target_properties(messages PROPERTIES C_STANDARD 99)
+target_link_libraries(messages m)
+rosetta_generate(messages ros1/nav_sat_fix_utm.mapping ENCODING ros1 LANGUAGE c)
+rosetta_generate(messages yarp/icub/torso_state.mapping ENCODING yarp3)
+install(TARGETS messages EXPORT node ARCHIVE DESTINATION lib)
+install(EXPORT node DESTINATION lib)
+
+add_executable(node main.cpp)
+target_link_libraries(node messages)
+rosetta_generate(node sensor_msgs/JointState ENCODING ros1 NAME joints)
+"""
+MAIN = """
+#include "joints.hpp"
+#include "nav_sat_fix_utm.h"
+#include "torso_state.hpp"
+#include <cstdio>
+extern "C" int own(void);
+int main()
+{
+    joints::JointState empty;
+    std::printf("%d %zu %s\\n", own(), joints::codec().encode(empty).size(), nav_sat_fix_utm_status_text(NAV_SAT_FIX_UTM_OK));
+    return torso_state::codec().try_size(torso_state::JointAngles()).has_value();
+}
+"""
+OWN = "int own(void) { typeof(1) extension_of_gnu = 7; return extension_of_gnu; }\n"
+
+
+@pytest.mark.skipif(
+    any(shutil.which(each) is None for each in ("cmake", "gcc", "g++")), reason="CMake and the compilers are not all installed"
+)
+def test_a_project_of_others(tmp_path):
+    """Libraries are linked without keywords, C has extensions, the target is exported, and two languages are generated for it."""
+    for name, text in (("CMakeLists.txt", PROJECT), ("main.cpp", MAIN), ("own.c", OWN)):
+        (tmp_path / name).write_text(text)
+    environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    for command in (["cmake", "-S", ".", "-B", "made", f"-Drosetta_jit_DIR={CMAKE}"], ["cmake", "--build", "made"]):
+        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+    assert subprocess.run([tmp_path / "made/node"], capture_output=True, text=True, check=False).stdout == "7 32 ok\n"
