@@ -144,6 +144,31 @@ def test_no_compiler_complains_of_a_hostile_schema(tmp_path, compiler):
     subprocess.run([compiler, *cpp.STRICT, "-fsyntax-only", f"-I{tmp_path}", tmp_path / f"{name}.cpp"], check=True)
 
 
+WITHOUT_EXCEPTIONS = """
+#include "torso.hpp"
+int main()
+{
+    torso::codec codec;
+    torso::JointAngles angles;
+    const auto read = codec.try_decode("", 0, angles);
+    return read ? 1 : read.error().offset == 0 ? 0 : 2;
+}
+"""
+
+
+@cpp.needs_cpp
+@pytest.mark.parametrize("compiler", ["g++", "clang++"])
+def test_programs_may_disable_exceptions(compiler, tmp_path):
+    """And type information."""
+    if shutil.which(compiler) is None:
+        pytest.skip(f"{compiler} is not installed")
+    name = cpp.write(tmp_path, generated(TORSO, "cpp", BOTH, "torso"))
+    (tmp_path / "main.cpp").write_text(WITHOUT_EXCEPTIONS)
+    options = ("-fno-exceptions", "-fno-rtti")
+    made = cpp.program(tmp_path, name, compiler=compiler, options=options, main=tmp_path / "main.cpp")
+    assert subprocess.run([made], check=False).returncode == 0
+
+
 @cpp.needs_cpp
 @pytest.mark.parametrize("kind", ["int32", "string", "Inner", "Inner[]", "string[]", "float32[2]"])
 def test_fields_are_called_as_the_unit_calls_its_own(tmp_path, kind):

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <iterator>
 #include <memory>
@@ -34,6 +35,13 @@
 #define ROSETTA_JIT_MAY_ALIAS
 #define ROSETTA_JIT_INLINE inline
 #define ROSETTA_JIT_COLD
+#endif
+
+/* Where exceptions are disabled, what would throw ends the program; `try_` functions do not. */
+#if defined(__cpp_exceptions)
+#define ROSETTA_JIT_THROW(exception) throw exception
+#else
+#define ROSETTA_JIT_THROW(exception) std::abort()
 #endif
 
 /* Whether a field of a class lies where a member of a row does, and is the same number. */
@@ -147,7 +155,7 @@ public:
     const Value &value() const
     {
         if (!has_value()) {
-            throw failure(*error_);
+            ROSETTA_JIT_THROW(failure(*error_));
         }
         return value_;
     }
@@ -522,7 +530,7 @@ void assign_span(Container &&target, const Lane &from, const Span &span, const u
 template <class Lane> std::int64_t take(Lane &to, std::int64_t count)
 {
     if (count > to.capacity - to.used && !to.grow(count - (to.capacity - to.used), std::int64_t{1} << 48)) {
-        throw std::bad_alloc();
+        ROSETTA_JIT_THROW(std::bad_alloc());
     }
     to.used += count;
     return to.used - count;
