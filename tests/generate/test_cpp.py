@@ -108,6 +108,55 @@ def test_elements_that_lie_as_rows_do_are_not_copied_one_by_one(tmp_path):
         subprocess.run(["g++", "-std=c++17", "-fsyntax-only", f"-I{tmp_path}", tmp_path / "check.cpp"], check=True)
 
 
+BOUNDED = """#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+namespace rj {
+/* Like rosidl's: data() cannot be called without the type of its elements. */
+template <class Element> struct Bounded : protected std::vector<Element> {
+    using Base = std::vector<Element>;
+    using typename Base::value_type;
+    using typename Base::allocator_type;
+    using typename Base::iterator;
+    using Base::begin;
+    using Base::end;
+    using Base::size;
+    using Base::resize;
+    using Base::operator[];
+    template <class T> T *data() { return Base::data(); }
+    template <class T> const T *data() const { return Base::data(); }
+};
+struct Point { double x; double y; float weight; std::int32_t id; };
+struct Bounds {
+    Bounded<std::uint8_t> bytes;
+    Bounded<float> floats;
+    Bounded<bool> bools;
+    Bounded<std::string> texts;
+    Bounded<Point> points;
+};
+}
+"""
+BOUNDS = "uint8[<=3] bytes\nfloat32[<=3] floats\nbool[<=3] bools\nstring[<=3] texts\nPoint[<=3] points\n" + "=" * 80
+BOUNDS += "\nMSG: rj/Point\nfloat64 x\nfloat64 y\nfloat32 weight\nint32 id\n"
+
+
+@cpp.needs_cpp
+def test_vectors_with_a_bound_as_rosidl_has_them(tmp_path):
+    """They do not show where their elements are."""
+    (tmp_path / "bounds.h").write_text(BOUNDED.replace("namespace rj {", "namespace rj::msg {"))
+    options = {"encoding": "cdr", "schema": BOUNDS}
+    name = cpp.write(
+        tmp_path, generated(type_request("decode", "rj/Bounds", options), "cpp", BOTH, "unit", Wishes(holder="ros2", include="bounds.h"))
+    )
+    decode, encode = (of("rj/Bounds", **options) for of in (rj.Decoder.of, rj.Encoder.of))
+    points = [{"x": 0.5 * i, "y": -float(i), "weight": 0.25 * i, "id": i - 2} for i in range(3)]
+    full = {"bytes": b"abc", "floats": [1.5, -2.5, 0.25], "bools": [True, False, True], "texts": ["a", "", "long"], "points": points}
+    good = [bytes(encode(each)) for each in (full, {}, {**full, "bytes": b"", "points": points[:1]}, full)]
+    messages = harmed(good, 12, "bounds")
+    same(answers(cpp.program(tmp_path, name, options=THOROUGH), messages), decode, encode, messages)
+
+
 FEW = """
 #include <rosetta_jit/rosetta_jit.hpp>
 int main() {

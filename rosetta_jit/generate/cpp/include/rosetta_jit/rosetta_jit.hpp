@@ -437,12 +437,26 @@ template <class Container> const auto &element_of(const Container &from, std::in
     }
 }
 
+/* Around a vector, which rosidl's BoundedVector does not show by data(). */
+template <class Container, class = void> struct holds_vector : std::false_type {};
+template <class Container>
+struct holds_vector<Container, std::void_t<typename Container::allocator_type, typename Container::iterator, typename Container::value_type>>
+    : std::bool_constant<!std::is_same_v<typename Container::value_type, bool> &&
+                         std::is_same_v<typename Container::iterator,
+                                        typename std::vector<typename Container::value_type, typename Container::allocator_type>::iterator>> {};
+
+template <class Container, class = void> struct shows_data : std::false_type {};
+template <class Container> struct shows_data<Container, std::void_t<decltype(*std::data(std::declval<Container &>()))>> : std::true_type {};
+
+/* The first element, behind which the others lie. */
 template <class Container> auto *data_of(Container &target)
 {
     if constexpr (is_repeated<Container>::value) {
         return target.mutable_data();
-    } else {
+    } else if constexpr (shows_data<Container>::value) {
         return std::data(target);
+    } else {
+        return std::size(target) == 0 ? nullptr : &*std::begin(target);
     }
 }
 
@@ -478,8 +492,8 @@ constexpr bool same_numbers = std::is_same_v<One, Other> ||
                                !std::is_same_v<One, bool> && !std::is_same_v<Other, bool>);
 
 /* Whether the elements lie one behind the other: those of vector<bool> do not. */
-template <class Container, class = void> struct has_data : is_repeated<Container> {};
-template <class Container> struct has_data<Container, std::void_t<decltype(*std::data(std::declval<Container &>()))>> : std::true_type {};
+template <class Container>
+struct has_data : std::bool_constant<is_repeated<Container>::value || shows_data<Container>::value || holds_vector<std::remove_const_t<Container>>::value> {};
 
 /* Numbers, or the bytes of a text, into a container. One of a fixed length takes as many as it has. */
 template <class Container, class Row> void assign(Container &&target, const Row *rows, std::int64_t count)
@@ -556,10 +570,10 @@ template <class Lane, class Span, class Container> void take_span(Lane &to, Span
     span.start = take(to, span.count);
     Row *rows = to.rows + span.start;
     if constexpr (has_data<const Container>::value) {
-        using Number = std::remove_cv_t<std::remove_reference_t<decltype(*std::data(from))>>;
+        using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(from))>>;
         if constexpr (same_numbers<Number, Row>) {
             if (span.count > 0) {
-                std::memcpy(rows, std::data(from), static_cast<std::size_t>(span.count) * sizeof(Row));
+                std::memcpy(rows, data_of(from), static_cast<std::size_t>(span.count) * sizeof(Row));
             }
             return;
         }
@@ -574,10 +588,10 @@ template <class Lane, class Span, class Container> void show_span(Lane &to, Span
 {
     using Row = std::remove_reference_t<decltype(*to.rows)>;
     if constexpr (has_data<const Container>::value) {
-        using Number = std::remove_cv_t<std::remove_reference_t<decltype(*std::data(from))>>;
+        using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(from))>>;
         if constexpr (same_numbers<Number, Row>) {
             span = {0, count_of(from)};
-            to.show(reinterpret_cast<const Row *>(std::data(from)), span.count);
+            to.show(reinterpret_cast<const Row *>(data_of(from)), span.count);
             return;
         }
     }
@@ -587,8 +601,8 @@ template <class Lane, class Span, class Container> void show_span(Lane &to, Span
 /* The same by the address of the elements. */
 template <class Span, class Container> void point_span(Span &span, const Container &from)
 {
-    static_assert(sizeof(*std::data(from)) == 1, "the class has elements of another type than the schema");
-    span.start = static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(std::data(from)));
+    static_assert(sizeof(*data_of(from)) == 1, "the class has elements of another type than the schema");
+    span.start = static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(data_of(from)));
     span.count = count_of(from);
 }
 
@@ -600,9 +614,9 @@ template <class Row> struct shown {
 
     template <class Container> void read(const Container &from)
     {
-        static_assert(same_numbers<std::remove_cv_t<std::remove_reference_t<decltype(*std::data(from))>>, Row>,
+        static_assert(same_numbers<std::remove_cv_t<std::remove_reference_t<decltype(*data_of(from))>>, Row>,
                       "the class has elements of another type than the schema");
-        rows = const_cast<Row *>(reinterpret_cast<const Row *>(std::data(from))); /* the functions that write messages change no row */
+        rows = const_cast<Row *>(reinterpret_cast<const Row *>(data_of(from))); /* the functions that write messages change no row */
         capacity = used = count_of(from);
     }
 };
