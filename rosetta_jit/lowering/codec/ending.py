@@ -26,7 +26,7 @@ from rosetta_jit.wire.codec import Encoding, Ending
 BITS = 3
 """Those of the byte that say how much padding there is."""
 LEFT_OVER = "bytes are left over"
-UNUSUAL_LENGTH = "not of the usual length: the next attempt says what is wrong"
+UNUSUAL_LENGTH = "not of the usual length"
 REMEDY = 'lenient=["trailing"]'
 ANY = 1 << 31
 """Where so many bytes may be left over, there are no more in any message."""

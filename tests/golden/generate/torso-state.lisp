@@ -48,7 +48,7 @@
 (defparameter *decode-sites*
   (vector
     (site :count "" "the message asks for more memory than its size allows" "")
-    (site :trailing "" "not of the usual length: the next attempt says what is wrong" "")
+    (site :trailing "" "not of the usual length" "")
     (site :tag "" "must be 266" "")
     (site :count "" "must be 3" "")
     (site :truncated "" "the message ends here" "")
@@ -88,7 +88,7 @@
            (declare (type octets message angles) (type i64 angles-used start)
                     (ignorable message angles angles-used start))
            (when (/= 32 end)
-             (return-from decode-1 (fail codec 1 -1)))  ; trailing: not of the usual length: the next attempt says what is wrong
+             (return-from decode-1 (fail codec 1 -1)))  ; trailing: not of the usual length
            (fill-octets message 0 32 0)
            (when (/= (i32-at data 0) 266)
              (return-from decode-1 (fail codec 2 0)))  ; tag: must be 266

@@ -256,7 +256,7 @@ static const struct part decode_parts_6[] = {
 
 static const struct site decode_sites[] = {
     {TORSO_STATE_FULL, 0, "", TEXT("a lane is too small"), "", NULL},
-    {TORSO_STATE_TRAILING, 0, "", TEXT("not of the usual length: the next attempt says what is wrong"), "", NULL},
+    {TORSO_STATE_TRAILING, 0, "", TEXT("not of the usual length"), "", NULL},
     {TORSO_STATE_TAG, 0, "", TEXT("must be 266"), "", NULL},
     {TORSO_STATE_COUNT, 0, "", TEXT("must be 3"), "", NULL},
     {TORSO_STATE_TRUNCATED, 0, "", TEXT("the message ends here"), "", NULL},
@@ -275,7 +275,7 @@ static int64_t decode_1(torso_state_holder *holder, const unsigned char *restric
     float *restrict const angles = holder->angles.rows;
     int64_t angles_used = 0;
     if (32 != end) {
-        return fail(failure, 1, -1); /* trailing: not of the usual length: the next attempt says what is wrong */
+        return fail(failure, 1, -1); /* trailing: not of the usual length */
     }
     memset(message, 0, 32);
     if (load_i32_le(bytes, 0) != 266) {

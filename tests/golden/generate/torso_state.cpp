@@ -211,7 +211,7 @@ const part borrow_parts_6[] = {
 
 const site borrow_sites[] = {
     {status::full, "", "a lane is too small", "", -1, 0, nullptr},
-    {status::trailing, "", "not of the usual length: the next attempt says what is wrong", "", -1, 0, nullptr},
+    {status::trailing, "", "not of the usual length", "", -1, 0, nullptr},
     {status::tag, "", "must be 266", "", -1, 0, nullptr},
     {status::count, "", "must be 3", "", -1, 0, nullptr},
     {status::truncated, "", "the message ends here", "", -1, 0, nullptr},
@@ -230,7 +230,7 @@ static int64_t borrow_1(torso_state_holder *holder, const unsigned char *restric
     float *restrict angles = holder->angles.rows;
     int64_t angles_used = 0;
     if (32 != end) {
-        return fail(failure, 1, -1); /* trailing: not of the usual length: the next attempt says what is wrong */
+        return fail(failure, 1, -1); /* trailing: not of the usual length */
     }
     memset(message, 0, 32);
     if (load_i32_le(bytes, 0) != 266) {
