@@ -37,6 +37,11 @@ def unusable_name(name: str) -> Diagnostic:
     return error("unusable-name", message, help_=help_)
 
 
+def name_of_a_class(name: str) -> Diagnostic:
+    message = f"no namespace can be called as the class `::{name}`"
+    return error("unusable-name", message, help_=f"name the files otherwise, as --name {name[:34]}_codec")
+
+
 def needs_library(name: str, what: str) -> Diagnostic:
     return error(
         "not-generated",

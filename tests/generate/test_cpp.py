@@ -325,6 +325,16 @@ def test_the_shared_header_has_the_version_and_all_kinds_of_errors():
         assert f'case status::{kind}{"_" if kind in RESERVED else ""}:\n        return "{kind}";' in text
 
 
+def test_no_namespace_is_called_as_a_class():
+    """One that is in no namespace itself, as the types of LCM's own programs are."""
+    request = type_request("decode", "channel_port_map_update_t", {"encoding": "lcm"})
+    for name in ("channel_port_map_update_t", "channel_to_port_t"):
+        with pytest.raises(SchemaError, match="unusable-name"):
+            generated(request, "cpp", BOTH, name, Wishes(holder="lcm"))
+        assert generated(request, "cpp", BOTH, name)
+    assert generated(request, "cpp", BOTH, "update", Wishes(holder="lcm"))
+
+
 def test_classes_without_such_fields_are_refused():
     request = type_request("decode", "rst.vision.Image", {"encoding": "protobuf"})
     with pytest.raises(SchemaError, match="not-in-holder"):

@@ -19,6 +19,7 @@ from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of
 from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.model.types import Struct
 
 INCLUDE = Path(__file__).with_name("include")
 SHARED = "rosetta_jit/rosetta_jit.hpp"
@@ -26,16 +27,7 @@ SHARED = "rosetta_jit/rosetta_jit.hpp"
 
 def files(unit: Unit) -> dict[str, str]:
     """The texts of the files by their names."""
-    manners = {each.name: each for each in MANNERS}.get(unit.holder or "own")
-    if manners is None:
-        raise SchemaError((words.unknown_holder(unit.holder, tuple((each.name, each.summary) for each in MANNERS)),))
-    if manners.framework not in ("", unit.framework) and not unit.include:
-        known = tuple(each.name for each in MANNERS if each.name == "own" or each.framework == unit.framework)
-        raise SchemaError((words.of_another_framework(manners.name, unit.type, unit.framework, known),))
-    if manners.around and any(map(wire_of, unit.kernels)):
-        raise SchemaError((words.wires_around(manners.name),))
-    if manners.around and (lacking := [each for each in ("encode", "borrow") if each not in unit.kernels]):
-        raise SchemaError((words.one_way_around(manners.name, "decode" if lacking[0] == "borrow" else "encode"),))
+    manners = _manners(unit)
     if "borrow" in unit.kernels:
         unit = replace(unit, kernels={**unit.kernels, "borrow": without_clearing(unit.kernels["borrow"], unit.layout)})
     parts = parts_of(unit, lambda kernel, lanes, role: _printed(unit, manners, kernel, lanes, role), dialect="c++")
@@ -44,6 +36,24 @@ def files(unit: Unit) -> dict[str, str]:
         f"{unit.name}.cpp": source(unit, parts, manners),
         SHARED: (INCLUDE / SHARED).read_text("utf-8"),
     }
+
+
+def _manners(unit: Unit) -> Manners:
+    """Whose classes are filled, if the unit's type has such, and what stands around them goes with its kernels."""
+    manners = {each.name: each for each in MANNERS}.get(unit.holder or "own")
+    if manners is None:
+        raise SchemaError((words.unknown_holder(unit.holder, tuple((each.name, each.summary) for each in MANNERS)),))
+    if manners.framework not in ("", unit.framework) and not unit.include:
+        known = tuple(each.name for each in MANNERS if each.name == "own" or each.framework == unit.framework)
+        raise SchemaError((words.of_another_framework(manners.name, unit.type, unit.framework, known),))
+    structs = [each for each in unit.schema.types.values() if isinstance(each, Struct)]
+    if manners.type is not None and f"::{unit.name}" in map(manners.type, structs):
+        raise SchemaError((words.name_of_a_class(unit.name),))
+    if manners.around and any(map(wire_of, unit.kernels)):
+        raise SchemaError((words.wires_around(manners.name),))
+    if manners.around and (lacking := [each for each in ("encode", "borrow") if each not in unit.kernels]):
+        raise SchemaError((words.one_way_around(manners.name, "decode" if lacking[0] == "borrow" else "encode"),))
+    return manners
 
 
 def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: Role) -> Printed:
