@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 BOTH = ("decode", "encode")
 AT_ONCE = 60
+SLOWLY = {"types that contain themselves": 20, "lisp": 12}
+"""Fewer of what compilers take longer for than there is more of it."""
 PLAIN = ("-O0",)
 OURS = """
 unit holder codec decode encode size borrow error result status failure message memory rows used capacity count start which state kept now
@@ -264,7 +266,7 @@ UNITS = [
 def test_all(language, through, role, tmp_path):
     if language == "protoc" and role in NOT_OF_PROTOC:
         pytest.skip("protoc's own classes do not compile")
-    all_of_them, at_once = words(language), 20 if role == "types that contain themselves" else AT_ONCE
+    all_of_them, at_once = words(language), SLOWLY.get(language, SLOWLY.get(role, AT_ONCE))
     for begin in range(0, len(all_of_them), at_once):
         folder = tmp_path / str(begin)
         folder.mkdir()
