@@ -50,8 +50,8 @@
     (cons (format stream "<~(~A~) " (car value)) (show (cdr value) stream) (write-char #\> stream))
     (structure-object
      (write-char #\( stream)
-     (show-all (loop for slot in (sb-mop:class-slots (class-of value))
-                     unless (string= (sb-mop:slot-definition-name slot) "UNKNOWN-FIELDS")
+     (show-all (loop for (slot . others) on (sb-mop:class-slots (class-of value)) ; unknown fields come last, whatever the others are called
+                     unless (and (null others) (eql 0 (search "UNKNOWN-FIELDS" (string (sb-mop:slot-definition-name slot)))))
                        collect (slot-value value (sb-mop:slot-definition-name slot)))
                stream)
      (write-char #\) stream))))
