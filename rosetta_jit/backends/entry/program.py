@@ -99,8 +99,12 @@ class Program:
 
     @cached_property
     def has_unusual_apart(self) -> bool:
-        """Whether bodies for unusual messages are optimised for themselves: LLVM's slow passes are for the arithmetic of the usual one."""
-        return len(self.first.bodies) > 1 and not (self.first.routines or self.is_typed) and self.is_straight
+        """Whether bodies for unusual messages are optimised for themselves: LLVM's slow passes are for the arithmetic of the usual one.
+
+        They then may call nothing that is defined beside the first body.
+        """
+        calls = self.first.routines or self.first.goes_on or self.is_typed or self.calls_host
+        return len(self.first.bodies) > 1 and not calls and self.is_straight
 
     @cached_property
     def has_own_many(self) -> bool:
