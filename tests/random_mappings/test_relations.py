@@ -116,10 +116,19 @@ def broken_law(law: Any, values: dict[str, Any], back: dict[str, Any]) -> list[A
             numbers = pair if isinstance(pair[0], list) else ([pair[0]], [pair[1]])
             is_right = all(is_same(left, right, rounded[place]) for left, right in zip(*numbers, strict=True))
         else:
-            is_right = plain(pair[0]) == plain(pair[1]) or pair == (0, 0)  # an integer has no sign of zero
+            is_right = comes_back(*pair)
         if not is_right:
             found.append((name, *pair, rounded.get(place)))
     return found
+
+
+def comes_back(value: Any, back: Any) -> bool:
+    """Whether a value is what it was, float by float to the bit; an integer has no sign of zero, wherever it stands for a float."""
+    if isinstance(value, list) and isinstance(back, list) and len(value) == len(back):
+        return all(
+            comes_back(*pair) if type(pair[0]) is int else plain(pair[0]) == plain(pair[1]) for pair in zip(value, back, strict=True)
+        )
+    return plain(value) == plain(back) or (value, back) == (0, 0)
 
 
 def is_same(value: float, back: float, rounding: Any) -> bool:
