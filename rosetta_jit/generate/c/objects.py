@@ -118,7 +118,7 @@ def _pointer(writer: Writer, word: str, name: str, value: str, type_: str = "voi
 
 def _tell_failure(writer: Writer, kernel: Kernel, lanes: Lanes) -> None:
     with writer.indented("if (result < 0) {"):
-        writer.line("failure->site = (int)(-1 - result);")
+        writer.line("failure->site = (ptrdiff_t)(-1 - result);")
         writer.line(f"failure->offset = state[{state.ERROR_OFFSET}];")
         writer.line(f"memcpy(failure->indices, &state[{state.ERROR_INDICES}], {state.INDEX_WORDS} * sizeof state[0]);")
     writer.line("}")

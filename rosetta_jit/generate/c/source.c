@@ -56,7 +56,7 @@ static ${name}_status report(${name}_error *error, const struct site *sites, con
     ${name}_error found = {${status}_FULL, 0, "", {0, 0, 0, 0}, "", 0, "", 0, 0, 0};
     (void)holder;
     found.status = (${name}_status)site->status;
-    found.site = failure->site;
+    found.site = (int)failure->site;
     found.path = site->path;
     found.detail = site->detail;
     found.line = site->line;

@@ -1,15 +1,15 @@
 /* What generated functions call. Each section becomes part of a file that needs it; `$name` stands for each of the words behind `name:`. */
 
 /* == failure == */
-/* Where and why a message cannot be read or written. `site` is a row of the table of sites; 0 stands for a lane without room. */
+/* Where and why a message cannot be read or written. `site` is a row of the table of sites, as wide as the machine counts best; 0 stands for a lane without room. */
 struct failure {
-    int site;
+    ptrdiff_t site;
     int64_t offset;
     int64_t indices[4];
 };
 
 /* == fail | needs: failure == */
-static int64_t fail(struct failure *failure, int site, int64_t offset)
+static int64_t fail(struct failure *failure, ptrdiff_t site, int64_t offset)
 {
     failure->site = site;
     failure->offset = offset;
@@ -18,7 +18,7 @@ static int64_t fail(struct failure *failure, int site, int64_t offset)
 
 /* == fail_here | needs: failure == */
 /* The same for a function that many places share: they know what its sites are. */
-static int64_t fail_here(struct failure *failure, int site, int64_t offset)
+static int64_t fail_here(struct failure *failure, ptrdiff_t site, int64_t offset)
 {
     failure->offset = offset;
     return site;
@@ -26,7 +26,7 @@ static int64_t fail_here(struct failure *failure, int site, int64_t offset)
 
 /* == full | needs: failure == */
 /* A lane lacks room. */
-static int64_t full(struct failure *failure, int lane, int64_t missing)
+static int64_t full(struct failure *failure, ptrdiff_t lane, int64_t missing)
 {
     failure->site = 0;
     failure->offset = lane;

@@ -20,14 +20,14 @@ _Static_assert(FLT_EVAL_METHOD != 2, "floating-point numbers must not be compute
 _Static_assert(-1 >> 1 == -1 && (int8_t)255u == -1, "integers must be two's complement throughout");
 _Static_assert(sizeof(torso_state_JointAngles) == 32, "no padding is added");
 
-/* Where and why a message cannot be read or written. `site` is a row of the table of sites; 0 stands for a lane without room. */
+/* Where and why a message cannot be read or written. `site` is a row of the table of sites, as wide as the machine counts best; 0 stands for a lane without room. */
 struct failure {
-    int site;
+    ptrdiff_t site;
     int64_t offset;
     int64_t indices[4];
 };
 
-static int64_t fail(struct failure *failure, int site, int64_t offset)
+static int64_t fail(struct failure *failure, ptrdiff_t site, int64_t offset)
 {
     failure->site = site;
     failure->offset = offset;
@@ -35,7 +35,7 @@ static int64_t fail(struct failure *failure, int site, int64_t offset)
 }
 
 /* A lane lacks room. */
-static int64_t full(struct failure *failure, int lane, int64_t missing)
+static int64_t full(struct failure *failure, ptrdiff_t lane, int64_t missing)
 {
     failure->site = 0;
     failure->offset = lane;
@@ -203,7 +203,7 @@ static torso_state_status report(torso_state_error *error, const struct site *si
     torso_state_error found = {TORSO_STATE_FULL, 0, "", {0, 0, 0, 0}, "", 0, "", 0, 0, 0};
     (void)holder;
     found.status = (torso_state_status)site->status;
-    found.site = failure->site;
+    found.site = (int)failure->site;
     found.path = site->path;
     found.detail = site->detail;
     found.line = site->line;

@@ -68,14 +68,14 @@ struct torso_state_source {
     torso_state_source(torso_state_holder &memory, codec &owner) : unknown(memory.unknown), most(rosetta_jit::detail::most_rows(std::size_t{1} << 39)), now(owner.now), number(owner.number) { static_cast<void>(memory); }
 };
 
-/* Where and why a message cannot be read or written. `site` is a row of the table of sites; 0 stands for a lane without room. */
+/* Where and why a message cannot be read or written. `site` is a row of the table of sites, as wide as the machine counts best; 0 stands for a lane without room. */
 struct failure {
-    int site;
+    ptrdiff_t site;
     int64_t offset;
     int64_t indices[4];
 };
 
-ROSETTA_JIT_COLD static int64_t fail(struct failure *failure, int site, int64_t offset)
+ROSETTA_JIT_COLD static int64_t fail(struct failure *failure, ptrdiff_t site, int64_t offset)
 {
     failure->site = site;
     failure->offset = offset;
@@ -83,7 +83,7 @@ ROSETTA_JIT_COLD static int64_t fail(struct failure *failure, int site, int64_t 
 }
 
 /* A lane lacks room. */
-ROSETTA_JIT_COLD static int64_t full(struct failure *failure, int lane, int64_t missing)
+ROSETTA_JIT_COLD static int64_t full(struct failure *failure, ptrdiff_t lane, int64_t missing)
 {
     failure->site = 0;
     failure->offset = lane;
