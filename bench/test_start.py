@@ -91,12 +91,24 @@ def test_memory(warm_cache, effort, record):
 @pytest.mark.parametrize(("fields", "aim_ms"), [(10, 100), (100, 400)])
 def test_compile(tmp_path, effort, record, fields, aim_ms):
     """The first one in a process pays for the compiler's import; the next one, of another mapping, for itself alone."""
-    mappings = [str(joints_mapping(count, tmp_path)) for count in (fields, fields + 1)]
-    runs = [run("-c", COMPILES, *mappings, ROSETTA_JIT_CACHE="off").split() for _ in range(3 if effort.quick else 7)]
+    mapping, following, other = (str(joints_mapping(count, tmp_path)) for count in (fields, fields + 1, fields + 2))
+    rounds = 3 if effort.quick else 7
+    runs = [run("-c", COMPILES, mapping, following, ROSETTA_JIT_CACHE="off").split() for _ in range(rounds)]
     first, next_ = ([float(each[number]) for each in runs] for number in (0, 1))
     said = "numpy and llvmlite imported, nothing of ours"
     record(f"first compile in a process, {fields} fields", Spread.of(first), None, "ms", f"{said}; least {min(first):.0f} ms")
     record(f"next compile in a process, {fields} fields", Spread.of(next_), None, "ms", f"least {min(next_):.0f} ms, aim {aim_ms} ms")
+    run("-c", COMPILES, other, ROSETTA_JIT_CACHE_DIR=str(tmp_path / "cache"))
+    known = [_after_others(tmp_path / "cache", tmp_path / f"cache{each}", mapping) for each in range(rounds)]
+    what = f"first compile in a process, {fields} fields, on a machine that has compiled others"
+    record(what, Spread.of(known), None, "ms", f"{said}; least {min(known):.0f} ms")
+
+
+def _after_others(cache, copied, mapping):
+    """Milliseconds to compile a mapping beside what a cache has, in a copy of it: the cache has it from then on."""
+    shutil.copytree(cache, copied)
+    copied.chmod(0o700)
+    return float(run("-c", COMPILES, mapping, ROSETTA_JIT_CACHE_DIR=str(copied)))
 
 
 @pytest.mark.parametrize("backend", ["numba", "llvm"])

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from rosetta_jit.errors import MissingPackage
 from rosetta_jit.logs.decoded_parts import CLOCKS
 from rosetta_jit.logs.shares import Reading, Share, paths_of, shares_of
 from rosetta_jit.logs.tables import joined
+from rosetta_jit.startup.dataclass import replace
 
 try:
     from dask.dataframe import from_map

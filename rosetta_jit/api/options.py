@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from typing import Any, TypedDict
 
 from rosetta_jit.pipeline.request import Backend, ByteOrder, Direction, GivenFunction, Request, plain_parameters
+from rosetta_jit.startup.dataclass import replace
 
 
 class Options(TypedDict, total=False):

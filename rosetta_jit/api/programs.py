@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self, Unpack
 
 from rosetta_jit.api.loading import answer, interpreted_kernel, is_as_before, library, sites_of
@@ -25,6 +24,7 @@ from rosetta_jit.runtime.on_demand import OnDemand
 from rosetta_jit.runtime.program import Loaded
 from rosetta_jit.runtime.registers import Kept
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.dataclass import replace
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:

@@ -8,7 +8,6 @@ import threading
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import replace
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -18,7 +17,7 @@ from rosetta_jit.errors import ReportError
 from rosetta_jit.pipeline.request import Direction, Request, plain_parameters
 from rosetta_jit.runtime.attributes.code import make_ready
 from rosetta_jit.runtime.decoder import complete
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 SUFFIX = ".mapping"
 LEAST = 4

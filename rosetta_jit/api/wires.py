@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack
 
 from rosetta_jit.api.options import Options, request_of
@@ -14,6 +13,7 @@ from rosetta_jit.pipeline.request import Direction, Request
 from rosetta_jit.runtime.arrivals import ages
 from rosetta_jit.runtime.holder import Holder
 from rosetta_jit.runtime.program import shared_of, wires_of
+from rosetta_jit.startup.dataclass import replace
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:

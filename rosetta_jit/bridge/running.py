@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor, wait
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.bridge.announcing import announced, served, wanted
@@ -16,6 +15,7 @@ from rosetta_jit.bridge.patterns import is_pattern, matching, place_to_list
 from rosetta_jit.bridge.services import LiveService
 from rosetta_jit.bridge.translating import translator, translator_of
 from rosetta_jit.errors import RosettaError
+from rosetta_jit.startup.dataclass import replace
 from rosetta_jit.transports.base import Message, Source
 from rosetta_jit.transports.end import End
 from rosetta_jit.transports.opening import call, names, publish, serve, subscribe

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.catalogue.mapping import shorten
 from rosetta_jit.diagnostics import Diagnostic, Mistake, error, warning
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 BEYOND = "indices count from 0 and stay below the length: correct the index, or the length"
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import replace
 
 from rosetta_jit.catalogue.suggestions import closest, shorten
 from rosetta_jit.catalogue.unexpected import instead
 from rosetta_jit.diagnostics import Diagnostic, Mistake, error, warning
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 EXPECTATIONS = (
     ("INTEGER", "a value"),

@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 import json
 import shutil
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, add_wire, encoding_of, wire_of
 from rosetta_jit.file_errors import named
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.explain.content import Explanation

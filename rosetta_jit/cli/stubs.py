@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import argparse
 import sys
-from dataclasses import replace
 from keyword import iskeyword
 from pathlib import Path
 from typing import Any
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_parameters, parameters_of
+from rosetta_jit.startup.dataclass import replace
 
 
 def add(commands: Commands) -> None:

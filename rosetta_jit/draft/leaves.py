@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from rosetta_jit.draft.limits import MAX_DEPTH, MAX_LEAVES
 from rosetta_jit.language.scope import Message
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, String, Struct, Type
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 Names = tuple[str, ...]
 

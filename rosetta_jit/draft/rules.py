@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.draft.conversions import as_type, converted, kind
@@ -13,7 +12,7 @@ from rosetta_jit.draft.words import shared, tokens
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.language.units.dimensions import conversion
 from rosetta_jit.model.types import Bytes, Enum, Float, Int, Type
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.draft.leaves import Leaf

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable
-from dataclasses import replace
 from itertools import islice
 from typing import Literal
 
@@ -33,7 +32,7 @@ from rosetta_jit.model.expr import Side as SideName
 from rosetta_jit.model.mapping import Mapping
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

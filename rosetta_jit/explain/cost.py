@@ -9,7 +9,7 @@ several attempts the first. Operations are those on values: where a value lies i
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field, replace
+from dataclasses import field
 from functools import reduce
 from types import MappingProxyType
 from typing import assert_never
@@ -18,7 +18,7 @@ from rosetta_jit.explain.counts import count_text, factored, named_counts
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.terms import END, type_of
 from rosetta_jit.kernel.walk import operands
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

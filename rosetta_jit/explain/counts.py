@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 from rosetta_jit.explain.limits import MAX_COUNT_DEPTH, MAX_COUNT_TEXT
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.printer import SYMBOL
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.walk import statements
+from rosetta_jit.startup.dataclass import replace
 
 ROUNDS = "round of a loop"
 """How often a loop runs of which no more is known."""

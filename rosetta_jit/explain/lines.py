@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import PurePath
 
 from rosetta_jit.explain.notes import Note, notes
@@ -34,7 +33,7 @@ from rosetta_jit.model.mapping import Rule as Untyped
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.walk import every_rule
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 Names = tuple[str, ...]
 

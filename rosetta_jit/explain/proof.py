@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
 from itertools import groupby, repeat
 from typing import TYPE_CHECKING, Literal
 
@@ -18,7 +17,7 @@ from rosetta_jit.kernel.proof.verify import VerificationError, verify
 from rosetta_jit.model.layout import Layout, Row, Slot, Variant
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request, plain_parameters
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 from rosetta_jit.terminal import columns, printable
 
 if TYPE_CHECKING:

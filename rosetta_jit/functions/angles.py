@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from rosetta_jit.functions.forms import binary_of, unary_of
 from rosetta_jit.kernel.nodes import Binary, Const, Expr
@@ -14,6 +13,7 @@ from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Affine, Functio
 from rosetta_jit.language.typed import Call
 from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.model import expr as model
+from rosetta_jit.startup.dataclass import replace
 
 OF_ONE, OF_TWO = Numbers((FLOAT64,)), Numbers((FLOAT64,), (2, 2), "two numbers")
 TRIGONOMETRY = Row(

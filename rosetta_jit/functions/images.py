@@ -9,7 +9,6 @@ image_width image_height image_channels image_depth (bytes)     of a compressed 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from typing import cast
 
@@ -28,6 +27,7 @@ from rosetta_jit.lowering.evaluation import Evaluation, lowered
 from rosetta_jit.lowering.texts.views import View, sound
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Bytes, String
+from rosetta_jit.startup.dataclass import replace
 
 MEASURES = ("image_width", "image_height", "image_channels", "image_depth")
 DEFAULTS = {"png": 1, "png16": 1, "jpeg": 90}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from rosetta_jit.functions.forms import constants_of, if_same_constants, of_texts, row, undone_by
@@ -22,6 +21,7 @@ from rosetta_jit.lowering.texts.values import expect, field, placed_of, quoted, 
 from rosetta_jit.lowering.texts.views import Quoted, View, joined, placed, sound
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Array, Bool, Float, Int
+from rosetta_jit.startup.dataclass import replace
 
 
 class Separated(NamedTuple):

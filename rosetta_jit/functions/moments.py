@@ -6,7 +6,6 @@ A moment is a text (`lowering.texts.dates`), a float64 of seconds, an int64 of n
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 
 from rosetta_jit.functions.forms import loses, row, undone_by
@@ -26,6 +25,7 @@ from rosetta_jit.lowering.texts.views import View
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Float, Type
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 BEYOND = float(1 << 63)
 """The first float that is no int64."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import partial, reduce
 
 from rosetta_jit.functions.forms import binary_of, unary_of
@@ -21,6 +20,7 @@ from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Float
+from rosetta_jit.startup.dataclass import replace
 
 FLOATS = (Float(32), FLOAT64)
 ANY = (INT64, *FLOATS)

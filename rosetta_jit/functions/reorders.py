@@ -10,7 +10,6 @@ Nothing is read before it is shown that the first and the last byte of each row 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import reduce
 from itertools import product
 
@@ -25,7 +24,7 @@ from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.views import View, byte_at, lane_of, sound
 from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model import expr as model
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 ZERO, ONE = index(0), index(1)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
-from dataclasses import replace
 from functools import partial, reduce
 from typing import TYPE_CHECKING
 
@@ -24,6 +23,7 @@ from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Type
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     Fill = Callable[[ArrayArgument, Expr, Evaluation, Put], None]

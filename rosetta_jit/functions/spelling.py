@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import texts as words
 from rosetta_jit.functions.enum_names import NAMES, lower_name, read_name
@@ -25,6 +23,7 @@ from rosetta_jit.lowering.texts.values import checked, expect, placed_of, quoted
 from rosetta_jit.lowering.texts.views import View
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Bool, Enum, Float, Int, String, Type
+from rosetta_jit.startup.dataclass import replace
 
 LARGEST = 18
 """Digits that a float of so many decimals may have in all."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.functions.forms import loses, of_texts, row, undone_by
 from rosetta_jit.kernel.nodes import Binary, Compare, Const, If
 from rosetta_jit.kernel.terms import index
@@ -17,6 +15,7 @@ from rosetta_jit.lowering.texts.views import View, byte_at, lies_in, sound
 from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.expr import Call, Expr, Literal
 from rosetta_jit.model.types import Array, Bytes, String, Type
+from rosetta_jit.startup.dataclass import replace
 
 BLANKS = " \t\n\r\v\f"
 BEHIND_NUL = "what is behind the first NUL is dropped"

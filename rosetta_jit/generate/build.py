@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from pathlib import PurePath
 
 from rosetta_jit.catalogue import generate as words
@@ -27,7 +26,7 @@ from rosetta_jit.model.types import Ref, Schema, Type
 from rosetta_jit.pipeline.build import Build, within_stack
 from rosetta_jit.pipeline.request import Request
 from rosetta_jit.pipeline.wires import arrival_registers
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}")
 HEADERS = frozenset(

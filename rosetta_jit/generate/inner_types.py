@@ -6,11 +6,11 @@ Also those that a schema declares within a field, without a name, as YARP's bott
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import count
 from typing import TYPE_CHECKING
 
 from rosetta_jit.model.types import Array, Declaration, Enum, Field, Map, Optional, Ref, Schema, Struct, Type, Union
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.unit import Unit

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, MutableSequence, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, assert_never
 
@@ -28,7 +27,7 @@ from rosetta_jit.kernel.state import (
 )
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
 from rosetta_jit.kernel.walk import extents_of
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     Memory = bytes | bytearray | memoryview

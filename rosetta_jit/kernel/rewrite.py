@@ -6,13 +6,13 @@ What nothing changes in stays the object that it is: most of a kernel does so in
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from operator import is_
 from types import MappingProxyType
 from typing import assert_never
 
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.walk import blocks_of, expressions_of, operands, parts_of, statements, subexpressions
+from rosetta_jit.startup.dataclass import replace
 
 NO_NAMES: Mapping[str, str] = MappingProxyType({})
 

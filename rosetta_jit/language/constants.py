@@ -21,7 +21,7 @@ from rosetta_jit.model.types import Bool, Constant, Enum, Float, Int, Schema, St
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
-LAST = re.compile(r"(?:\.|::)(?=\w+$)")
+LAST = r"(?:\.|::)(?=\w+$)"
 """What stands before the last part of a constant's name."""
 
 
@@ -50,7 +50,7 @@ class Constants:
         """The constant of a name: several where it is ambiguous, none where there is none."""
         if name in self.full:
             return (self.full[name],)
-        *owner, last = LAST.split(name)
+        *owner, last = re.split(LAST, name)
         return self.other.get((*name_parts("".join(owner)), last), ())
 
 
@@ -76,7 +76,7 @@ def constants_of(*schemas: Schema) -> Constants:
     declared = {each.name: each for schema in schemas for each in _declared(schema)}
     other: dict[tuple[str, ...], dict[tuple[Type, Constant], Named]] = defaultdict(dict)
     for each in declared.values():
-        *owner, last = LAST.split(each.name)
+        *owner, last = re.split(LAST, each.name)
         parts = (*name_parts("".join(owner)), last)
         for names in {parts, parts[-2:]}:
             other[names].setdefault((each.type, each.value), each)
@@ -89,7 +89,7 @@ def _of_enums(enums: list[Enum]) -> dict[str, Named]:
     beside: dict[str, Named] = {}
     within: dict[str, Named] = {}
     for enum in enums:
-        around = enum.name[: len(enum.name) - len(LAST.split(enum.name)[-1])]
+        around = enum.name[: len(enum.name) - len(re.split(LAST, enum.name)[-1])]
         for value, number in enum.values:
             known = Named(f"{enum.name}.{value}", enum, number, enum.name)
             beside[around + value] = within[known.name] = known

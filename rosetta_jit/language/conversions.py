@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 import struct
-from dataclasses import replace
 
 from rosetta_jit.language.typed import INT64, Binary, Call, Const, Convert, Expr, LenOf, Local, Reduce, Unary
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
+from rosetta_jit.startup.dataclass import replace
 
 FLOAT64 = Float(64)
 SMALL = 2**32

@@ -5,10 +5,9 @@ Floats are left alone, as what a place holds of one may be another.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.model.expr import Binary, Choice, Coerced, Expr, Literal, Name, Nearest, Unary
 from rosetta_jit.model.walk import rebuilt
+from rosetta_jit.startup.dataclass import replace
 
 TRUE, FALSE = Literal(value=True), Literal(value=False)
 

@@ -7,10 +7,10 @@ walks may be recursive.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import assert_never
 
 from rosetta_jit.language import typed
+from rosetta_jit.startup.dataclass import replace
 
 
 def operands(expr: typed.Expr) -> tuple[typed.Expr, ...]:

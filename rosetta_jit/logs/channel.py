@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
@@ -16,6 +15,7 @@ from rosetta_jit.logs.decoded_parts import CLOCKS, Collector, OnError, Part, not
 from rosetta_jit.logs.moments import nanoseconds, shown
 from rosetta_jit.runtime.transposing import prepare
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     import pyarrow as pa

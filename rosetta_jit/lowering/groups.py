@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.kernel.nodes import Expr
 from rosetta_jit.language.groups import group_functions
 from rosetta_jit.language.resolve.definitions import arguments_in, definitions_of
 from rosetta_jit.language.typed import Call
 from rosetta_jit.lowering.evaluation import Evaluation
+from rosetta_jit.startup.dataclass import replace
 
 
 def lower_component(call: Call, values: Evaluation) -> Expr:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.model.expr import Each, Index, Len, Literal, Name, Path
 from rosetta_jit.model.mapping import For, Ignore, Rule
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Span

@@ -9,14 +9,13 @@ are routines.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from typing import assert_never
 
 from rosetta_jit.model.layout import SPAN_BYTES, WIDTH, scalar_of
 from rosetta_jit.model.limits import MAX_BYTES, MAX_LINKS, MAX_NESTED, MAX_SLOTS
 from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TypeGuard
 
 from rosetta_jit.model.limits import MAX_UNIT_PARTS
 from rosetta_jit.model.types import Array, Field, PartUnit
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 
 def with_unit(field: Field, text: str | None) -> Field:

@@ -6,7 +6,6 @@ The depth of an expression is bounded by the parser, so that walks may be recurs
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from typing import TypeVar, assert_never, cast
 
 from rosetta_jit.model import mapping
@@ -33,6 +32,7 @@ from rosetta_jit.model.expr import (
     Unary,
 )
 from rosetta_jit.model.mapping import Rule
+from rosetta_jit.startup.dataclass import replace
 
 Field = Path | Len
 """A field or its length."""

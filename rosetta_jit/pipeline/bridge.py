@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any, assert_never
 
 from rosetta_jit.backends.backend import Backend
@@ -32,6 +31,7 @@ from rosetta_jit.pipeline.request import BridgeRequest, GivenFunction, Request
 from rosetta_jit.pipeline.successors import SuccessorBuild, joined
 from rosetta_jit.pipeline.user_functions import check_compiled
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.dataclass import replace
 from rosetta_jit.startup.garbage import imported
 
 

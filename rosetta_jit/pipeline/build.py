@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 from collections.abc import Generator, Iterable, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, cast, get_args
 
 from rosetta_jit.backends.backend import Backend
@@ -49,6 +48,7 @@ from rosetta_jit.runtime.limits import MAX_PIXEL_BYTES
 from rosetta_jit.runtime.run import GRACE_BYTES
 from rosetta_jit.source import Span
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.dataclass import replace
 from rosetta_jit.startup.entry_points import files_of_offered
 from rosetta_jit.startup.garbage import imported
 from rosetta_jit.wire.codec import Encoding, Rare

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.catalogue import bind, wires
@@ -20,7 +19,7 @@ from rosetta_jit.pipeline.similar_types import similar_types
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.source import Source
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.pipeline.request import Request

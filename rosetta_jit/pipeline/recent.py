@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Mapping
 from contextlib import suppress
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from rosetta_jit.frameworks.installed import installed
@@ -13,7 +12,7 @@ from rosetta_jit.language.function import Function
 from rosetta_jit.language.installed import offered
 from rosetta_jit.pipeline.limits import MAX_RECENT, MAX_RECENT_BYTES
 from rosetta_jit.pipeline.request import Request, here
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Framework

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,7 @@ from rosetta_jit.model.initial_values import FixedArray, InitialValue
 from rosetta_jit.model.layout import Layout, Number
 from rosetta_jit.runtime.cells import BYTES, dtype_of
 from rosetta_jit.runtime.memory import aligned
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 INITIAL_BYTES = 64
 """What a lane has room for before it grows."""

@@ -6,7 +6,6 @@ Those that take Arrow's arrays get the types of `Batch.to_arrow`, pandas' constr
 from __future__ import annotations
 
 from collections.abc import Callable, ItemsView, Iterable, Iterator, KeysView, Mapping, Sequence, ValuesView
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -14,7 +13,7 @@ import numpy as np
 from rosetta_jit.runtime.batch_parts import chosen_rows
 from rosetta_jit.runtime.limits import MAX_TEXT_ITEMS
 from rosetta_jit.runtime.rows import elements
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

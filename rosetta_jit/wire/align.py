@@ -7,10 +7,9 @@ one size, which are read in bulk.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import assert_never
 
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 from rosetta_jit.wire import codec as wire
 from rosetta_jit.wire.size import count_width, fixed_size
 

@@ -8,10 +8,9 @@ or empty: it is so where a message is read, and cannot be written with another v
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Schema, String, Struct, Type
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 from rosetta_jit.wire.codec import Align, Blob, Codec, Constant, Count, Encoding, Number, Padding, Path, Repeat, Seq, Table, Unsent
 
 

@@ -16,7 +16,6 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from string import Template
@@ -36,6 +35,7 @@ from rosetta_jit.kernel.traits import has_loops_for_vectors, is_moderate, leaves
 from rosetta_jit.runtime.cache.texts import kept
 from rosetta_jit.runtime.code.assembler import linked, make_private, object_of, run_few_passes, run_passes, shortened, target_machine
 from rosetta_jit.runtime.code.prelink import is_prelinking, prelinked
+from rosetta_jit.startup.dataclass import replace
 
 USUAL: dict[EntryName, tuple[str, ...]] = {
     "decode": ("owning.ll", "decode.ll"),

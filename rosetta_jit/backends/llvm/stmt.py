@@ -7,7 +7,6 @@ takes failures; so the hot path holds compares and branches alone.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import assert_never
 
@@ -34,6 +33,7 @@ from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
+from rosetta_jit.startup.dataclass import replace
 
 MANY_CASES = 64
 ANY_SITE = -1

@@ -9,7 +9,6 @@ Everything is written at a multiple of its size from the origin, behind the head
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.errors import SchemaError
@@ -17,7 +16,7 @@ from rosetta_jit.frameworks.omg import diagnostics as words
 from rosetta_jit.model.layout import map_entry, scalar_of
 from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 from rosetta_jit.wire import codec as wire
 from rosetta_jit.wire.align import ANYWHERE, ORIGIN, Phase, leading, settle
 from rosetta_jit.wire.recursion import MAX_OPEN_SIZES, open_sizes, recurses

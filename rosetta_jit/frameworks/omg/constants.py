@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from math import isfinite
 from typing import Literal as OneOf
 from typing import assert_never
@@ -14,7 +13,7 @@ from rosetta_jit.frameworks.omg.lexer import LiteralError, Token, number, unesca
 from rosetta_jit.frameworks.omg.problems import LookupProblem
 from rosetta_jit.model.types import Bool, Constant, Float, Int, Ref, String, Type
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 Sort = OneOf["integer", "floating", "boolean", "character", "wide character", "string", "wide string", "enumerator", "fixed"]
 

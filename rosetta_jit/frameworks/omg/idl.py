@@ -6,7 +6,6 @@ text ─ lexer ─▶ tokens ─ preprocessor ─▶ tokens of all files ─ gra
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.omg import diagnostics as say
@@ -17,6 +16,7 @@ from rosetta_jit.frameworks.omg.preprocessor import preprocess
 from rosetta_jit.model.types import Array, Declaration, Map, NamedConstant, Optional, Ref, Schema, Struct, Type, Union
 from rosetta_jit.parsing.idl import Load, refuse
 from rosetta_jit.source import Source
+from rosetta_jit.startup.dataclass import replace
 
 
 def parse(source: Source, load: Load) -> Schema:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.omg import diagnostics as say
@@ -16,7 +15,7 @@ from rosetta_jit.frameworks.omg.types import TypeMaker, value_of
 from rosetta_jit.model.types import Bool, Constant, Declaration, Enum, Field, Int, Optional, Ref, Type, Union
 from rosetta_jit.model.units import with_unit
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 DISCRIMINATOR, CASES = "_d", "_u"
 """The fields of the struct that a union is."""

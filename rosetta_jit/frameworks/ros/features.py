@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from rosetta_jit.frameworks.probe import Probe
+from rosetta_jit.startup.dataclass import replace
 
 POINT = {"probe/Point.msg": "float64 x\nfloat64 y"}
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -19,6 +18,7 @@ from rosetta_jit.frameworks.ros.sections import sections
 from rosetta_jit.model.types import Array, Bytes, Constant, Field, NamedConstant, Optional, Ref, Schema, String, Struct, Type
 from rosetta_jit.parsing.idl import Load, refuse
 from rosetta_jit.source import Source
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     Options = tuple[tuple[str, Constant], ...]

@@ -10,7 +10,6 @@ list, and then such values. A union is an element whose code says which of its c
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
@@ -20,7 +19,7 @@ from rosetta_jit.frameworks.yarp.tags import DIALECTS, DICT, LIST, Dialect
 from rosetta_jit.model import expr
 from rosetta_jit.model.layout import map_entry
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 from rosetta_jit.wire.codec import Blob, Cases, Choice, Codec, Computed, Constant, Count, Number, Padding, Path, Repeat, Seq, Table
 from rosetta_jit.wire.size import fixed_size
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from types import MappingProxyType
 
 from rosetta_jit.diagnostics import Diagnostic
@@ -16,7 +15,7 @@ from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.limits import MAX_UNIT_PARTS
 from rosetta_jit.model.types import Array, Bool, Bytes, Constant, Field, Float, Int, String, Type
 from rosetta_jit.model.units import with_units
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 TEXT = String("octets", "string")
 

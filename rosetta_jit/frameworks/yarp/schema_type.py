@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from types import MappingProxyType
 
 from rosetta_jit.diagnostics import Diagnostic
@@ -16,6 +15,7 @@ from rosetta_jit.frameworks.yarp.schema_options import CASE, SCALARS, TEXT, Plac
 from rosetta_jit.frameworks.yarp.sexpr import Form, Node, Number, Text, Vocab, Word, head
 from rosetta_jit.model.types import Array, Constant, Field, Map, Ref, Struct, Type
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 _GROUPS = MappingProxyType(
     {

@@ -5,12 +5,11 @@ Each text of a list begins where the one before ends, so that a processor waits 
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.generate.c.positions import bound_in
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.terms import add, index
+from rosetta_jit.startup.dataclass import replace
 
 
 def aligned(block: nodes.Block) -> dict[str, nodes.Expr]:

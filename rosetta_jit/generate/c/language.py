@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import generate as words
@@ -16,7 +15,7 @@ from rosetta_jit.generate.c.source import source
 from rosetta_jit.generate.c.unit_lanes import hidden_lanes, own_lanes
 from rosetta_jit.generate.unit import Role, Unit
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     Print = Callable[[Kernel, Lanes, Role], Printed]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from itertools import count
 
 from rosetta_jit.backends.printing import Namespace
@@ -15,6 +14,7 @@ from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.model.layout import UNKNOWN, Number
 from rosetta_jit.model.layout import Lane as LayoutLane
+from rosetta_jit.startup.dataclass import replace
 
 
 def own_lanes(unit: Unit) -> tuple[Structs, list[Lane]]:

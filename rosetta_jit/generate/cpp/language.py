@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from rosetta_jit.catalogue import generate as words
@@ -20,6 +19,7 @@ from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.model.types import Struct
+from rosetta_jit.startup.dataclass import replace
 
 INCLUDE = Path(__file__).with_name("include")
 SHARED = "rosetta_jit/rosetta_jit.hpp"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from string import Template
 
 from rosetta_jit.catalogue import generate as words
@@ -21,6 +20,7 @@ from rosetta_jit.generate.shares import changed_lanes
 from rosetta_jit.generate.unit import Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Kernel, Part, Site
 from rosetta_jit.kernel.traits import asks_host
+from rosetta_jit.startup.dataclass import replace
 
 NO_MEMORY = "the message asks for more memory than its size allows"
 SYSTEM = """\

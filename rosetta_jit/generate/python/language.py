@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 from rosetta_jit.backends.printing import Writer
@@ -26,6 +25,7 @@ from rosetta_jit.kernel.nodes import Advance, Const, Direction, Return
 from rosetta_jit.kernel.traits import asks_host
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.types import Ref
+from rosetta_jit.startup.dataclass import replace
 
 REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 """The lists of the registers of each direction, in the module."""

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.kernel.ir import Kernel, Routine
 from rosetta_jit.kernel.nodes import Binary, Block, Capacity, Compare, Expect, Expr, Failure, Local
 from rosetta_jit.kernel.passes.fold import TRUE, folded
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
 from rosetta_jit.kernel.terms import BEGIN, ROW, index
+from rosetta_jit.startup.dataclass import replace
 
 KNOWN = {BEGIN.name: index(0), ROW.name: index(0)}
 

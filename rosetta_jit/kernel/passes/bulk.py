@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 
 from rosetta_jit.kernel import ir, nodes
@@ -11,7 +10,7 @@ from rosetta_jit.kernel.passes.affine import Affine, Rounds, rounds_of
 from rosetta_jit.kernel.passes.fold import FALSE, TRUE, folded
 from rosetta_jit.kernel.rewrite import reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import index, mul, split, type_of
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 Move = nodes.Copy | nodes.Fill
 

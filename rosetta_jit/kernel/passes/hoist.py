@@ -6,8 +6,6 @@ up across everything but a Return and what it reads.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.kernel.ir import Kernel, Part, Site
 from rosetta_jit.kernel.nodes import Block, Compare, Const, Expect, Expr, Failure, Fits, For, If, Local, Require, Stmt
 from rosetta_jit.kernel.passes.affine import Rounds, rounds_of
@@ -15,6 +13,7 @@ from rosetta_jit.kernel.passes.fold import TRUE, folded
 from rosetta_jit.kernel.passes.widen import widened
 from rosetta_jit.kernel.rewrite import may_return, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import add, index, mul
+from rosetta_jit.startup.dataclass import replace
 
 
 def hoist(kernel: Kernel) -> Kernel:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import (
@@ -27,6 +26,7 @@ from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import index, mul
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
+from rosetta_jit.startup.dataclass import replace
 
 
 def sink(kernel: Kernel) -> Kernel:

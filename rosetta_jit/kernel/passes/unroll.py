@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.limits import MAX_UNROLLED_ROUNDS, MAX_UNROLLED_STATEMENTS
 from rosetta_jit.kernel.nodes import Assign, Block, Call, Const, Expr, For, HostCall, Let, Stmt, Var, While
 from rosetta_jit.kernel.rewrite import ends, substituted, with_blocks, with_bodies, with_expressions
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import bound_names, statements
+from rosetta_jit.startup.dataclass import replace
 
 
 def unroll(kernel: Kernel) -> Kernel:

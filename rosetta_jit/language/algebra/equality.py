@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 from rosetta_jit.language.algebra.polynomial import TooComplexError, polynomial_of
 from rosetta_jit.language.algebra.quotients import NOTHING, Digit, Fact, Facts, are_same, mentions, only_atom, reduced
@@ -28,6 +27,7 @@ from rosetta_jit.language.typed import (
 from rosetta_jit.language.walk import operands, parts, renamed
 from rosetta_jit.model.expr import Side
 from rosetta_jit.model.types import Bool, Int
+from rosetta_jit.startup.dataclass import replace
 
 Ranges = tuple[tuple["Expr", "Expr"], ...]
 """Starts and stops of the loops around a rule."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from rosetta_jit.language import typed
 from rosetta_jit.language.algebra.typed_bits import digits
 from rosetta_jit.language.walk import placed, rebuilt, renamed
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Bytes, String
+from rosetta_jit.startup.dataclass import replace
 
 
 def normal(rules: tuple[typed.Rule, ...], names: dict[str, typed.Expr] | None = None) -> tuple[typed.Rule, ...]:

@@ -9,7 +9,6 @@ nanoseconds(x, y) = x · 10⁹ + y     of which 0 ≤ y < 10⁹ is checked
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 from rosetta_jit.language.algebra.polynomial import (
     BIT,
@@ -25,7 +24,7 @@ from rosetta_jit.language.algebra.polynomial import (
     subtract,
 )
 from rosetta_jit.language.limits import MAX_SUBSTITUTED
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 SECOND = 10**9
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING
 
@@ -13,7 +12,7 @@ from rosetta_jit.language.arrays.layouts import PADDED, SIZES, Axis, NumberType,
 from rosetta_jit.language.arrays.parts import substituted
 from rosetta_jit.model.expr import Binary, Call, Choice, Expr, Index, Literal, Name, Path
 from rosetta_jit.model.mapping import Assign, Assignment, For, Rule
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 SHORT = 16
 

@@ -8,7 +8,6 @@ rejected. Rules for fields of the elements of one array share a loop.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import count
 
 from rosetta_jit.catalogue import fields
@@ -33,7 +32,7 @@ from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Type, Union
 from rosetta_jit.model.walk import every_rule, parts
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 SINGLE = (Bool, Enum, Float, Int, Struct)
 """Types of one value."""

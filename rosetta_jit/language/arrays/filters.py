@@ -5,8 +5,6 @@ Rules with the same condition keep the same elements. Those for fields of the el
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.language.arrays.counts import ZERO, LayoutError
 from rosetta_jit.language.arrays.element_loops import element_at
@@ -15,7 +13,7 @@ from rosetta_jit.language.arrays.parts import has_each, open_parts, sources_in, 
 from rosetta_jit.model.expr import Call, Each, Expr, Index, Len, Name, Path
 from rosetta_jit.model.mapping import Assignment, For, Rule
 from rosetta_jit.model.rules import Kept
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 FILTERED = "where"
 """What stands for the length of an array that a filter fills: no function that a mapping can call."""

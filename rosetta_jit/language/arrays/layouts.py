@@ -24,7 +24,6 @@ another order. All numbers are expressions of the mapping, computed when the ker
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import reduce
 
 from rosetta_jit.catalogue import layouts as words
@@ -32,7 +31,7 @@ from rosetta_jit.language.arrays.counts import ONE, ZERO, LayoutError, folded, m
 from rosetta_jit.language.folding import folded as literal
 from rosetta_jit.language.limits import MAX_LISTED
 from rosetta_jit.model.expr import Binary, Call, Each, Expr, Len, List, Literal, Name, Path, Pick, Slice, Step
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 PADDED = "padded_rows"
 NUMBERS, NUMBER_BYTES = "numbers", "number_bytes"

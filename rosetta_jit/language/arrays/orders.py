@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING, TypeGuard
 
 from rosetta_jit.catalogue import layouts as words
@@ -17,6 +16,7 @@ from rosetta_jit.language.typed import INT64, Call, Const, Expr
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Bool, Bytes, String
 from rosetta_jit.model.walk import rebuilt
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]

@@ -6,12 +6,12 @@ A reduction, `sum(.a[])`, is one value: the `[]` within it are its own, and no r
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS
 from rosetta_jit.language.installed import written
 from rosetta_jit.model.expr import Call, Coerced, Each, Expr, Index, Len, Path, Pick, Slice
 from rosetta_jit.model.walk import parts, rebuilt
+from rosetta_jit.startup.dataclass import replace
 
 NUMBER = Call("index", ())
 """The number of the element that a rule for each of them is at."""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, KEEP_LENGTH
 from rosetta_jit.language.both_ways.inverse import fields_in
 from rosetta_jit.model.expr import Call, Coerced, Each, Expr, Index, Len, List, Member, Path
 from rosetta_jit.model.walk import Field, path_of, rebuilt
+from rosetta_jit.startup.dataclass import replace
 
 
 def equal_lengths(place: Field | List, value: Expr) -> tuple[Len, Len] | None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Set
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.inverse import fields_in
@@ -17,6 +16,7 @@ from rosetta_jit.model.expr import Binary, Expr, Literal, Path
 from rosetta_jit.model.mapping import For, Relation, Rule, When
 from rosetta_jit.model.walk import Field, every_rule, expressions_of, fields_of, parts, rebuilt
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.bits import ConstantOf

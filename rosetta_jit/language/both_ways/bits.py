@@ -7,7 +7,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.masks import MOST_BITS, lowest_of_run
@@ -16,7 +15,7 @@ from rosetta_jit.model.mapping import For, Relation, Rule, When
 from rosetta_jit.model.types import Int
 from rosetta_jit.model.walk import rebuilt
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf

@@ -6,7 +6,6 @@ that it has, where the other block relates it to other constants; or of the one 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solved, subject_of
@@ -16,6 +15,7 @@ from rosetta_jit.language.limits import MAX_TESTED
 from rosetta_jit.model.expr import Binary, Call, Choice, Expr, Len, Literal, Name, Path, Unary
 from rosetta_jit.model.mapping import Reject, Relation, Rule, When
 from rosetta_jit.model.walk import Field, fields_of, rebuilt
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf

@@ -8,7 +8,6 @@ in a loop, in each element of an array whose length relations say.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops
@@ -18,7 +17,7 @@ from rosetta_jit.model.mapping import Assign, Assignment, For, Ignore, Reject, R
 from rosetta_jit.model.types import Array, Bool, Float
 from rosetta_jit.model.walk import Field, every_rule, fields_of, names_of, parts, path_of
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf

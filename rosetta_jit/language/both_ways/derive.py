@@ -7,7 +7,6 @@ block.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
@@ -27,6 +26,7 @@ from rosetta_jit.model.expr import Expr, Len, List, Path
 from rosetta_jit.model.mapping import Arranged, Assign, For, Relation, Rule, SameNames, SetLength, Via, When
 from rosetta_jit.model.walk import every_rule
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.bits import ConstantOf

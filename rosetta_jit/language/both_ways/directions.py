@@ -5,11 +5,11 @@ To turn rules around takes a tenth of the compiler. Mappings that write down bot
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.model.mapping import Mapping
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.bits import ConstantOf

@@ -14,7 +14,6 @@ undone. Arrays are in `language.arrays.layouts`, and expressions of several fiel
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, put_back, rounded_bytes
@@ -26,7 +25,7 @@ from rosetta_jit.language.operators import form_of, rounds, why_lost
 from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Expr, Given, Item, Len, List, Literal, Name, Nearest, Path, Unary
 from rosetta_jit.model.types import Enum, Float, Int, String, Type
 from rosetta_jit.model.walk import Field, parts, rebuilt, side_of
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     TypeOf = Callable[[Expr], Type | None]

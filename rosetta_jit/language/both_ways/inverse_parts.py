@@ -17,7 +17,6 @@ The terms of a sum are digits: what stands behind one must be less than its fact
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -32,7 +31,7 @@ from rosetta_jit.model.expr import Binary, Call, Choice, Expr, Len, List, Litera
 from rosetta_jit.model.types import Float, Int
 from rosetta_jit.model.walk import parts, rebuilt
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf

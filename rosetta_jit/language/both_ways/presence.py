@@ -8,7 +8,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.knowledge import Knowledge, Loops, key_of
@@ -16,6 +15,7 @@ from rosetta_jit.model.expr import Call, Expr, List, Literal, Member, Path, Side
 from rosetta_jit.model.mapping import Arranged, Default, For, Ignore, Relation, Rule, SameNames, When
 from rosetta_jit.model.types import Optional, Struct, Union
 from rosetta_jit.model.walk import fields_of, names_of, parts, path_of, rebuilt
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf

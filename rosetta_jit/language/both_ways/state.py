@@ -5,7 +5,6 @@ What may read it is the condition of a `reject`, and its text: such a check is n
 
 from __future__ import annotations
 
-from dataclasses import replace
 from operator import is_
 
 from rosetta_jit.catalogue import state as words
@@ -13,6 +12,7 @@ from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.model.expr import Name
 from rosetta_jit.model.mapping import For, Reject, Rule, SetState, When
 from rosetta_jit.model.walk import expressions_of, parts
+from rosetta_jit.startup.dataclass import replace
 
 
 def without_state(rules: tuple[Rule, ...], names: frozenset[str], problems: list[Diagnostic]) -> tuple[Rule, ...]:

@@ -6,7 +6,6 @@ what one way sets over all rounds is what any mixture sets. What an element of a
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import product
 
 from rosetta_jit.catalogue import check as words
@@ -15,6 +14,7 @@ from rosetta_jit.language.limits import MAX_CHECKED_WAYS
 from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, Rule, SetLength, SetState, Step, When
 from rosetta_jit.model.types import Field, Optional, Struct, Union
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 Ways = list[tuple["Rule", ...]]
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 
 from rosetta_jit.catalogue import fields as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.model.mapping import Relation, Rule
 from rosetta_jit.model.walk import every_rule
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 OF_NAMES = frozenset(("unknown-function", "unknown-name", "unknown-field"))
 """Mistakes that leave open what a rule means."""

@@ -7,7 +7,6 @@ that rules which set the discriminator of each spot themselves can stand anywher
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from graphlib import CycleError, TopologicalSorter
 from heapq import heappop, heappush
 from typing import TYPE_CHECKING
@@ -21,6 +20,7 @@ from rosetta_jit.language.typed import Assign, Assignment, Const, Default, Expr,
 from rosetta_jit.language.walk import indices
 from rosetta_jit.model.types import Array, Bool, Map
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     Spot = tuple[Names, tuple[Expr, ...]]

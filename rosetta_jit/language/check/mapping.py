@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping as Dictionary
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
@@ -43,7 +42,7 @@ from rosetta_jit.model.mapping import Mapping
 from rosetta_jit.model.types import Schema, name_parts
 from rosetta_jit.parsing.idl import FrontEnds
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.catalogue.check import Block

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 from rosetta_jit.language.check.across_wires import (
     Wires,
@@ -19,7 +18,7 @@ from rosetta_jit.language.walk import expressions_of
 from rosetta_jit.model.expr import Side
 from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Ref, Struct
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 Names = tuple[str, ...]
 NO_WIRE: frozenset[str] = frozenset()

@@ -8,7 +8,6 @@ then runs the rules that read that wire, and those that read none; a rule that r
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import assert_never
 
 from rosetta_jit.language import typed
@@ -31,7 +30,7 @@ from rosetta_jit.language.walk import placed, rebuilt
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.expr import Side
 from rosetta_jit.model.types import Field, Ref, Schema, Struct, same_name
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 
 def message_of_wires(mapping: model.Mapping, schema: Schema) -> Schema:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import assert_never
 
 from rosetta_jit.catalogue import check as words
@@ -25,7 +24,7 @@ from rosetta_jit.language.typed import Assign, Default, Expr, FieldStep, For, Ig
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Field
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,6 @@ Functions have a record each (`language.function`), which says what they take. `
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal, cast
 
@@ -31,6 +30,7 @@ from rosetta_jit.language.units.conversion import check_arguments
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.expr import Name
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Type
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]

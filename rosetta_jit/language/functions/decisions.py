@@ -7,7 +7,6 @@ byte, an enum with its constants, a bool with another.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
@@ -20,6 +19,7 @@ from rosetta_jit.language.units.conversion import check_agree
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, String, Type
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]

@@ -6,7 +6,6 @@ A text is a string, bytes, or an array of 8-bit integers. What is computed from 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve
@@ -20,6 +19,7 @@ from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Call, Const,
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Type
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]

@@ -10,7 +10,6 @@ ulp · ulp(max(|x|, floor)), as |v|·2^-p < ulp(v). Higham, Accuracy and Stabili
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from fractions import Fraction
 from typing import Literal as OneOf
 
@@ -23,7 +22,7 @@ from rosetta_jit.language.installed import functions
 from rosetta_jit.language.operators import form_of, why_lost
 from rosetta_jit.language.typed import Binary, Call, Choice, Const, Convert, Expr, Given, Nearest, Unary
 from rosetta_jit.model.types import Float, Int, Type
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 NEGLIGIBLE = 2.0**-800
 """A floor below that is that of no value of a float32."""

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.limits import MAX_WAYS
 from rosetta_jit.language.typed import Expr, For, Reject, Rule, When
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.language.algebra.equality import Ranges

@@ -7,7 +7,6 @@ conditions of the path, are known. The second direction then decides its own con
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.language.algebra.equality import (
@@ -64,7 +63,7 @@ from rosetta_jit.model.expr import Literal, Side
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Array, Float, Int, Map, Struct, Union
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.language.laws.execution_paths import ExecutionPath

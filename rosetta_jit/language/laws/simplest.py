@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from rosetta_jit.language.conversions import adapt, same
 from rosetta_jit.language.installed import functions
 from rosetta_jit.language.laws.chain import come_back, source_of
 from rosetta_jit.language.typed import BOOL, Binary, Call, Choice, Const, Convert, Expr, Listed, Nearest, Unary
 from rosetta_jit.model.types import Float
+from rosetta_jit.startup.dataclass import replace
 
 
 def simplest(expr: Expr, own_part: Callable[[Expr], Expr | None]) -> Expr:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.places import field_names
@@ -11,7 +10,7 @@ from rosetta_jit.language.scope import Message
 from rosetta_jit.language.typed import Assign, Assignment, Default, Expr, FieldStep, For, Given, Local, Place, Rule, SetLength, When
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Array, Map, Struct, Union
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.language.algebra.equality import Ranges

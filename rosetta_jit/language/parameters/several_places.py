@@ -10,8 +10,6 @@ length is not known, is assigned in a loop.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.catalogue import derive
 from rosetta_jit.catalogue import groups as words
 from rosetta_jit.diagnostics import Diagnostic
@@ -21,6 +19,7 @@ from rosetta_jit.model.expr import Binary, Call, Expr, Given, Index, Item, Len, 
 from rosetta_jit.model.mapping import Assign, Assignment, Default, For, Reject, Relation, Rule, SetLength, Several, When
 from rosetta_jit.model.types import Int
 from rosetta_jit.model.walk import parts, rebuilt
+from rosetta_jit.startup.dataclass import replace
 
 
 def one_by_one(rule: Several, problems: list[Diagnostic]) -> tuple[Rule, ...]:

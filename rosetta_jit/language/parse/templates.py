@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -19,12 +18,13 @@ from rosetta_jit.parsing.lalr import Grammar, Token, Tree
 from rosetta_jit.parsing.parsers import parser_of
 from rosetta_jit.parsing.syntax import Recovery, parse_tokens
 from rosetta_jit.source import Source, Span
+from rosetta_jit.startup.dataclass import replace
 
 GRAMMAR = Path(__file__).with_name("mapping.lark")
 MISTAKES = ("UNCLOSED", "STRANGE")
 """Tokens that stand for mistakes."""
 
-PIECES = re.compile(r"\{\{|\}\}|\{[^{}]*\}|[{}]")
+PIECES = r"\{\{|\}\}|\{[^{}]*\}|[{}]"
 
 
 BEFORE = (("UNPACK_RULES", "unpack-rules"), ("COLON", ":"), ("REJECT", "reject"), ("STRING", '""'), ("GUARD", "when"))
@@ -45,7 +45,7 @@ def pieces_of(text: str, place: Span, problems: list[Diagnostic], read: Callable
     """
     found: list[Expr] = []
     at = 0
-    for match in PIECES.finditer(text):
+    for match in re.finditer(PIECES, text):
         found.append(Literal(text[at : match.start()], place))
         at = match.end()
         here = Span(place.source, *(min(place.start + 1 + end, place.end) for end in match.span()))

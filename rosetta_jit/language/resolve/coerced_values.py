@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.conversions import convert
@@ -16,6 +15,7 @@ from rosetta_jit.model import expr as model
 from rosetta_jit.model.expr import NEAREST, Coerced, Path
 from rosetta_jit.model.expr import Binary as Operation
 from rosetta_jit.model.types import Enum, Type
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]

@@ -6,7 +6,6 @@ What the schema requires is there (proto2): with its default, else 0 or empty.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from rosetta_jit.language.functions.texts import is_textual
 from rosetta_jit.language.limits import MAX_DEFAULT_DEPTH, MAX_DEFAULTS
@@ -14,6 +13,7 @@ from rosetta_jit.language.scope import Message
 from rosetta_jit.language.typed import INT64, Access, Assign, Call, Choice, Const, Default, Expr, FieldStep, Has, LenOf, Place, Rule
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Optional, Schema, String, Struct, Type, Union
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 
 class ManyDefaultsError(Exception):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import rest as words
@@ -34,7 +33,7 @@ from rosetta_jit.model.expr import Each, Index, Literal
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array, Struct
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

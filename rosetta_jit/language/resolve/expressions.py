@@ -7,7 +7,6 @@ cannot be typed is reported and gives None; whoever asked stops there, so that o
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import reduce
 from typing import assert_never
 
@@ -36,6 +35,7 @@ from rosetta_jit.model import expr as model
 from rosetta_jit.model.mapping import OF_WIRES
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, Optional, String, Union
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 CONSTANTS = {"pi": math.pi}
 SUMS = frozenset("+-%")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.catalogue import texts
 from rosetta_jit.diagnostics import Diagnostic
@@ -15,6 +13,7 @@ from rosetta_jit.language.resolve.list_items import adapted
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import Access, Binary, Call, Choice, Const, Convert, Expr, Listed, Place
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Type, Union
+from rosetta_jit.startup.dataclass import replace
 
 
 def fit(value: Expr, place: Place, scope: Scope) -> Expr | None:

@@ -7,7 +7,6 @@ the components go to depends on the type of the place: a struct has fields of th
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import groups as words
@@ -21,6 +20,7 @@ from rosetta_jit.model import expr as model
 from rosetta_jit.model import mapping
 from rosetta_jit.model.types import Array, Struct, Type
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]

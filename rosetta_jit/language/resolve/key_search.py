@@ -6,7 +6,6 @@ The condition is a comparison like any other, of the key with a value, for an el
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.functions.decisions import type_comparison
@@ -18,6 +17,7 @@ from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, Expr, FieldSt
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array, Bytes, Map, Type
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]

@@ -7,7 +7,6 @@ mapping that is imported is found by the two types. A mapping may be used in the
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts
@@ -23,6 +22,7 @@ from rosetta_jit.model.expr import Path, Side
 from rosetta_jit.model.mapping import Via
 from rosetta_jit.model.types import Array, Optional, Struct, Type, same_name
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     RulesOf = Callable[[tuple[model.Rule, ...], Scope], tuple[typed.Rule, ...]]

@@ -13,7 +13,6 @@ that is set twice, as in every mapping.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import count
 
 from rosetta_jit.catalogue import resolve as words
@@ -22,7 +21,7 @@ from rosetta_jit.language.places import shown_place
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.model.types import Array, Bool, Enum, Float, Int, Optional, Struct, Type, Union
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 
 def last_ones(rules: tuple[typed.Rule, ...], scope: Scope) -> tuple[typed.Rule, ...]:

@@ -7,7 +7,6 @@ each element.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import functions as words
@@ -25,6 +24,7 @@ from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import INT64, Call, Choice, Const, Expr, Local, Reduce
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.expr import Binary, Each, Name
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]

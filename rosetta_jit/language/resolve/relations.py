@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import cache
 
 from rosetta_jit.catalogue import wires as words
@@ -23,6 +22,7 @@ from rosetta_jit.model.expr import Call, Expr, Literal, Member, Path
 from rosetta_jit.model.mapping import For, Mapping
 from rosetta_jit.model.types import Schema, Type
 from rosetta_jit.model.walk import every_rule, expressions_of, fields_of, parts
+from rosetta_jit.startup.dataclass import replace
 
 FIRST = Literal(0)
 

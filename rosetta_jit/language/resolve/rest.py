@@ -5,8 +5,6 @@ A note says which fields they are, so that a field which a schema gets later is 
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.catalogue import rest as words
 from rosetta_jit.language import typed
 from rosetta_jit.language.limits import MAX_DEFAULTS
@@ -19,6 +17,7 @@ from rosetta_jit.model.expr import Member, Path
 from rosetta_jit.model.mapping import Default, Rest
 from rosetta_jit.model.types import Array, Bool, Float, Int, Struct, Union
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 
 def ignored(rest: Rest, rules: tuple[Rule, ...], scope: Scope) -> list[Ignore[Place]]:

@@ -6,8 +6,6 @@ float is rounded, and the law says so. All else that takes a word is reported wi
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.conversions import describe, same, widens, word_for
@@ -18,6 +16,7 @@ from rosetta_jit.model.mapping import Assign, Assignment, SameNames
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array, Float, Int, Type
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 OF_TYPES = frozenset(("lossy-conversion", "type-clash"))
 """Mistakes that a field's name alone makes."""

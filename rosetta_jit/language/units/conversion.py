@@ -8,7 +8,6 @@ multiplied or divided is taken to have been converted by hand.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 from rosetta_jit.catalogue import resolve
@@ -25,6 +24,7 @@ from rosetta_jit.language.units.numbers import Factors, exactly, nearest, scaled
 from rosetta_jit.language.units.unit_at import Mixed, Unit, pairs_in_step, unit_at
 from rosetta_jit.model.types import Enum, Float, Int, Type
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import replace
 
 
 def in_unit(value: Expr, place: Place, scope: Scope, *, packs: bool = False) -> Expr | None:

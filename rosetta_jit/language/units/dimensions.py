@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
 WORD = r"[A-Za-z_°µΩ]+((\^|\*\*)?-?[0-9]{1,2})?"
-SCALE = re.compile(r"([0-9]{1,9}(?:\.[0-9]{1,9})?(?:[eE][+-]?[0-9]{1,2})?) ?\*? ?(?=[A-Za-z_°µΩ])")
+SCALE = r"([0-9]{1,9}(?:\.[0-9]{1,9})?(?:[eE][+-]?[0-9]{1,2})?) ?\*? ?(?=[A-Za-z_°µΩ])"
 """How many of a unit one is: `1e-7 degree`."""
 
 UNIT = rf"(1 ?/ ?)?{WORD}( ?[*/·] ?{WORD}| {WORD})*"
@@ -92,7 +92,7 @@ def conversion(source: str, target: str, *, same: bool = True) -> tuple[float, f
 
 def _scale(unit: str) -> tuple[Fraction | int, str]:
     """How many of a unit are meant, and which one."""
-    found = SCALE.match(unit)
+    found = re.match(SCALE, unit)
     if found is None:
         return 1, unit
     from fractions import Fraction  # few mappings need it

@@ -10,12 +10,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from rosetta_jit.language.conversions import FLOAT64, as_int64, convert
 from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Call, Const, Convert, Expr, Local, Nearest
 from rosetta_jit.model.expr import NEAREST
 from rosetta_jit.model.types import Float, Int, Type
+from rosetta_jit.startup.dataclass import replace
 
 Factors = tuple[float, float]
 """What a value is multiplied by, and what is added then."""

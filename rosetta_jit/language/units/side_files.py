@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
-from dataclasses import field, replace
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import unit_files as words
@@ -22,7 +22,7 @@ from rosetta_jit.model.limits import MAX_UNIT_PARTS
 from rosetta_jit.model.types import Array, Declaration, Field, Float, Int, PartUnit, Schema, Struct, Type, Union, name_parts
 from rosetta_jit.model.units import Context
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     Way = tuple[str | int | None, ...]

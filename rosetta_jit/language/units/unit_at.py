@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TypeGuard
 
 from rosetta_jit.language.limits import MAX_KINDS
 from rosetta_jit.language.typed import INT64, Const, Expr, FieldStep, IndexStep, Place, Step
 from rosetta_jit.model.types import Array, Optional, Type
 from rosetta_jit.model.units import Context
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
@@ -24,7 +23,7 @@ from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted, wide
 from rosetta_jit.logs.limits import MAX_HEADER_BYTES
 from rosetta_jit.logs.reading.blocks import blocks_of
 from rosetta_jit.logs.reading.chunked_records import PEEK
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.logs.reading.storage import Storage

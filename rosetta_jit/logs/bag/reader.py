@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
@@ -18,7 +17,7 @@ from rosetta_jit.logs.limits import MAX_INDEX_BYTES
 from rosetta_jit.logs.reading.chunked_records import PEEK, Records
 from rosetta_jit.logs.reading.scan import Scanned
 from rosetta_jit.logs.reading.segments import Chunk, Region, pieces_of, segments_of
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.logs.reading.storage import Storage

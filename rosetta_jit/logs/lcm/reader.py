@@ -5,7 +5,6 @@ from __future__ import annotations
 import secrets
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +16,7 @@ from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted, wide
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
 from rosetta_jit.logs.reading.chunked_records import WINDOW, add_counts
 from rosetta_jit.logs.reading.walking import Rows, Why, walk
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

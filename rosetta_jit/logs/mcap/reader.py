@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
@@ -28,7 +27,7 @@ from rosetta_jit.logs.reading.chunked_records import Records
 from rosetta_jit.logs.reading.fields import Fields
 from rosetta_jit.logs.reading.scan import Scanned
 from rosetta_jit.logs.reading.segments import Chunk, Region, pieces_of, segments_of
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.logs.reading.storage import Storage

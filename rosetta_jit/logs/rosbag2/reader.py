@@ -6,7 +6,6 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any, cast
@@ -22,6 +21,7 @@ from rosetta_jit.logs.reading.blocks import blocks_of
 from rosetta_jit.logs.reading.compression import Scratch, decompressed, zstd_size
 from rosetta_jit.logs.reading.storage import Storage, open_storage
 from rosetta_jit.logs.rosbag2.sqlite import SqliteReader
+from rosetta_jit.startup.dataclass import replace
 
 PART = 1 << 32
 """Connections of file n are numbered from n times this on."""

@@ -13,7 +13,6 @@ from __future__ import annotations
 import re
 import struct
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
@@ -24,6 +23,7 @@ from rosetta_jit.logs.limits import MAX_DEFINITION_BYTES, MAX_RECORD_BYTES
 from rosetta_jit.logs.reading.blocks import blocks_of
 from rosetta_jit.logs.reading.fields import Fields
 from rosetta_jit.logs.reading.varints import fields
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.logs.reading.storage import Storage

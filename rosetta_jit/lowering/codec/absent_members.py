@@ -5,13 +5,13 @@ Such a value takes memory and no bytes of the message, so that little is given: 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import assert_never
 
 from rosetta_jit.kernel.nodes import Const, For, Local
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.codec.fields import Elements, Fields, scalar_name
 from rosetta_jit.lowering.writer import Writer, block
+from rosetta_jit.startup.dataclass import replace
 from rosetta_jit.wire import codec as wire
 
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import ROW, add, index, mul
 from rosetta_jit.lowering.codec.fields import OTHER_CASE, Stored, converted, scalar_name
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
 from rosetta_jit.model.layout import UNKNOWN, Layout, Member, Number, Row, Slot, Span, Variant
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 from rosetta_jit.wire.codec import Choice, Codec, Path
 
 

@@ -7,7 +7,6 @@ element that is kept takes its place. So nothing waits for a branch that the pro
 from __future__ import annotations
 
 from contextlib import AbstractContextManager
-from dataclasses import replace
 from functools import partial, reduce
 from typing import Protocol
 
@@ -38,6 +37,7 @@ from rosetta_jit.lowering.rules.look_ahead import look_ahead
 from rosetta_jit.lowering.rules.values import Values
 from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model.rules import Kept
+from rosetta_jit.startup.dataclass import replace
 
 
 class Runs(Protocol):

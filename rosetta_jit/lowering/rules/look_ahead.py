@@ -6,8 +6,6 @@ without rounds, and a round that does not ask, fail as they would alone.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.kernel.nodes import Const
 from rosetta_jit.language import typed
 from rosetta_jit.language.walk import expressions_of, parts
@@ -16,6 +14,7 @@ from rosetta_jit.lowering.rules.reductions import zero_of
 from rosetta_jit.model.expr import COMPARISONS, LOGIC
 from rosetta_jit.model.types import Float
 from rosetta_jit.model.walk import every_rule
+from rosetta_jit.startup.dataclass import replace
 
 
 def look_ahead(rules: tuple[typed.Rule, ...], values: Evaluation) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 from rosetta_jit.kernel.nodes import Compare, Const, Expr, If, Local, Place
 from rosetta_jit.kernel.terms import index
@@ -18,7 +17,7 @@ from rosetta_jit.lowering.rules.wire_side import wire_key
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Type, Union
 from rosetta_jit.model.walk import every_rule
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 from rosetta_jit.wire.codec import Path
 
 

@@ -5,7 +5,6 @@ What is wrong with the elements of a reduction is checked before them, where a v
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import cast
 
 from rosetta_jit.kernel.nodes import Compare, Const, Expr, For, If, Local, Select
@@ -19,6 +18,7 @@ from rosetta_jit.lowering.reduced_elements import Elements
 from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
+from rosetta_jit.startup.dataclass import replace
 
 
 def reduced(reduce: typed.Reduce, values: Evaluation) -> Expr:

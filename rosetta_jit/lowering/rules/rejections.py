@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosetta_jit.kernel.ir import Site
 from rosetta_jit.kernel.nodes import Binary, Const, Expect, Expr, Failure, If
 from rosetta_jit.kernel.terms import add
@@ -13,6 +11,7 @@ from rosetta_jit.lowering.limits import MAX_VALUE_SHOWN
 from rosetta_jit.lowering.texts.values import text_of
 from rosetta_jit.lowering.texts.views import Quoted, Text, joined, sound
 from rosetta_jit.lowering.writer import block
+from rosetta_jit.startup.dataclass import replace
 
 
 def reject_with(pieces: tuple[typed.Expr, ...], reason: str, when: Expr | None, values: Evaluation) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from itertools import count
 
 from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expr, If
@@ -13,6 +12,7 @@ from rosetta_jit.language.conversions import FLOAT64
 from rosetta_jit.language.units.numbers import scaled
 from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model.types import Array, Bool, Enum, Float, Int, String
+from rosetta_jit.startup.dataclass import replace
 
 UINT16 = Int(16, signed=False)
 """A unit of a text that is kept in such units."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import assert_never, cast
 
 from rosetta_jit.catalogue import pipeline as words
@@ -34,7 +33,7 @@ from rosetta_jit.lowering.texts.views import View, placed
 from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Array, Bytes, Map, Ref, String, Struct, Union
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 Side = HolderSide | WireSide
 

@@ -8,11 +8,10 @@ https://protobuf.dev/editions/features/
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from typing import Literal
 
 from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Field, Option, Value, Version, Word
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

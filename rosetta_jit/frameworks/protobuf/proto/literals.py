@@ -9,9 +9,9 @@ import re
 
 from rosetta_jit.frameworks.protobuf.limits import MAX_DIGITS
 
-INTEGER = re.compile(r"0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*")
-FLOAT = re.compile(r"(?:[0-9]+\.[0-9]*|\.[0-9]+|[0-9]+(?=[eE]))(?:[eE][+-]?[0-9]+)?")
-ESCAPE = re.compile(
+INTEGER = r"0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*"
+FLOAT = r"(?:[0-9]+\.[0-9]*|\.[0-9]+|[0-9]+(?=[eE]))(?:[eE][+-]?[0-9]+)?"
+ESCAPE = (
     r"\\(?:(?P<octal>[0-7]{1,3})|[xX](?P<hex>[0-9a-fA-F]{1,2})|u(?P<u4>[0-9a-fA-F]{4})|U(?P<u8>[0-9a-fA-F]{8})"
     r"|(?P<letter>[abfnrtv\\'\"?])|(?P<wrong>(?s:.)?))"
 )
@@ -24,9 +24,9 @@ class EscapeError(ValueError):
 
 def number(text: str) -> int | float | None:
     """The number that a token spells; None where it spells none."""
-    if INTEGER.fullmatch(text):
+    if re.fullmatch(INTEGER, text):
         return _integer(text) if len(text) <= MAX_DIGITS else _too_long(text)
-    return float(text) if FLOAT.fullmatch(text) else None
+    return float(text) if re.fullmatch(FLOAT, text) else None
 
 
 def string(text: str) -> bytes:
@@ -38,7 +38,7 @@ def unescape(text: str) -> bytes:
     """Replace C escapes; everything else is UTF-8; raises EscapeError."""
     out = bytearray()
     end = 0
-    for match in ESCAPE.finditer(text):
+    for match in re.finditer(ESCAPE, text):
         out += text[end : match.start()].encode("utf-8", "surrogatepass")
         out += _escape(match)
         end = match.end()

@@ -5,7 +5,6 @@ Scalar types keep their words. A name that stands for nothing becomes empty, is 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import assert_never
 
 from rosetta_jit.catalogue.suggestions import closest
@@ -16,7 +15,7 @@ from rosetta_jit.frameworks.protobuf.proto import tree
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
 from rosetta_jit.frameworks.protobuf.proto.symbols import ALL_KINDS, TYPES, Kind, Symbols, join, package_of
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 EXTENSION: frozenset[Kind] = frozenset(("extension",))
 MESSAGE: frozenset[Kind] = frozenset(("message",))
