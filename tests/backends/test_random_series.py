@@ -6,6 +6,7 @@ depend on how many stretches they have.
 
 from __future__ import annotations
 
+from functools import partial
 from random import Random
 
 import pytest
@@ -57,14 +58,26 @@ def random_fields(random, kinds):
     return [(f"field{number}", kind) for number, kind in enumerate(found)]
 
 
+def message_text(name, fields):
+    """The declaration of a message of protobuf."""
+    lines = "".join(f"  {kind} {field} = {number};\n" for number, (field, kind) in enumerate(fields, 1))
+    return f"message {name} {{\n{lines}}}\n"
+
+
+def values_of(random, fields, kinds):
+    return {name: kinds[kind](random) for name, kind in fields}
+
+
 def random_type(random):
     """A type, how it is asked for, its fields, and what makes their values."""
     encoding = random.choice(("ros1", "cdr", "protobuf"))
     if encoding == "protobuf":
-        fields = random_fields(random, TAGGED)
-        text = "".join(f"  {kind} {name} = {number};\n" for number, (name, kind) in enumerate(fields, 1))
-        source = f'syntax = "proto3"; package a;\nmessage Inner {{ string name = 1; int32 value = 2; }}\nmessage All {{\n{text}}}\n'
-        return "a.All", {"encoding": encoding, "schema": {"a.proto": source}}, fields, TAGGED
+        parts = {f"Part{number}": random_fields(random, TAGGED) for number in range(random.randrange(4))}
+        kinds = TAGGED | {name: partial(values_of, fields=fields, kinds=TAGGED) for name, fields in parts.items()}
+        fields = [*random_fields(random, TAGGED), *((f"part{number}", random.choice([*parts])) for number in range(len(parts) * 2))]
+        messages = "".join(map(message_text, ("All", *parts), (fields, *parts.values())))
+        source = f'syntax = "proto3"; package a;\nmessage Inner {{ string name = 1; int32 value = 2; }}\n{messages}'
+        return "a.All", {"encoding": encoding, "schema": {"a.proto": source}}, fields, kinds
     fields = random_fields(random, PLAIN)
     files = {"a/msg/Inner.msg": "string name\nint32 value\n", "a/msg/All.msg": "".join(f"{kind} {name}\n" for name, kind in fields)}
     name, framework = ("a/All", "ros1") if encoding == "ros1" else ("a/msg/All", "ros2")
@@ -99,7 +112,7 @@ def compare(seed):
         for backend in ("llvm", "interpreter")
     )
     for _ in range(3):
-        values = {name: kinds[kind](random) for name, kind in fields}
+        values = values_of(random, fields, kinds)
         message = bytes(encode(encode.holder_type.from_dict(values)))
         assert message == bytes(written(written.holder_type.from_dict(values))), seed
         for each in altered(random, message):

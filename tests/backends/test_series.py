@@ -156,6 +156,19 @@ def test_what_is_missing_in_it_is_told_in_the_same_words(where):
     assert told[0] == told[1]
 
 
+def test_two_large_messages_that_differ_are_no_series():
+    """Their cases have the same kinds of statements, and other numbers within them."""
+    messages = "".join(
+        f"message {name} {{ {' '.join(f'{kind} f{number} = {number + 1};' for number in range(150))} }}\n"
+        for name, kind in (("Whole", "int64"), ("Real", "double"))
+    )
+    text = f'syntax = "proto3"; package a;\n{messages}message Both {{ Whole whole = 1; Real real = 2; }}'
+    decode, encode = (make.of("a.Both", encoding="protobuf", schema={"a.proto": text}) for make in (rj.Decoder, rj.Encoder))
+    made = encode.new()
+    made.whole.f149, made.real.f149 = 2**40, 0.5
+    assert decode(encode(made)) == made
+
+
 def kernel_of(name):
     type_, options = TYPES[name]
     files = tuple(options["schema"].items())

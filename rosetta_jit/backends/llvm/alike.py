@@ -162,7 +162,8 @@ class _Look:
                 continue
             outlines = list(map(self.outline, body))
             alike.setdefault(tuple([each.shape for each in outlines]), []).append((number, body, _joined(each.slots for each in outlines)))
-        made = [_case(group) for group in alike.values() if len(group[0][1]) > 1 and (len(group) >= ROUNDS or _is_vast(group[0][1]))]
+        groups = [each for each in alike.values() if len(each) > 1 and len(each[0][1]) > 1]
+        made = [_case(group) for group in groups if len(group) >= ROUNDS or _is_vast(group[0][1])]
         return tuple(each for each in made if each is not None)
 
 
