@@ -24,13 +24,17 @@ LARGE = 4_000
 """Statements of a kernel from which on work that is done twice takes seconds."""
 
 
+LARGE_WITHOUT_RULES = 500
+"""The same where no rules compute anything: of what reads or writes a type as it is, a pass that comes again improves next to nothing."""
+
+
 VAST = 12_000
 """Statements of kernels, each counted once for every block that it stands in, from which on work that grows faster takes minutes."""
 
 
-def is_large(kernel: ir.Kernel) -> bool:
-    """Whether a kernel is so large that it is not worth while to improve it again and again."""
-    return _are_more(every_statement(kernel), LARGE)
+def is_large(kernel: ir.Kernel, limit: int = LARGE) -> bool:
+    """Whether a kernel has so many statements that it is not worth while to improve it again and again."""
+    return _are_more(every_statement(kernel), limit)
 
 
 def are_vast(kernels: Iterable[ir.Kernel]) -> bool:

@@ -23,7 +23,7 @@ from rosetta_jit.kernel.ir import Kernel, Site
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError
-from rosetta_jit.kernel.traits import asks_host, our_functions
+from rosetta_jit.kernel.traits import LARGE, LARGE_WITHOUT_RULES, asks_host, our_functions
 from rosetta_jit.language.check.mapping import Checked, check
 from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.installed import GROUP as FUNCTIONS
@@ -145,7 +145,7 @@ class Build:
 
     def _optimised(self, kernel: Kernel) -> Kernel:
         """The kernel after the passes; VerificationError if it cannot be proven safe."""
-        return passes.run(kernel)
+        return passes.run(kernel, large=LARGE if self.types.rules is not None else LARGE_WITHOUT_RULES)
 
     def _lowered(self, direction: Literal["decode", "encode", "size"]) -> Kernel:
         types, request = self.types, self.request

@@ -19,7 +19,7 @@ from rosetta_jit.kernel.passes.sink import sink
 from rosetta_jit.kernel.passes.unroll import unroll
 from rosetta_jit.kernel.proof.verify import VerificationError, check_shape, settled, verify
 from rosetta_jit.kernel.proof.without_checks import is_less
-from rosetta_jit.kernel.traits import is_large
+from rosetta_jit.kernel.traits import LARGE, is_large
 
 Pass = Callable[["Kernel"], "Kernel"]
 
@@ -52,10 +52,15 @@ ANY_MACHINE = tuple(bulk_of_bytes if each is bulk else each for each in FIELD_BY
 """Those for code that may run where numbers lie with their high byte first."""
 
 
-def run(kernel: Kernel, passes: tuple[Pass, ...] = PASSES) -> Kernel:
+def run(kernel: Kernel, passes: tuple[Pass, ...] = PASSES, *, large: int = LARGE) -> Kernel:
     """All passes, and the proof that what comes out is safe.
 
     The proof looks only so far; where it cannot follow a pass, the kernel stays as it was before that pass.
+
+    Parameters
+    ----------
+    large
+        Statements from which on each pass runs but once.
 
     Raises
     ------
@@ -63,7 +68,7 @@ def run(kernel: Kernel, passes: tuple[Pass, ...] = PASSES) -> Kernel:
         The kernel as it was lowered could not be proven safe.
     """
     try:
-        return _all(kernel, passes)
+        return _all(kernel, passes, large)
     except VerificationError:
         verify(kernel)
     for transform in passes:
@@ -71,12 +76,12 @@ def run(kernel: Kernel, passes: tuple[Pass, ...] = PASSES) -> Kernel:
     return kernel
 
 
-def _all(kernel: Kernel, passes: tuple[Pass, ...]) -> Kernel:
+def _all(kernel: Kernel, passes: tuple[Pass, ...], large: int) -> Kernel:
     """All passes, and one proof more where a pass has changed what `drop` had proven."""
     check_shape(kernel)
     results: dict[Pass, Kernel] = {}
     proven: Kernel | None = None
-    for transform in _once(passes) if is_large(kernel) else passes:
+    for transform in _once(passes) if is_large(kernel, large) else passes:
         made = results.get(transform)
         if made is not None and _is_same(made, kernel):
             continue
