@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-import numpy as np
-
 from rosetta_jit.logs.base import Block, Connection, Format, Piece, Reader, Wanted
 from rosetta_jit.logs.read_ahead import ahead
 
@@ -83,16 +81,11 @@ class LogFile:
         if wanted.pieces is not None and not wanted.pieces:
             return
         for block in self._reader.blocks(wanted):
-            rows = block.rows
-            kept = np.ones(len(rows), np.bool_) if wanted.connections is None else rows.are_of(wanted.connections)
-            if wanted.start_ns is not None:
-                kept &= rows.log_ns >= wanted.start_ns
-            if wanted.end_ns is not None:
-                kept &= rows.log_ns < wanted.end_ns
-            if kept.all():
+            rows = wanted.of(block.rows)
+            if rows is block.rows:
                 yield block
-            elif kept.any():
-                yield type(block)(block.data, rows.only(kept), block.piece)
+            elif len(rows):
+                yield type(block)(block.data, rows, block.piece)
 
     def blocks_ahead(self, wanted: Wanted | None = None) -> Iterator[Block]:
         """The same; while a block is used, threads read and decompress the next ones."""
