@@ -57,7 +57,10 @@ class LogFile:
 
     @property
     def start(self) -> int | None:
-        """When the first message was logged, in nanoseconds since 1970; None of a log without messages."""
+        """When the first message was logged, in nanoseconds since 1970; None of a log without messages.
+
+        None, too, of an MCAP file with an index where a chunk has messages before 1970 and behind: then only reading would tell.
+        """
         return None if self._reader.extent is None else self._reader.extent.start_ns
 
     @property
