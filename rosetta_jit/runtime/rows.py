@@ -123,7 +123,7 @@ class Rows:
         rows = lanes.row_words(lane, 0, lanes.capacity(lane))[:, first:behind]
         columns = None
         if isinstance(self.at, slice):
-            steps = {span.index + word - first: (length, 0)[word] for span, length in fixed for word in range(2)}
+            steps = ((span.index + word - first, step) for span, length in fixed for word, step in enumerate((length, 0)))
             columns = transposed(rows[self.at], self.room, steps)
         if columns is None:
             words = self.room((behind - first) * self.count).reshape(behind - first, self.count)

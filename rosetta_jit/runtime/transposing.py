@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -47,7 +47,7 @@ class Steady:
         return self.first + self.step * np.arange(self.count)
 
 
-def transposed(rows: Indices, room: Callable[[int], Indices], steps: Mapping[int, int] | None = None) -> list[Indices | Steady] | None:
+def transposed(rows: Indices, room: Callable[[int], Indices], steps: Iterable[tuple[int, int]] = ()) -> list[Indices | Steady] | None:
     """The columns of many rows, each in ``room`` of its own, so that it goes when it is used no more; None where numpy is to make them.
 
     Parameters
@@ -55,13 +55,13 @@ def transposed(rows: Indices, room: Callable[[int], Indices], steps: Mapping[int
     rows : ndarray of int64, shape (n, words)
         The words of a row lie together.
     steps
-        By how much some words are likely to grow from row to row. Where that is so, nothing is written for them.
+        Words, each with how much it is likely to grow by from row to row. Where that is so, nothing is written for it.
     """
     count, words = rows.shape
     prepare(count)
     if count < LEAST or not rows.flags.writeable or not _is_there() or (transpose := _transpose()) is None:
         return None
-    likely = {word: Steady(int(rows[0, word]), step, count) for word, step in (steps or {}).items()}
+    likely = {word: Steady(int(rows[0, word]), step, count) for word, step in steps}
     found: list[Indices | Steady] = [likely.get(word) or room(count) for word in range(words)]
     differing = _write(transpose, rows, found)
     if differing:

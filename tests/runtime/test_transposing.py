@@ -116,7 +116,7 @@ def test_all_kinds_of_fields_are_the_same_without_the_code(monkeypatch, options)
 def test_nothing_is_written_for_words_that_grow_steadily():
     rows = np.random.default_rng(0).integers(-(2**62), 2**62, (LEAST + 5, 4))
     rows[:, 1], rows[:, 3] = 7 + 9 * np.arange(LEAST + 5), 9
-    first, places, third, counts = transposed(rows, numpys, {1: 9, 3: 0})
+    first, places, third, counts = transposed(rows, numpys, [(1, 9), (3, 0)])
     assert (places, counts) == (Steady(7, 9, LEAST + 5), Steady(9, 0, LEAST + 5))
     assert places.values().tolist() == rows[:, 1].tolist()
     assert [first.tolist(), third.tolist()] == rows[:, [0, 2]].T.tolist()
@@ -128,7 +128,7 @@ def test_words_that_do_not_grow_as_was_likely_are_written(row, bit):
     """In whole blocks of rows and behind the last, by the lowest bit and by the highest."""
     rows = np.stack([9 * np.arange(LEAST + 5), np.arange(LEAST + 5), 3 * np.arange(LEAST + 5)], axis=1)
     rows[row, 0] ^= np.int64(np.uint64(1 << bit).view(np.int64))
-    wrong, plain, steady = transposed(rows, numpys, {0: 9, 2: 3})
+    wrong, plain, steady = transposed(rows, numpys, [(0, 9), (2, 3)])
     assert wrong.tolist() == rows[:, 0].tolist()
     assert plain.tolist() == rows[:, 1].tolist()
     assert steady == Steady(0, 3, LEAST + 5)
