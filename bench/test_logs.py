@@ -5,6 +5,8 @@ Time is that of all threads on processors: one reads ahead while another one dec
 
 from __future__ import annotations
 
+import os
+from functools import wraps
 from itertools import cycle
 from time import process_time
 from typing import TYPE_CHECKING, Any
@@ -34,7 +36,7 @@ if TYPE_CHECKING:
 CHAPTER = "Logs"
 COUNT, FEW = 200_000, 5_000
 TABLE, BYTES, ALONE = "rosetta_jit, `to_arrow`", "rosetta_jit, messages as bytes", "decompression alone"
-ELAPSED = ", elapsed"
+ELAPSED, ONE = ", elapsed", ", on one core"
 START, STEP = 1_700_000_000 * 10**9, 5_000_000
 
 
@@ -93,6 +95,21 @@ def decompress(path: Path) -> Any:
     return run
 
 
+def on_one_core(function):
+    """The same where the process may use one processor alone, as long as it lasts: it starts no thread then."""
+
+    @wraps(function)
+    def run():
+        before = os.sched_getaffinity(0)
+        os.sched_setaffinity(0, {min(before)})
+        try:
+            return function()
+        finally:
+            os.sched_setaffinity(0, before)
+
+    return run
+
+
 def run_mcap(path, *factories):
     with path.open("rb") as file:
         reader = make_reader(file, decoder_factories=factories)
@@ -127,6 +144,7 @@ def ours(effort, path, count):
             effort.call(lambda: sum(1 for _ in log.messages(raw=True)), messages=count, clock=process_time),
         ),
         Contender(ALONE, "limit", "the chunks' content, in memory", effort.call(decompress(path), messages=count, clock=process_time)),
+        Contender(TABLE + ONE, "ours", "the same", effort.call(on_one_core(channel.to_arrow), messages=count, clock=process_time)),
         Contender(TABLE + ELAPSED, "ours", "the same", effort.call(channel.to_arrow, messages=count, threaded=True)),
         Contender(ALONE + ELAPSED, "limit", "the same", effort.call(decompress(path), messages=count, threaded=True)),
     ]
@@ -188,6 +206,8 @@ def test_lcm(effort, compare, record, tmp_path):
 def told(record, outcome, what, at_most, peers):
     took = outcome.took(TABLE).median
     record(what, outcome.ratio(TABLE, ALONE), None, "x decompression alone", f"{took:.0f} ns a message of processor, on two threads")
+    alone = outcome.took(TABLE + ONE).median
+    record(f"{what}, on one core", outcome.ratio(TABLE + ONE, ALONE), None, "x decompression alone", f"{alone:.0f} ns a message")
     elapsed = outcome.took(TABLE + ELAPSED).median
     ratio = outcome.ratio(TABLE + ELAPSED, ALONE + ELAPSED)
     record(f"{what}, elapsed", ratio, at_most, "x decompression alone", f"{elapsed:.0f} ns a message; needs two idle cores")

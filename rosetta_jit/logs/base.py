@@ -134,6 +134,15 @@ class Wanted:
     end_ns: int | None = None
     pieces: range | None = None
 
+    def of(self, rows: Rows) -> Rows:
+        """Those of some messages that are asked for; the same rows, if all are."""
+        rows = rows if self.connections is None else rows.of_channels(self.connections)
+        if self.start_ns is not None and not (kept := rows.log_ns >= self.start_ns).all():
+            rows = rows.only(kept)
+        if self.end_ns is not None and not (kept := rows.log_ns < self.end_ns).all():
+            rows = rows.only(kept)
+        return rows
+
     def overlaps(self, first_ns: int, last_ns: int) -> bool:
         """Whether a stretch of time has some that are wanted."""
         return (self.start_ns is None or last_ns >= self.start_ns) and (self.end_ns is None or first_ns < self.end_ns)

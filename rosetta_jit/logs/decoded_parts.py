@@ -28,8 +28,8 @@ OnError: TypeAlias = Literal["raise", "skip", "mask"]
 CLOCKS = ("log_time", "publish_time")
 """The columns of times that a table has beside the fields of messages."""
 
-BYTES, MESSAGES = 6 << 20, 24_576
-"""The most that a part is made of; a longer message is alone."""
+BYTES, MESSAGES = 12 << 20, 49_152
+"""The most that a part is made of; a longer message is alone. Each table costs more than its rows: with half of it, a tenth more."""
 
 LARGE, LARGE_BYTES = 1 << 17, 16 << 20
 """From which size on messages are large, and the most that a part of these is made of: to make a table takes as long as to decode a

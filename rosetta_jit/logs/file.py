@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-import numpy as np
-
 from rosetta_jit.logs.base import Block, Connection, Format, Piece, Reader, Wanted
 from rosetta_jit.logs.read_ahead import ahead
 
@@ -59,7 +57,10 @@ class LogFile:
 
     @property
     def start(self) -> int | None:
-        """When the first message was logged, in nanoseconds since 1970; None of a log without messages."""
+        """When the first message was logged, in nanoseconds since 1970; None of a log without messages.
+
+        None, too, of an MCAP file with an index where a chunk has messages before 1970 and behind: then only reading would tell.
+        """
         return None if self._reader.extent is None else self._reader.extent.start_ns
 
     @property
@@ -83,16 +84,11 @@ class LogFile:
         if wanted.pieces is not None and not wanted.pieces:
             return
         for block in self._reader.blocks(wanted):
-            rows = block.rows
-            kept = np.ones(len(rows), np.bool_) if wanted.connections is None else rows.are_of(wanted.connections)
-            if wanted.start_ns is not None:
-                kept &= rows.log_ns >= wanted.start_ns
-            if wanted.end_ns is not None:
-                kept &= rows.log_ns < wanted.end_ns
-            if kept.all():
+            rows = wanted.of(block.rows)
+            if rows is block.rows:
                 yield block
-            elif kept.any():
-                yield type(block)(block.data, rows.only(kept), block.piece)
+            elif len(rows):
+                yield type(block)(block.data, rows, block.piece)
 
     def blocks_ahead(self, wanted: Wanted | None = None) -> Iterator[Block]:
         """The same; while a block is used, threads read and decompress the next ones."""

@@ -8,7 +8,7 @@ What is read may be changed by another thread meanwhile. `Lanes.consistent` read
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
 
 import numpy as np
@@ -18,7 +18,7 @@ from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder.record import Bit, Case, Cell, Presence
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.run import readable
-from rosetta_jit.runtime.transposing import transposed
+from rosetta_jit.runtime.transposing import Steady, transposed
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -54,14 +54,21 @@ class Words:
     """
 
     start: int
-    words: Sequence[Indices]
+    words: Sequence[Indices | Steady]
 
     def column(self, index: int, dtype: np.dtype[Any]) -> NDArray[Any] | None:
         """The scalar that lies so many scalars behind the row's begin, if it is among the words."""
         word, part = divmod(index, 8 // dtype.itemsize)
         if not 0 <= word - self.start < len(self.words):
             return None
-        return self.words[word - self.start].view(dtype)[part :: 8 // dtype.itemsize]
+        found = self.words[word - self.start]
+        values = found.values() if isinstance(found, Steady) else found
+        return values.view(dtype)[part :: 8 // dtype.itemsize]
+
+    def steady(self, index: int) -> Steady | None:
+        """The word of this number, if it grows from row to row by as much as was likely."""
+        found = self.words[index - self.start] if 0 <= index - self.start < len(self.words) else None
+        return found if isinstance(found, Steady) else None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,13 +112,19 @@ class Rows:
         at = np.arange(self.count)[kept] + self.at.start if isinstance(self.at, slice) else self.at[kept]
         return Rows(at, int(kept.sum()), room=self.room)
 
-    def reading(self, lanes: Lanes, lane: int, start: int, end: int) -> Rows:
-        """The same rows, of which the words between two bytes are going to be read."""
+    def reading(self, lanes: Lanes, lane: int, start: int, end: int, fixed: Iterable[tuple[Cell, int]] = ()) -> Rows:
+        """The same rows, of which the words between two bytes are going to be read.
+
+        ``fixed`` are spans among them, each with the number of elements that it is likely to have in all rows.
+        """
         first, behind = start // 8, -(-end // 8)
         if self.words is not None or not first < behind:
             return self
         rows = lanes.row_words(lane, 0, lanes.capacity(lane))[:, first:behind]
-        columns = transposed(rows[self.at], self.room) if isinstance(self.at, slice) else None
+        columns = None
+        if isinstance(self.at, slice):
+            steps = ((span.index + word - first, step) for span, length in fixed for word, step in enumerate((length, 0)))
+            columns = transposed(rows[self.at], self.room, steps)
         if columns is None:
             words = self.room((behind - first) * self.count).reshape(behind - first, self.count)
             for begin in range(0, self.count, BLOCK):
@@ -161,6 +174,22 @@ def offsets(counts: Indices, room: Room = numpys) -> Indices:
     places[0] = 0
     np.cumsum(counts, out=places[1:])
     return places
+
+
+def fixed_together(lanes: Lanes, lane: int, span: Cell, length: int, rows: Rows) -> slice | None:
+    """The elements of spans of one length that follow each other in a lane; None if they do not, or if only reading each would tell.
+
+    Raises
+    ------
+    ValueError
+        If a span leaves the lane.
+    """
+    if rows.words is None or rows.live is not None or not rows.count * length:
+        return None
+    starts, counts = rows.words.steady(span.index), rows.words.steady(span.index + 1)
+    if starts is None or counts is None or starts.step != length or (counts.first, counts.step) != (length, 0):
+        return None
+    return _within(starts.first, starts.first + length * rows.count, lanes.used(lane))
 
 
 def elements(starts: Indices, counts: Indices, used: int, room: Room = numpys) -> Rows:
@@ -245,6 +274,12 @@ def together(starts: Indices, counts: Indices, used: int) -> slice | None:
     ends = starts + counts
     is_whole = least >= 0 and bool((starts[1:] == ends[:-1]).all())
     first, end = (int(starts[0]), int(ends[-1])) if is_whole else (int(starts.min()), int(ends.max()))
-    if first < 0 or end > used or least < 0:
+    found = _within(first if least >= 0 else least, end, used)
+    return found if is_whole else None
+
+
+def _within(first: int, end: int, used: int) -> slice:
+    """Elements of a lane, of which so many rows are in use; ValueError if it has not all of them."""
+    if first < 0 or end > used:
         raise ValueError(f"an array leaves its lane of {used} rows")
-    return slice(first, end) if is_whole else None
+    return slice(first, end)

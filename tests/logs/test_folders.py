@@ -313,3 +313,24 @@ def test_damaged_folders_of_yarp(tmp_path):
     found.clear()
     assert not list(rj.open(folder, on_problem=found.append).messages(raw=True))
     assert [each.code for each in found] == ["log-message"] * 2
+
+
+def test_a_wal_elsewhere_has_rows_that_count(tmp_path):
+    """Where a file must be copied to be read, the rows are read that are in its WAL alone."""
+    import fsspec
+
+    (file,) = write_rosbag2(tmp_path / "a").glob("*.db3")
+    database = sqlite3.connect(file)
+    rows = database.execute("SELECT topic_id, timestamp, data FROM messages ORDER BY id DESC LIMIT 7").fetchall()
+    database.execute("DELETE FROM messages WHERE id > (SELECT MAX(id) - 7 FROM messages)")
+    database.commit()
+    database.execute("PRAGMA journal_mode = WAL")
+    database.executemany("INSERT INTO messages (topic_id, timestamp, data) VALUES (?, ?, ?)", reversed(rows))
+    database.commit()
+    memory = fsspec.filesystem("memory")
+    memory.pipe("/wal/alone.db3", file.read_bytes())
+    for end in ("", "-wal"):
+        memory.pipe(f"/wal/a.db3{end}", Path(f"{file}{end}").read_bytes())
+    database.close()
+    assert values(rj.open("memory://wal/a.db3").messages()) == list(expected(COUNT))
+    assert values(rj.open("memory://wal/alone.db3").messages()) == list(expected(COUNT))[:-7]

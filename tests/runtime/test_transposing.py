@@ -13,7 +13,7 @@ from mcap.writer import Writer
 import rosetta_jit as rj
 from rosetta_jit.runtime import transposing
 from rosetta_jit.runtime.rows import numpys
-from rosetta_jit.runtime.transposing import LEAST, WORTH_COMPILING, prepare, transposed
+from rosetta_jit.runtime.transposing import LEAST, WORTH_COMPILING, Steady, prepare, transposed
 
 sys.path.insert(0, str(Path(__file__).parent))
 from test_arrow import filled
@@ -111,3 +111,53 @@ def test_all_kinds_of_fields_are_the_same_without_the_code(monkeypatch, options)
     found.validate(full=True)
     monkeypatch.setattr(transposing, "_is_there", lambda: False)
     assert found.equals(batch.to_arrow(**options))
+
+
+def test_nothing_is_written_for_words_that_grow_steadily():
+    rows = np.random.default_rng(0).integers(-(2**62), 2**62, (LEAST + 5, 4))
+    rows[:, 1], rows[:, 3] = 7 + 9 * np.arange(LEAST + 5), 9
+    first, places, third, counts = transposed(rows, numpys, [(1, 9), (3, 0)])
+    assert (places, counts) == (Steady(7, 9, LEAST + 5), Steady(9, 0, LEAST + 5))
+    assert places.values().tolist() == rows[:, 1].tolist()
+    assert [first.tolist(), third.tolist()] == rows[:, [0, 2]].T.tolist()
+
+
+@pytest.mark.parametrize("row", [1, 7, 8, LEAST - 1, LEAST, LEAST + 4])
+@pytest.mark.parametrize("bit", [0, 63])
+def test_words_that_do_not_grow_as_was_likely_are_written(row, bit):
+    """In whole blocks of rows and behind the last, by the lowest bit and by the highest."""
+    rows = np.stack([9 * np.arange(LEAST + 5), np.arange(LEAST + 5), 3 * np.arange(LEAST + 5)], axis=1)
+    rows[row, 0] ^= np.int64(np.uint64(1 << bit).view(np.int64))
+    wrong, plain, steady = transposed(rows, numpys, [(0, 9), (2, 3)])
+    assert wrong.tolist() == rows[:, 0].tolist()
+    assert plain.tolist() == rows[:, 1].tolist()
+    assert steady == Steady(0, 3, LEAST + 5)
+
+
+def test_arrays_of_fixed_length_anywhere_are_the_same_without_the_code(monkeypatch):
+    """Of messages that could not be decoded there are none; those that were written to lie elsewhere."""
+    decoder, encoder = (kind.of("t/msg/X", encoding="cdr", schema=SCHEMA) for kind in (rj.Decoder, rj.Encoder))
+    holder = decoder.new()
+    messages = []
+    for number in range(LEAST + 20):
+        holder.fixed = [number, 2 * number, 3 * number]
+        messages.append(encoder(holder))
+    messages[11] = messages[LEAST + 13] = b"\0\1\0\0\0"
+    masked = decoder.many(messages, on_error="mask")
+    found = masked.to_arrow()
+    assert found["fixed"].to_pylist()[10:13] == [[10, 20, 30], [0, 0, 0], [12, 24, 36]]
+    kept = np.delete(np.arange(LEAST + 20), [11, LEAST + 13])
+    skipped = decoder.many(messages, on_error="skip").to_arrow()
+    assert skipped.equals(found.take(kept))
+    monkeypatch.setattr(transposing, "_is_there", lambda: False)
+    assert found.equals(masked.to_arrow())
+    assert skipped.equals(decoder.many(messages, on_error="skip").to_arrow())
+
+
+def test_an_array_outside_of_its_lane_is_refused():
+    batch = rj.Decoder.of("t/msg/X", encoding="cdr", schema="float64[3] fixed").many([b"\0\1\0\0" + bytes(24)] * LEAST)
+    batch.to_arrow()
+    words = batch.lanes.row_words(0, 0, LEAST)
+    words[:, 0] += 1
+    with pytest.raises(ValueError, match="an array leaves its lane"):
+        batch.to_arrow()

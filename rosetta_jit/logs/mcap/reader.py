@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
@@ -108,7 +108,7 @@ class McapReader:
             return None
 
     def _of_records(self, data: bytes, end: int) -> Summary | None:
-        chunks, behind = list[Chunk](), dict[int, int]()
+        chunks, behind, definitions = list[Chunk](), dict[int, int](), list[bytes]()
         counts: dict[int, int | None] | None = None
         times, facts = None, self._header()
         fields = Fields(data)
@@ -117,7 +117,7 @@ class McapReader:
             opcode, record = fields.bytes(1)[0], fields.u64()
             content = Fields(fields.view(record))
             if opcode in (SCHEMA, CHANNEL):
-                self._grammar.define(bytes(PREFIX.pack(opcode, record)) + content.bytes(record))
+                definitions.append(bytes(PREFIX.pack(opcode, record)) + content.bytes(record))
             elif opcode == CHUNK_INDEX:
                 chunk, index_size, compression = _chunk_index(content)
                 chunks.append(chunk)
@@ -125,8 +125,10 @@ class McapReader:
                 compressions.add(compression)
             elif opcode == STATISTICS:
                 counts, times = _statistics(content)
-        if counts is None:
+        if counts is None or not _are_all(definitions, {*counts, *(number for each in chunks for number in each.counts or ())}):
             return None
+        for each in sorted(definitions, key=lambda each: each[0]):
+            self._grammar.define(each)
         segments = segments_of(chunks, len(MAGIC), end, behind)
         if segments is None:
             raise ValueError("the places of chunks cannot be true")
@@ -153,6 +155,19 @@ class McapReader:
         chunks = sum(isinstance(each, Chunk) for each in found.segments)
         extent = None if found.times is None else Extent(*found.times)
         return Summary(found.segments, found.counts, extent, self._header() | ({"chunks": str(chunks)} if chunks else {}), end)
+
+
+def _are_all(definitions: Sequence[bytes], used: Collection[int]) -> bool:
+    """Whether definitions are those of all channels that are used, and of the schemas that they name: a summary need not repeat them."""
+    schemas, channels = {0}, dict[int, int]()
+    for each in definitions:
+        fields = Fields(each, PREFIX.size)
+        if each[0] == SCHEMA:
+            schemas.add(fields.u16())
+        else:
+            number = fields.u16()
+            channels[number] = fields.u16()
+    return channels.keys() >= set(used) and schemas.issuperset(channels.values())
 
 
 def _chunk_index(fields: Fields) -> tuple[Chunk, int, str]:

@@ -121,7 +121,7 @@ class Records:
 
     def _blocks(self, segments: Sequence[Chunk | Region], wanted: Wanted, end: int, scratch: Scratch) -> Iterator[Block]:
         chosen = range(len(segments)) if wanted.pieces is None else range(len(segments))[wanted.pieces.start : wanted.pieces.stop]
-        numbers = (number for number in chosen if segments[number].piece.has(wanted))
+        numbers = [number for number in chosen if segments[number].piece.has(wanted)]  # between chunks it is out of the caches each time
         found = (self._found(number, segments[number], scratch) for number in numbers)
 
         def content_of(each: Found) -> Content:

@@ -5,10 +5,12 @@ The file is opened for reading alone, and asked for tables, never for views: a v
 
 from __future__ import annotations
 
+import shutil
 import sqlite3
 import struct
+import tempfile
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
+from pathlib import Path
 from weakref import finalize
 
 from rosetta_jit.catalogue import logs as words
@@ -17,13 +19,17 @@ from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.limits import MAX_RECORD_BYTES
 from rosetta_jit.logs.reading.blocks import blocks_of
+from rosetta_jit.logs.reading.storage import WINDOW, Storage, open_storage
 from rosetta_jit.logs.rosbag2.pages import Pages
-
-if TYPE_CHECKING:
-    from rosetta_jit.logs.reading.storage import Storage
 
 HEADER_BYTES, MOST_OF_PAGE = 100, 1 << 16
 """Of the file's header, and the size of a page that it writes as 1: https://www.sqlite.org/fileformat.html, section 1.3."""
+
+READ_VERSION, WAL_VERSION = 19, b"\2"
+"""Where the header says how the file is read, and what it says in WAL mode: section 1.3.2 there."""
+
+PRIMARY = 0xFF
+"""The bits of an error's code that say which it is: https://www.sqlite.org/rescode.html, section 3."""
 
 ENCODINGS = {"cdr": "cdr", "ros_v1": "ros1"}
 TABLES = {"topics": ("id", "name", "type", "serialization_format"), "messages": ("id", "topic_id", "timestamp", "data")}
@@ -37,7 +43,7 @@ class SqliteReader:
         self._name, self._tell = storage.name, tell
         self.facts, self.pieces = {"storage": "sqlite3"}, (Piece(storage.size),)
         try:
-            self._database = sqlite3.connect(f"{storage.local('.db3').resolve().as_uri()}?mode=ro", uri=True, check_same_thread=False)
+            self._database = _connected(_with_wal(storage), self)
             finalize(self, self._database.close)
             self._database.text_factory = _kept
             self._database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_RECORD_BYTES)
@@ -102,6 +108,49 @@ class SqliteReader:
                 yield topic, time_ns, time_ns, _octets(data)
         except sqlite3.Error as error:
             self._tell(words.stopped(self._name, str(error)))
+
+
+def _with_wal(storage: Storage) -> Path:
+    """The file, or a copy of one that is elsewhere: with its WAL, if it has one, as the newest rows may be there alone."""
+    path = storage.local(".db3").resolve()
+    if "://" not in storage.name or path == storage.path.resolve() or storage.read(READ_VERSION, 1) != WAL_VERSION:
+        return path
+    try:
+        wal = open_storage(f"{storage.name}-wal")
+    except LogError:  # there is none
+        return path
+    with path.with_name(f"{path.name}-wal").open("wb") as file:
+        for at in range(0, wal.size, WINDOW):
+            file.write(wal.read(at, WINDOW))
+    wal.close()
+    return path
+
+
+def _connected(path: Path, reader: SqliteReader) -> sqlite3.Connection:
+    """The file, for reading. In its WAL mode SQLite makes a file beside it even then, which a folder that is not ours to write refuses.
+
+    There the file is read as one that nobody changes, if no WAL is beside it; else a copy of both is, as long as the reader is there.
+    """
+    database = _opened(path, "mode=ro")
+    try:
+        database.execute("SELECT COUNT(*) FROM sqlite_master")
+    except sqlite3.OperationalError as error:
+        if error.sqlite_errorcode & PRIMARY not in (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN):
+            raise
+        database.close()
+        wal = path.with_name(f"{path.name}-wal")
+        if not wal.exists() or not wal.stat().st_size:
+            return _opened(path, "mode=ro&immutable=1")
+        folder = Path(tempfile.mkdtemp(prefix="rosetta-jit-"))
+        finalize(reader, shutil.rmtree, folder, ignore_errors=True)
+        for each in (path, wal):
+            shutil.copyfile(each, folder / each.name)
+        return _opened(folder / path.name, "mode=ro")
+    return database
+
+
+def _opened(path: Path, mode: str) -> sqlite3.Connection:
+    return sqlite3.connect(f"{path.as_uri()}?{mode}", uri=True, check_same_thread=False)
 
 
 def _sizes(header: bytes) -> tuple[int, int, int]:

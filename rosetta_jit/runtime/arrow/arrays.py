@@ -10,7 +10,7 @@ Offsets have 64 bits, except in maps, for which Arrow has none of that width.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING, Any, Literal, assert_never, cast, get_args
 
@@ -22,9 +22,9 @@ from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 from rosetta_jit.runtime.arrow.texts import NoTextError, text_array
 from rosetta_jit.runtime.arrow.times import Unit, time_array
-from rosetta_jit.runtime.holder.record import Blob, Child, Entry, Items, Node, Numbers, Pairs, Record, Scalar, ScalarType, Text
+from rosetta_jit.runtime.holder.record import Blob, Cell, Child, Entry, Items, Node, Numbers, Pairs, Record, Scalar, ScalarType, Text
 from rosetta_jit.runtime.lanes import Lanes
-from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, lent, offsets, picked, read, room_for, spans
+from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, fixed_together, lent, offsets, picked, read, room_for, spans
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -227,7 +227,11 @@ def _blobs(node: Blob, place: Place, validity: pa.Buffer | None) -> Arrow:
 
 def _elements(place: Place, lane: int, values: NDArray[Any], starts: Indices, counts: Indices, *, copies: bool) -> NDArray[Any]:
     """The values of spans, one after the other: the arrays' own if copies are wanted."""
-    found = picked(values, starts, counts, room)
+    return _own(place, lane, values, picked(values, starts, counts, room), copies=copies)
+
+
+def _own(place: Place, lane: int, values: NDArray[Any], found: NDArray[Any], *, copies: bool) -> NDArray[Any]:
+    """What was found among the values of a lane: the arrays' own if copies are wanted."""
     if not copies or not np.may_share_memory(found, values):
         return found
     if place.form.handed is not None and place.form.handed.takes(place.lanes, lane, found, room):
@@ -252,6 +256,10 @@ def _padded(data: NDArray[Any], counts: Indices, length: int) -> NDArray[Any]:
 
 
 def _numbers(node: Numbers, place: Place, validity: pa.Buffer | None) -> Arrow:
+    if node.length is not None and (whole := fixed_together(place.lanes, node.lane, node.span, node.length, place.rows)) is not None:
+        every = _values(place.lanes, node.lane)
+        values = _own(place, node.lane, every, every[whole], copies=place.form.copies)
+        return _fixed(node.length, _scalars(node.type, values, None), place.rows.count, validity)
     starts, counts = spans(place.lanes, node.span, place.rows)
     values = _elements(place, node.lane, _values(place.lanes, node.lane), starts, counts, copies=place.form.copies)
     if node.length is not None:
@@ -309,10 +317,27 @@ def _struct(record: Record, place: Place, validity: pa.Buffer | None) -> Arrow:
     if lane.links is not None and record.lane:
         raise _recursive(record, place)
     nullable = [entry.presence is not None for entry in record.entries.values()]
-    place = place.at(place.rows.reading(place.lanes, record.lane, record.start, record.end), place.path)
+    place = place.at(reading_all(record, place.lanes, place.rows), place.path)
     arrays = [entry_array(entry, place, nullable=can_be) for entry, can_be in zip(record.entries.values(), nullable, strict=True)]
     fields = [pa.field(name, each.type, can_be) for name, each, can_be in zip(record.entries, arrays, nullable, strict=True)]
     return pa.Array.from_buffers(pa.struct(fields), place.rows.count, [validity], children=arrays)
+
+
+def reading_all(record: Record, lanes: Lanes, rows: Rows) -> Rows:
+    """Rows of which all of a record is going to be read."""
+    return rows.reading(lanes, record.lane, record.start, record.end, _arrays_of_fixed_length(record))
+
+
+def _arrays_of_fixed_length(record: Record) -> Iterator[tuple[Cell, int]]:
+    """The spans of arrays in a record that each row has, and the length of each."""
+    for each in record.entries.values():
+        match each.node:
+            case Numbers(span, _, _, int(length)) if each.presence is None:
+                yield span, length
+            case Record() if each.presence is None:
+                yield from _arrays_of_fixed_length(each.node)
+            case _:
+                pass
 
 
 def _recursive(record: Record, place: Place) -> TypeError:

@@ -10,7 +10,7 @@ import pyarrow as pa
 from pyarrow.types import is_struct
 
 from rosetta_jit.errors import DecodeError
-from rosetta_jit.runtime.arrow.arrays import Form, Place, entry_array, room
+from rosetta_jit.runtime.arrow.arrays import Form, Place, entry_array, reading_all, room
 from rosetta_jit.runtime.holder.paths import entries_to
 from rosetta_jit.runtime.holder.record import Record
 from rosetta_jit.runtime.lanes import Lanes
@@ -26,7 +26,7 @@ def record_batch(root: Record, lanes: Lanes, count: int, names: Sequence[str], f
         entries_to(root, each)
     rows = Rows.first(count, room)
     if len(names) == len(root.entries):
-        rows = rows.reading(lanes, root.lane, root.start, root.end)
+        rows = reading_all(root, lanes, rows)
     found = [_column(root, Place(lanes, form, rows), name) for name in names]
     fields = [pa.field(name, array.type, nullable) for name, (array, nullable) in zip(names, found, strict=True)]
     return pa.RecordBatch.from_arrays([array for array, _ in found], schema=pa.schema(fields))
