@@ -8,6 +8,8 @@ turn. The other checkout needs its native peers (`make native`). TEST is a test 
 from __future__ import annotations
 
 import argparse
+import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -15,11 +17,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.figures import Spread, ratio
+from bench.figures import Spread, from_json, ratio
 from bench.processes import SURROUNDINGS
 from bench.report import words
 from bench.report.markdown import table
-from bench.run import RunError, read
+from bench.run import RunError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
     from bench.figures import Report, Row
 
 HERE = Path(__file__).resolve().parent.parent
+BESIDE = HERE / "bench" / "beside"
+"""Where the plugin lies that keeps what the benchmarks of any checkout find."""
 
 TURNS = 7
 """Processes of each checkout."""
@@ -109,16 +113,18 @@ def by_turns(checkout: Path, test: str, *, turns: int = TURNS) -> tuple[Again, .
 
 def measured(checkout: Path, test: str) -> Report:
     """What a test finds in a new process of a checkout."""
+    if not (checkout / "bench" / test.partition("::")[0]).exists():
+        raise RunError(f"{checkout}: has no bench/{test}")
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder, "run.json")
-        options = ("--quick", "--bench-report", "--benchmark-quiet", f"--benchmark-json={path}")
-        surroundings = {**SURROUNDINGS, "PYTHONPATH": str(checkout)}
-        command = [sys.executable, "-m", "pytest", f"bench/{test}", *options]
+        path = Path(folder, "report.json")
+        surroundings = {**SURROUNDINGS, "PYTHONPATH": os.pathsep.join((str(checkout), str(BESIDE))), "KEPT_REPORT": str(path)}
+        command = [sys.executable, "-m", "pytest", "-p", "kept_report", f"bench/{test}", "--quick", "--bench-report"]
         ran = subprocess.run(command, cwd=checkout, env=surroundings, check=False, capture_output=True, text=True)
         if not path.exists() or ran.returncode:
-            last = (ran.stdout + ran.stderr).strip().splitlines()[-1:]
-            raise RunError(f"{checkout}: bench/{test} does not run: {' '.join(last)}")
-        return read(path).report
+            said = (ran.stdout + ran.stderr).strip().splitlines()
+            why = ([line for line in said if "error" in line.lower()] or said)[-1:]
+            raise RunError(f"{checkout}: bench/{test} does not run: {' '.join(why)}")
+        return from_json(json.loads(path.read_text("utf-8")))
 
 
 def show(found: Iterable[Again]) -> str:

@@ -10,7 +10,7 @@ import pytest
 
 from bench import again, compare
 from bench.again import HERE, Again, Pairs, by_turns, measured, paired
-from bench.figures import Comparison, Figure, Report
+from bench.figures import Comparison, Figure, Report, to_json
 from bench.run import RunError
 from tests.bench import runs
 
@@ -87,29 +87,26 @@ def test_checkouts_take_turns(monkeypatch, tmp_path):
 
 
 def test_a_checkout_measures_with_its_own_benchmarks(tmp_path):
-    """In its folder, with its modules, in a new process."""
-    content = json.dumps(runs.run(replace(ROW, what="of the other")))
+    """In its folder, with its modules, in a new process; whether a test times a function by pytest-benchmark or not."""
+    content = to_json(Report((replace(ROW, what="of the other"),), (), ()))
     (tmp_path / "bench").mkdir()
     (tmp_path / "bench" / "conftest.py").write_text(
+        "import rosetta_jit\n"
+        f"assert rosetta_jit.__file__.startswith({str(tmp_path)!r})\n"
         "def pytest_addoption(parser):\n"
-        "    for flag in ('--quick', '--bench-report', '--benchmark-quiet'):\n"
+        "    for flag in ('--quick', '--bench-report'):\n"
         "        parser.addoption(flag, action='store_true')\n"
-        "    parser.addoption('--benchmark-json')\n"
-        "def pytest_sessionfinish(session):\n"
-        "    import rosetta_jit\n"
-        f"    assert rosetta_jit.__file__.startswith({str(tmp_path)!r})\n"
-        f"    open(session.config.getoption('--benchmark-json'), 'w').write({content!r})\n"
+        "def pytest_benchmark_update_json(output_json):\n"
+        f"    output_json['rosetta_jit'] = {content!r}\n"
     )
     (tmp_path / "bench" / "test_peers.py").write_text("def test_decode():\n    pass\n")
     (tmp_path / "rosetta_jit").mkdir()
     (tmp_path / "rosetta_jit" / "__init__.py").touch()
-    monkey = pytest.MonkeyPatch()
-    monkey.setitem(again.SURROUNDINGS, "PYTEST_ADDOPTS", "-p no:benchmark")
-    with monkey.context():
-        assert [row.what for row in measured(tmp_path, "test_peers.py").rows] == ["of the other"]
-        with pytest.raises(RunError, match=r"bench/test_none.py does not run: "):
-            measured(tmp_path, "test_none.py")
-    monkey.undo()
+    assert [row.what for row in measured(tmp_path, "test_peers.py").rows] == ["of the other"]
+    with pytest.raises(RunError, match=r": has no bench/test_none.py$"):
+        measured(tmp_path, "test_none.py")
+    with pytest.raises(RunError, match=r"bench/test_peers.py::test_encode does not run: ERROR: not found: "):
+        measured(tmp_path, "test_peers.py::test_encode")
 
 
 @pytest.fixture
