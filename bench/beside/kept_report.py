@@ -8,9 +8,10 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
+from typing import Any
 
 
-def pytest_sessionfinish(session):
-    found = {}
+def pytest_sessionfinish(session: Any) -> None:
+    found: dict[str, Any] = {}
     session.config.hook.pytest_benchmark_update_json(config=session.config, benchmarks=[], output_json=found)
     Path(os.environ["KEPT_REPORT"]).write_text(json.dumps(found["rosetta_jit"]), "utf-8")
