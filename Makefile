@@ -67,9 +67,9 @@ bench-planted: $(VENV)/.bench native ## whether the benchmarks watch: with a loo
 	mkdir -p $(dir $(RUN))
 	$(BIN)/python -m pytest bench --planted --quick --bench-report --benchmark-quiet --benchmark-json=$(PLANTED) $(ARGS) && $(BIN)/python -m bench.planting $(PLANTED)
 
-bench-compare: $(VENV)/.bench ## what changed since the run in OLD, a JSON file or several; fails where a ratio with a target is 15 % worse
-	@test -n "$(OLD)" || { echo "name a run: make bench-compare OLD=build/bench/runs/..." >&2; exit 2; }
-	$(BIN)/python -m bench.compare $(OLD) $(RUN)
+bench-compare: $(VENV)/.bench ## what changed since the run in OLD, a JSON file or several; fails where a ratio with a target is 15 % worse. OLD=../CHECKOUT or AGAIN=../CHECKOUT: what seems slower is measured again by turns
+	@test -n "$(OLD)" || { echo "name a run: make bench-compare OLD=build/bench/runs/..., or a checkout that has one" >&2; exit 2; }
+	$(BIN)/python -m bench.compare $(OLD) $(RUN) $(if $(AGAIN),--again $(AGAIN))
 
 clean: ## remove all that these commands made
 	rm -rf $(VENV) build dist $(OUTPUT) .ruff_cache .hypothesis .benchmarks

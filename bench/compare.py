@@ -3,7 +3,8 @@
 It ends with 1 where a ratio that has a target got more than 15 % worse, and with 2 where a file is no run. Absolute times decide nothing:
 they tell of the machine. A change is beyond the noise where the quartiles of both runs lie apart. Quartiles tell of the noise within
 a process; that between processes (where the memory of a holder came to lie) shows where several old runs of one version are given, whose
-spread is that of all.
+spread is that of all. Where the old run is a checkout, its last run is meant, and what seems slower in it is measured again by turns
+(`bench.again`): only what is slower by turns counts then, by however little.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from bench.again import TURNS, Again, by_turns
+from bench.again import show as show_turns
 from bench.figures import Row, Spread
 from bench.report import words
 from bench.report.markdown import table
@@ -22,6 +25,9 @@ from bench.run import Run, RunError, read
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+LAST_RUN = Path("build", "bench", "run.json")
+"""Where a checkout has the run that was made last."""
 
 REGRESSION = 1.15
 """A ratio with a target that has grown by more than this factor is a regression."""
@@ -54,6 +60,11 @@ class Change:
     def is_regression(self) -> bool:
         """Of a target, by more than is allowed, to where the old runs rarely were."""
         return self.new.at_most is not None and self.factor > REGRESSION and self.new.measured.median > self.old.measured.high
+
+    @property
+    def seems_slower(self) -> bool:
+        """Whether a row with a target is worse beyond the noise of its processes, by however little."""
+        return self.is_regression or (self.new.at_most is not None and self.factor > 1 and not self.is_noise)
 
     @property
     def is_comparable(self) -> bool:
@@ -114,19 +125,43 @@ def remarks(old: Run, before: Sequence[Row], new: Run, found: Sequence[Change]) 
             yield f"new: {row.what}: {words.ratio(row.measured)} {row.unit}"
 
 
+def suspects(found: Iterable[Change]) -> dict[str, list[str]]:
+    """The rows that seem slower, by the tests that measure them; those of runs whose rows do not name their tests, by their modules."""
+    by_test: dict[str, list[str]] = {}
+    for row in (each.new for each in found if each.seems_slower):
+        by_test.setdefault(row.test or f"test_{row.family}.py", []).append(row.what)
+    return by_test
+
+
+def measured_again(checkout: Path, found: Sequence[Change], turns: int) -> set[str]:
+    """Show by turns what seems slower; the rows that are. What cannot be measured again is slower where it is a regression."""
+    slower = {each.new.what for each in found if each.is_regression}
+    for test, rows in suspects(found).items():
+        try:
+            again: list[Again] = [each for each in by_turns(checkout, test, turns=turns) if each.row.what in rows]
+        except RunError as error:
+            print(f"\nnot measured again: {', '.join(rows)}: {error}")
+            continue
+        print(f"\n{show_turns(again)}", end="", flush=True)
+        slower = slower.difference(each.row.what for each in again) | {each.row.what for each in again if each.is_slower}
+    return slower
+
+
+def compared(olds: Sequence[Run], new: Run) -> list[Change]:
+    """Show what changed beyond the noise; the changes of all rows that are ratios to the same."""
+    before = together([run.report.rows for run in olds])
+    found = changes(before, new.report.rows)
+    comparable = [each for each in found if each.is_comparable]
+    print(show(comparable), end="")
+    for remark in remarks(olds[-1], before, new, found):
+        print(remark)
+    return comparable
+
+
 def main(given: Sequence[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(
-        prog="bench.compare",
-        description="What changed between runs, beyond the noise. Ends with 1 where a ratio that has a target got more than 15 % worse.",
-    )
-    parser.add_argument("old", type=Path, nargs="+", help="a run's JSON; several of one version tell how much runs vary")
-    parser.add_argument("new", type=Path, help="the JSON of the run that is judged")
-    parser.add_argument(
-        "--same-machine", action="store_true", help="leave out old runs of other machines, and end with 0 where none is left"
-    )
-    asked = parser.parse_args(given)
+    asked = _parser().parse_args(given)
     try:
-        olds, new = [read(path) for path in asked.old], read(asked.new)
+        olds, new = [read(path / LAST_RUN if path.is_dir() else path) for path in asked.old], read(asked.new)
     except RunError as error:
         print(f"bench.compare: {error}", file=sys.stderr)
         return 2
@@ -137,13 +172,32 @@ def main(given: Sequence[str] | None = None) -> int:
             print(f"not compared with runs of {', '.join(sorted(others))}")
         if not olds:
             return 0
-    before = together([run.report.rows for run in olds])
-    found = changes(before, new.report.rows)
-    compared = [each for each in found if each.is_comparable]
-    print(show(compared), end="")
-    for remark in remarks(olds[-1], before, new, found):
-        print(remark)
-    return int(any(each.is_regression for each in compared))
+    found = compared(olds, new)
+    checkout = next((path for path in (asked.again, *asked.old) if path is not None and path.is_dir()), None)
+    if checkout is None:
+        return int(any(each.is_regression for each in found))
+    return int(bool(measured_again(checkout.resolve(), found, asked.turns)))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="bench.compare",
+        description="What changed between runs, beyond the noise. Ends with 1 where a ratio that has a target got more than 15 % worse, "
+        "or by turns is worse at all.",
+    )
+    parser.add_argument(
+        "old",
+        type=Path,
+        nargs="+",
+        help="a run's JSON; several of one version tell how much runs vary; a checkout's folder means its last run, and --again",
+    )
+    parser.add_argument("new", type=Path, help="the JSON of the run that is judged")
+    parser.add_argument("--again", type=Path, metavar="CHECKOUT", help="measure what seems slower again, by turns with this checkout")
+    parser.add_argument("--turns", type=int, default=TURNS, help=f"processes of each checkout ({TURNS})")
+    parser.add_argument(
+        "--same-machine", action="store_true", help="leave out old runs of other machines, and end with 0 where none is left"
+    )
+    return parser
 
 
 if __name__ == "__main__":

@@ -109,8 +109,8 @@ def record(request, found):
     """
 
     def record_row(what, measured, at_most, unit, detail="", against="", *, messages=None):
-        family = request.node.path.stem.removeprefix("test_")
-        row = Row(what, measured, at_most, unit, detail, against, request.node.stash.get(MESSAGES, messages), family)
+        family, test = request.node.path.stem.removeprefix("test_"), request.node.nodeid.removeprefix("bench/")
+        row = Row(what, measured, at_most, unit, detail, against, request.node.stash.get(MESSAGES, messages), family, test)
         found("rows", row)
         if not request.config.getoption("--bench-report"):
             assert row.met, f"{what}: {measured.median:.3g} {unit}, at most {at_most:.3g} wanted"

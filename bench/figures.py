@@ -62,7 +62,7 @@ class Row:
 
     ``at_most`` None: no target, the figure is only reported. ``against``: which of several the ratio was taken to, where that depends on
     what is installed. ``messages``: how many different ones came in turn; 1 of one that was repeated, None where there are none.
-    ``family``: the module of benchmarks that it comes from.
+    ``family``: the module of benchmarks that it comes from. ``test``: the test in it, as pytest names it within `bench`.
     """
 
     what: str
@@ -73,6 +73,7 @@ class Row:
     against: str = ""
     messages: int | None = None
     family: str = ""
+    test: str = ""
 
     @property
     def met(self) -> bool:
@@ -158,6 +159,7 @@ def from_json(data: Mapping[str, Any]) -> Report:
                 against=each.get("against", ""),
                 messages=each.get("messages"),
                 family=each.get("family", ""),
+                test=each.get("test", ""),
             )
             for each in data["rows"]
         ),

@@ -252,6 +252,7 @@ def test_what_a_line_allows_is_there():
     assert set(MAY_IMPORT).union(*MAY_IMPORT.values()) <= set(modules())
 
 
+@cache
 def room(module):
     """The line of the table for a module: the longest that it is within."""
     return max((each for each in MAY_IMPORT if within(module, {each})), key=len, default="")

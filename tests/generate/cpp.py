@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 STRICT = ("-std=c++17", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror")
-SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+SANITIZED = ("-O1", "-g1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 MAIN = Path(__file__).with_name("driver.cpp")
 
 needs_cpp = pytest.mark.skipif(shutil.which("g++") is None, reason="generated C++ is compiled by g++, which is not installed")

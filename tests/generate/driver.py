@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 STRICT = ("-std=c11", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror")
-SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+SANITIZED = ("-O1", "-g1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 MAIN = Path(__file__).with_name("driver.c")
 
 needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="generated C is compiled by gcc, which is not installed")

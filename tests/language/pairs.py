@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import pytest
@@ -56,6 +58,16 @@ def pair(wire: str, holder: str, rules: str, backend: str = "interpreter", *, he
         rj.Decoder.of("wire", **own),
         rj.Encoder.of("wire", **own),
     )
+
+
+class Later:
+    """What a module has for several of its tests, made when the first of them asks: modules are imported by every process of a test run."""
+
+    def __init__(self, make: Callable[..., Any], *arguments: object, **options: object) -> None:
+        self._made = cache(lambda: make(*arguments, **options))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._made(), name)
 
 
 def codes(wire: str, holder: str, rules: str) -> list[str]:

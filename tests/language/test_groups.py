@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import rosetta_jit as rj
 from rosetta_jit.language.groups import group_functions
 from rosetta_jit.language.resolve.definitions import definitions_of
-from tests.language.pairs import BACKENDS, codes, files, pair
+from tests.language.pairs import BACKENDS, Later, codes, files, pair
 
 XYZW = '(:bottle ("x" :double) ("y" :double) ("z" :double) ("w" :double))'
 XYZ = '(:bottle ("x" :double) ("y" :double) ("z" :double))'
@@ -81,7 +81,7 @@ def test_angles_and_quaternions(backend):
         assert np.allclose(list(both.unpack(q=q).values()), [roll, pitch, yaw], atol=1e-9)
 
 
-ROTATIONS = pair(f'("q" {XYZW})', ANGLES, "rules:\n  .roll, .pitch, .yaw <-> euler(.q)\n")
+ROTATIONS = Later(pair, f'("q" {XYZW})', ANGLES, "rules:\n  .roll, .pitch, .yaw <-> euler(.q)\n")
 
 
 @settings(deadline=None)
@@ -115,7 +115,8 @@ def test_four_zeros_turn_nothing():
     assert list(ROTATIONS.unpack(q=dict.fromkeys("xyzw", 0.0)).values()) == [0.0, 0.0, 0.0]
 
 
-MATRICES = pair(
+MATRICES = Later(
+    pair,
     f'("m" {NINE})',
     "required double x = 1; required double y = 2; required double z = 3; required double w = 4;",
     "rules:\n  .x, .y, .z, .w <-> quaternion_of_matrix(.m)\n",
@@ -132,7 +133,8 @@ def test_matrices_and_quaternions(parts):
     assert np.allclose(found, q, atol=1e-14) or np.allclose(found, [-each for each in q], atol=1e-14)
 
 
-TURNS = one_way(
+TURNS = Later(
+    one_way,
     f'("a" {XYZW}) ("b" {XYZW}) ("v" {XYZ})',
     f"required Q both = 1; required Q back = 2; required P v = 3; }} {TURN} {POINT} message Z {{",
     """unpack-rules:
@@ -209,7 +211,8 @@ def test_each_point_of_an_array():
 # --- places on the Earth ---------------------------------------------------------------------------------------------------
 
 FIX = '("lat" :double) ("lon" :double) ("alt" :double)'
-LOCAL = pair(
+LOCAL = Later(
+    pair,
     FIX,
     "required double east = 1; required double north = 2; required double up = 3;",
     "rules:\n  .east, .north, .up <-> enu([.lat, .lon, .alt], [52.0, 8.5, 100.0])\n",
@@ -240,7 +243,8 @@ def test_places_come_back(lat, lon, alt):
     assert abs(back["alt"] - alt) < 1e-6
 
 
-FROM = one_way(
+FROM = Later(
+    one_way,
     f'{FIX} ("origin" :double)',
     "required double east = 1; required double north = 2; required double up = 3;",
     "unpack-rules:\n  .east, .north, .up = enu([.lat, .lon, .alt], [.origin, 8.5, 100.0])\n",
@@ -260,7 +264,8 @@ def test_the_poles_are_places(lat):
 
 
 UTM = {
-    zone: pair(
+    zone: Later(
+        pair,
         '("lat" :double) ("lon" :double)',
         "required double x = 1; required double y = 2;",
         f"rules:\n  .x, .y <-> utm([.lat, .lon], {zone})\n",
@@ -303,7 +308,8 @@ def test_poles_are_in_all_zones_and_longitudes_turn_round():
     assert UTM[-60].pack(x=1.1e6, y=1e7)["lon"] < -170
 
 
-ZONED = pair(
+ZONED = Later(
+    pair,
     '("lat" :double (:unit :radian)) ("lon" :double (:unit :degree)) ("zone" :int)',
     "required double east = 1; required double north = 2;",
     "unpack-rules:\n  .east, .north = utm([.lat, .lon], .zone)\n"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -18,6 +20,7 @@ SCHEMAS = {
 }
 
 
+@cache
 def programs(separator, backend):
     text = f"""import "lab/msg/Robot.msg"
 import "robot.proto"
@@ -88,7 +91,7 @@ def test_what_could_not_be_split_again(backend):
 @settings(max_examples=60, deadline=None)
 @given(st.lists(st.text("ab,é", max_size=4), max_size=5), st.text("ab,é", max_size=12), st.sampled_from([",", "ab", "aa", "aba"]))
 def test_laws(names, line, separator):
-    decode, encode, make = PROGRAMS[separator]
+    decode, encode, make = programs(separator, "python")
     try:
         found = decode(make(names, line))
     except rj.DecodeError:
@@ -98,9 +101,6 @@ def test_laws(names, line, separator):
     assert found.to_dict() == {"all": separator.join(names), "parts": split(line, separator)}
     assert encode(found) == make(names, line)
     assert decode(encode(found)).to_dict() == found.to_dict()
-
-
-PROGRAMS = {each: programs(each, "python") for each in (",", "ab", "aa", "aba")}
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
