@@ -170,19 +170,19 @@ def case(role: str, some: list[str]) -> Case:
 def through_c(made: Case, folder: Path) -> list[str]:
     name = driver.write(folder, generated(made.request, "c", BOTH, "unit"))
     (folder / "standard.h").write_text("".join(f"#include <{each}.h>\n" for each in HEADERS.split()))
-    for compiler in ("gcc", "clang"):
-        if shutil.which(compiler) is not None:
-            driver.compiled(compiler, folder, name, "-O0", "-std=gnu11", "-include", "standard.h")
-    return driver.answers(driver.driver(folder, name, options=("-O0", "-std=gnu11")), made.messages)
+    options = ("-O0", "-std=gnu11", "-include", "standard.h")
+    if shutil.which("clang") is not None:
+        driver.compiled("clang", folder, name, *options)
+    return driver.answers(driver.driver(folder, name, options=options), made.messages)
 
 
 def through_cpp(made: Case, folder: Path) -> list[str]:
     name = cpp.write(folder, generated(made.request, "cpp", BOTH, "unit"))
     (folder / "standard.h").write_text("".join(f"#include <c{each}>\n" for each in HEADERS.split() if each != "complex"))
-    for compiler in ("g++", "clang++"):
-        if shutil.which(compiler) is not None:
-            cpp.compiled(compiler, folder, name, "-O0", "-std=gnu++20", "-include", "standard.h")
-    return driver.answers(cpp.program(folder, name, options=PLAIN), made.messages)
+    options = ("-O0", "-std=gnu++20", "-include", "standard.h")
+    if shutil.which("clang++") is not None:
+        cpp.compiled("clang++", folder, name, *options)
+    return driver.answers(cpp.program(folder, name, options=options), made.messages)
 
 
 def through_python(made: Case, folder: Path) -> list[str]:
