@@ -228,14 +228,14 @@ def compare(language: str, through: Callable[[Case, Path], list[str]], role: str
 
 FEW = {
     "c": ["numbers"],
-    "cpp": ["numbers"],
+    "cpp": ["numbers", "types"],
     "python": ["numbers", "types that contain themselves", "cases"],
     "lisp": ["arrays"],
     "protoc": ["numbers", "oneofs"],
 }
 CHOSEN = {
     "c": "errno EOF NULL unix SIG_ATOMIC_MAX WCHAR_MIN LDBL_MAX DBL_TRUE_MIN I complex EAGAIN INT_MAX",
-    "cpp": "errno EOF NULL unix SIG_ATOMIC_MAX WCHAR_MIN LDBL_MAX DBL_TRUE_MIN class final EAGAIN INT_MAX",
+    "cpp": "errno EOF NULL unix SIG_ATOMIC_MAX WCHAR_MIN LDBL_MAX DBL_TRUE_MIN class final EAGAIN INT_MAX unknown_fields",
     "python": "class match int index None len __debug__ type",
     "lisp": "array list t nil pi string type vector function class unknown_fields unit",
     "protoc": "class min max near int sin default",
