@@ -176,9 +176,9 @@ def _call(unit: Unit, role: Role, printed: Mapping[Role, Printed]) -> str:
             return (ENCODE if role == "encode" else SIZE).format(**words, status_check=STATUS_CHECK.format(**words), unused=unused)
 
 
-def run(attempt: Attempt, failure: str) -> str:
-    """The call of a printed function."""
-    names = {"failure": f"&{failure}", "given_object": "target"}
+def run(attempt: Attempt, failure: str, holder: str = "holder") -> str:
+    """The call of a printed function, with the names that variables have there."""
+    names = {"failure": f"&{failure}", "given_object": "target", "holder": holder}
     arguments = (names.get(each, each) for each in attempt.parameters)
     return f"{attempt.name}({', '.join(arguments)})"
 
