@@ -114,15 +114,21 @@ def no_rules(span: Span | None, direction: str) -> Diagnostic:
 
 
 def unknown_type(name: str, known: Sequence[str]) -> Diagnostic:
-    """A type that no file declares; others of the name are in other packages."""
-    alike = [each for each in dict.fromkeys(known) if re.split(r"[./:]", each)[-1].casefold() == name.casefold()][:MAX_NAMES]
-    near = [each for each in (closest(name, known),) if each is not None]
-    meant = alike if len(alike) > 1 else near or alike
+    """A type that no file declares; others of the name are in other packages. A file may lie where the name says, and declare another."""
+    parts = _parts(name)
+    others = [each for each in dict.fromkeys(known) if _parts(each) != parts]
+    alike = [each for each in others if _parts(each.casefold())[-len(parts) :] == _parts(name.casefold())][:MAX_NAMES]
+    meant = alike or [each for each in (closest(name, others),) if each is not None]
     if name.endswith(SUFFIXES):
         help_ = f'a file is imported, and a type in it is named: imports=["{shorten(name)}"]'
     else:
         help_ = f"did you mean {' or '.join(f'`{each}`' for each in meant)}?" if meant else "name the files that declare it: imports=[…]"
     return error("unknown-type", f"no file declares a message `{name}`", help_=help_)
+
+
+def _parts(name: str) -> list[str]:
+    """The parts of a qualified name."""
+    return [each for each in re.split(r"[./:]", name) if each]
 
 
 def unknown_suffix(name: str, known: Sequence[str]) -> Diagnostic:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import PurePath
 
 from rosetta_jit.catalogue import generate as words
@@ -70,9 +70,14 @@ NO_WISHES = Wishes()
 
 
 def unit_of(
-    request: Request, roles: tuple[Role, ...], name: str, wishes: Wishes = NO_WISHES, machine: type[AheadOfTime] = AheadOfTime
+    request: Request,
+    roles: tuple[Role, ...],
+    name: str,
+    wishes: Wishes = NO_WISHES,
+    machine: type[AheadOfTime] = AheadOfTime,
+    shown: Callable[[Role], str] = str,
 ) -> Unit:
-    """The unit of a request's mapping or type, for some directions whatever its own is.
+    """The unit of a request's mapping or type, for some directions whatever its own is; ``shown`` says what these are to a person.
 
     Raises
     ------
@@ -82,20 +87,14 @@ def unit_of(
     if not NAME.fullmatch(name) or name in HEADERS:
         raise SchemaError((words.unusable_name(name),))
     builds: dict[Role, AheadOfTime] = {role: machine(_for(request, role)) for role in roles}
-    kernels: dict[Role, Kernel] = {}
-    for role, build in builds.items():
-        if build.wires and role in ("decode", "borrow"):
-            raise MappingError((words.not_of_wires(build.checked.mapping.wire_span),))
-        kernels[role] = build.kernels[0]
-        if role == "encode":
-            kernels["size"] = build.kernels[1]
+    kernels = _kernels(builds)
     _check(kernels, freestanding=wishes.freestanding)
     first = next(iter(builds.values()))
     bounds, functions = _bounds(first, kernels), _functions(first, kernels)
     state = tuple((name, word) for name, _, word in first.header["state"]["variables"])
     return Unit(
         name,
-        tuple(_made_from(builds)),
+        tuple(_made_from(builds, shown)),
         first.layout,
         bounds,
         kernels,
@@ -112,6 +111,17 @@ def unit_of(
         {role: share.cleared | share.alone | share.joined for role, build in builds.items() if (share := build.types.share) is not None},
         first.holder_framework.name,
     )
+
+
+def _kernels(builds: Mapping[Role, AheadOfTime]) -> dict[Role, Kernel]:
+    kernels: dict[Role, Kernel] = {}
+    for role, build in builds.items():
+        if build.wires and role in ("decode", "borrow"):
+            raise MappingError((words.not_of_wires(build.checked.mapping.wire_span),))
+        kernels[role] = build.kernels[0]
+        if role == "encode":
+            kernels["size"] = build.kernels[1]
+    return kernels
 
 
 def _origins(builds: Mapping[Role, AheadOfTime]) -> dict[Role, tuple[Origin, ...]]:
@@ -173,15 +183,16 @@ def _of_the_library(kernel: Kernel) -> Iterator[str]:
                 pass
 
 
-def _made_from(builds: dict[Role, AheadOfTime]) -> Iterator[str]:
+def _made_from(builds: dict[Role, AheadOfTime], shown: Callable[[Role], str]) -> Iterator[str]:
     """What a person asks who finds the file."""
     for role, build in builds.items():
         types, encoding = build.types, build.request.encoding or next(iter(build.wire_framework.encodings))
         if types.rules is None:
-            yield f"{role}: {types.wire.name}, {encoding}"
+            yield f"{shown(role)}: {types.wire.name}, {encoding}"
             continue
         arrow = "<-" if role == "encode" else "->"
-        yield f"{role}: {types.wire.name}, {encoding} {arrow} {types.holder.name}, by {PurePath(build.checked.mapping.source.name).name}"
+        by = PurePath(build.checked.mapping.source.name).name
+        yield f"{shown(role)}: {types.wire.name}, {encoding} {arrow} {types.holder.name}, by {by}"
         yield from _rules(build)
 
 
@@ -234,4 +245,5 @@ def generated(request: Request, language: str, roles: tuple[Role, ...], name: st
     with within_stack():
         machine = LowByteFirst if known[language].low_byte_first else AheadOfTime
         wanted = _of_wires(request, roles) if known[language].wires else roles
-        return known[language].files(unit_of(request, known[language].roles(wanted), name, wishes, machine))
+        unit = unit_of(request, known[language].roles(wanted), name, wishes, machine, known[language].shown)
+        return known[language].files(unit)

@@ -60,6 +60,10 @@ class Language:
         """The kernels that the printer needs for what is wanted."""
         return tuple(dict.fromkeys("borrow" if each == "decode" and self.borrows else each for each in wanted))
 
+    def shown(self, role: Role) -> str:
+        """What a kernel does to who calls the unit."""
+        return "decode" if role == "borrow" and self.borrows else role
+
     def files(self, unit: Unit) -> dict[str, str]:
         """The texts of a unit's files by their names."""
         return cast("Files", object_at(self.printer))(unit)

@@ -341,6 +341,7 @@ def test_errors_of_making_programs():
     [
         ("sensor_msgs/IMU", {"encoding": "ros1"}, "sensor_msgs/Imu"),
         ("IMU", {"encoding": "ros1"}, "sensor_msgs/Imu"),
+        ("sig/VectorOfInt", {"encoding": "yarp3"}, "yarp.sig.VectorOfInt"),  # a file lies there that declares this
         ("sensor_msgs/msg/IMU", {"encoding": "cdr"}, "sensor_msgs/Imu"),
         ("jointangles", {"encoding": "protobuf"}, "rst.kinematics.JointAngles"),
         ("rst.kinematics.JointAngle", {"encoding": "protobuf"}, "rst.kinematics.JointAngles"),

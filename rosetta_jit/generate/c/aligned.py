@@ -18,8 +18,9 @@ def aligned(block: nodes.Block) -> dict[str, nodes.Expr]:
     for stmt in block:
         if isinstance(stmt, nodes.Let) and stmt.value in paddings:
             found[stmt.name] = paddings[stmt.value]
-        bound = bound_in(stmt)
-        paddings = {before: other for before, other in paddings.items() if bound.isdisjoint(locals_in(before))}
+        if paddings:
+            bound = bound_in(stmt)
+            paddings = {before: other for before, other in paddings.items() if bound.isdisjoint(locals_in(before))}
         match stmt:
             case nodes.Let(padding, nodes.Binary("and", nodes.Binary("sub", nodes.Const("i64", origin), before), nodes.Const("i64", mask))):
                 lower = int(mask)

@@ -53,27 +53,28 @@ static ${name}_status report(${name}_error *error, const struct site *sites, con
                              const ${name}_holder *holder)
 {
     const struct site *site = &sites[failure->site];
-    ${name}_error found = {${status}_FULL, 0, "", {0, 0, 0, 0}, "", 0, "", 0, 0, 0};
+    const ${name}_status status = (${name}_status)site->status;
     (void)holder;
-    found.status = (${name}_status)site->status;
-    found.site = (int)failure->site;
-    found.path = site->path;
-    found.detail = site->detail;
-    found.line = site->line;
+    if (error == NULL) {
+        return status;
+    }
+    memset(error, 0, sizeof *error);
+    error->status = status;
+    error->site = (int)failure->site;
+    error->path = site->path;
+    error->detail = site->detail;
+    error->line = site->line;
     if (failure->site == 0) {
-        found.lane = failure->offset;
-        found.missing = failure->indices[0];
-        found.path = lanes[failure->offset];
+        error->lane = failure->offset;
+        error->missing = failure->indices[0];
+        error->path = lanes[failure->offset];
     } else {
-        found.offset = failure->offset;
-        memcpy(found.indices, failure->indices, sizeof found.indices);
-        locate(&found, site, available);
+        error->offset = failure->offset;
+        memcpy(error->indices, failure->indices, sizeof error->indices);
+        locate(error, site, available);
     }
-    found.detail_size = length_of(found.detail);
-$said    if (error != NULL) {
-        *error = found;
-    }
-    return found.status;
+    error->detail_size = length_of(error->detail);
+$said    return status;
 }
 
 $functions

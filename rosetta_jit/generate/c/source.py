@@ -25,13 +25,19 @@ FREESTANDING = """#include <float.h>
 
 /* Every compiler of C calls these two by itself, and needs them even where there is no library. */
 void *memcpy(void *restrict target, const void *restrict source, size_t size);
-void *memset(void *target, int byte, size_t size);"""
+void *memset(void *target, int byte, size_t size);
+
+/* Without a library they are mere functions to a compiler; these become instructions where the bytes are few. */
+#ifdef __GNUC__
+#define memcpy __builtin_memcpy
+#define memset __builtin_memset
+#endif"""
 
 SAID = """#ifndef {status}_NO_TEXTS
     if (site->scratch >= 0 && failure->site != 0) {{ /* the mapping has put this text together */
         const size_t first = indices_in(site->path);
-        found.detail = (const char *)holder->scratch[site->scratch].bytes + failure->indices[first];
-        found.detail_size = (size_t)failure->indices[first + 1];
+        error->detail = (const char *)holder->scratch[site->scratch].bytes + failure->indices[first];
+        error->detail_size = (size_t)failure->indices[first + 1];
     }}
 #endif
 """
@@ -170,9 +176,9 @@ def _call(unit: Unit, role: Role, printed: Mapping[Role, Printed]) -> str:
             return (ENCODE if role == "encode" else SIZE).format(**words, status_check=STATUS_CHECK.format(**words), unused=unused)
 
 
-def run(attempt: Attempt, failure: str) -> str:
-    """The call of a printed function."""
-    names = {"failure": f"&{failure}", "given_object": "target"}
+def run(attempt: Attempt, failure: str, holder: str = "holder") -> str:
+    """The call of a printed function, with the names that variables have there."""
+    names = {"failure": f"&{failure}", "given_object": "target", "holder": holder}
     arguments = (names.get(each, each) for each in attempt.parameters)
     return f"{attempt.name}({', '.join(arguments)})"
 

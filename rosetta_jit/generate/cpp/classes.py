@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _OF_KERNELS = {f"{role}_{what}" for role in ("decode", "encode", "size", "borrow") for what in ("message", "sites")}
 _OF_SOURCES = {"failure", "fill", "gather", "measured", "reach", "report", "source", "state", "written"}
-NOT_CLASSES = frozenset({"codec", "holder", "std", "rosetta_jit", "memory", *_OF_SOURCES, *_OF_KERNELS})
+NOT_CLASSES = frozenset({"codec", "holder", "unknown_fields", "std", "rosetta_jit", "memory", *_OF_SOURCES, *_OF_KERNELS})
 """What no class may be called: what the header has besides, and the source, whose names stand in the same namespace."""
 
 

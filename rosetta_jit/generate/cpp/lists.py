@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import members_of, path_to
-from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
+from rosetta_jit.generate.cpp.spots import Direct, Spot
+from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import Unit, kind_of
 from rosetta_jit.kernel.nodes import Advance, Block, Capacity, Copy, Expr, Get, HostCall, Place, Reserve, Stmt, Used
 from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions

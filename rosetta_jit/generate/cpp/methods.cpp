@@ -1,15 +1,15 @@
 /* == decode == */
 rosetta_jit::result<rosetta_jit::done> codec::try_decode(const void *data, std::size_t size, ::$name::holder &target)
 {
-    ${name}_holder *const holder = memory_.get();
+    ${name}_holder *const filled = memory_.get();
     const unsigned char *const bytes = static_cast<const unsigned char *>(data);
     const int64_t end = reach(size);
-    auto &row = holder->message;
+    auto &row = filled->message;
     struct failure failure = {0, 0, {0, 0, 0, 0}};
-    holder->now = now;
-    holder->number = number;
+    filled->now = now;
+    filled->number = number;
 $kept
-    holder->most = rosetta_jit::detail::most_rows(size);
+    filled->most = rosetta_jit::detail::most_rows(size);
 $reset
 $bind
     int64_t result = $first;
@@ -17,33 +17,33 @@ $others
     if (result < 0) {
         row = {};
 $empty
-        return report(borrow_sites, failure, end - failure.offset, *holder);
+        return report(borrow_sites, failure, end - failure.offset, *filled);
     }
 $finish
-    fill(*holder, bytes, row, target);
+    fill(*filled, bytes, row, target);
     return rosetta_jit::done{};
 }
 /* == wire == */
 rosetta_jit::result<rosetta_jit::done> codec::try_decode_$wire(const void *data, std::size_t size, ::$name::holder &target)
 {
-    ${name}_holder *const holder = memory_.get();
+    ${name}_holder *const filled = memory_.get();
     const unsigned char *const bytes = static_cast<const unsigned char *>(data);
     const int64_t end = reach(size);
-    const auto before = holder->message;
+    const auto before = filled->message;
     struct failure failure = {0, 0, {0, 0, 0, 0}};
-    holder->now = now;
-    holder->number = number;
+    filled->now = now;
+    filled->number = number;
 $kept
-    holder->most = rosetta_jit::detail::most_rows(size);
+    filled->most = rosetta_jit::detail::most_rows(size);
 $save
     int64_t result = $first;
 $others
     if (result < 0) {
-        holder->message = before;
+        filled->message = before;
 $restore
-        return report(decode_${wire}_sites, failure, end - failure.offset, *holder);
+        return report(decode_${wire}_sites, failure, end - failure.offset, *filled);
     }
-    share_$wire(*holder, bytes, holder->message, target);
+    share_$wire(*filled, bytes, filled->message, target);
     return rosetta_jit::done{};
 }
 /* == reset == */

@@ -10,7 +10,8 @@ from rosetta_jit.generate.c.source import run
 from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.lists import Listed, row_name, viewed
 from rosetta_jit.generate.cpp.read_in_place import addressed_lanes, is_local
-from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
+from rosetta_jit.generate.cpp.spots import Direct, Spot
+from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.model.layout import Row
 from rosetta_jit.model.types import Ref

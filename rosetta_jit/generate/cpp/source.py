@@ -19,7 +19,8 @@ from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
 from rosetta_jit.generate.cpp.read_in_place import is_local
 from rosetta_jit.generate.cpp.reading import addressed_in, container_type, directs_of, encoder, source_struct, viewed_in, writes_apart
 from rosetta_jit.generate.cpp.set_in_place import straight_numbers
-from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
+from rosetta_jit.generate.cpp.spots import Direct, Spot
+from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.generate.shares import WHOLE, changed_lanes
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of, wires_of
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.cpp.manners import Manners
 
 FOLDER = Path(__file__).parent
+FILLED = "filled"
+"""The memory that a decoder fills: `holder` is the class there, which compilers may warn of."""
 HOLDER = "std::declval<holder &>()"
 """An object, for types."""
 RESET = (
@@ -295,19 +298,20 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], walk: W
     _, *sections = re.split(r"^/\* == (\w+) == \*/\n", template, flags=re.MULTILINE)
     known = dict(zip(sections[::2], sections[1::2], strict=True))
     words = {"name": unit.name, "kept": "    holder->state = &kept;" if unit.state else ""}
+    into = words | {"kept": words["kept"].replace("holder", FILLED)}
     texts: list[str] = []
     lanes, printed = parts.lanes, parts.printed
     if "borrow" in printed:
         first, *others = printed["borrow"].attempts
         bound = {each.lane for each in directs["decode"]}
-        finish = "\n".join(f"    holder->{lanes.rows(each.lane)}.finish({each.row}, bytes);" for each in directs["decode"])
+        finish = "\n".join(f"    {FILLED}->{lanes.rows(each.lane)}.finish({each.row}, bytes);" for each in directs["decode"])
         texts.append(
             Template(known["decode"]).substitute(
-                words,
-                bind="\n".join(f"    holder->{lanes.rows(each.lane)}.fill({each.spot.at});" for each in directs["decode"]),
-                reset="\n".join(f"    holder->{lanes.rows(lane)}.reset();" for lane in range(1, lanes.own) if lane not in bound),
-                first=run(first, "failure"),
-                others="".join(Template(known["other"]).substitute(call=run(each, "other")) for each in others),
+                into,
+                bind="\n".join(f"    {FILLED}->{lanes.rows(each.lane)}.fill({each.spot.at});" for each in directs["decode"]),
+                reset="\n".join(f"    {FILLED}->{lanes.rows(lane)}.reset();" for lane in range(1, lanes.own) if lane not in bound),
+                first=run(first, "failure", FILLED),
+                others="".join(Template(known["other"]).substitute(call=run(each, "other", FILLED)) for each in others),
                 finish=finish,
                 empty="\n".join(f"    {line}" for line in finish.splitlines()),
             )
@@ -321,13 +325,13 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], walk: W
 def _of_wire(unit: Unit, parts: Parts, known: dict[str, str], role: Role) -> str:
     """The decoder of one of several wires."""
     first, *others = parts.printed[role].attempts
-    changed = [f"    holder->{parts.lanes.rows(lane)}.{{}}();" for lane in changed_lanes(unit.kernels[role])]
+    changed = [f"    {FILLED}->{parts.lanes.rows(lane)}.{{}}();" for lane in changed_lanes(unit.kernels[role])]
     return Template(known["wire"]).substitute(
         name=unit.name,
         wire=wire_of(role),
-        kept="    holder->state = &kept;",
-        first=run(first, "failure"),
-        others="".join(Template(known["other"]).substitute(call=run(each, "other")) for each in others),
+        kept=f"    {FILLED}->state = &kept;",
+        first=run(first, "failure", FILLED),
+        others="".join(Template(known["other"]).substitute(call=run(each, "other", FILLED)) for each in others),
         save="\n".join(each.format("save") for each in changed),
         restore="\n".join(f"    {each.format('restore')}" for each in changed),
     )

@@ -24,6 +24,7 @@ from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import members_of
 from rosetta_jit.generate.cpp.classes import names_of
 from rosetta_jit.generate.cpp.names import member_names
+from rosetta_jit.generate.cpp.spots import Direct, Spot
 from rosetta_jit.generate.shares import WHOLE, Ways, within
 from rosetta_jit.model.layout import Member, Number, Row, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Enum, Field, Map, Optional, Ref, String, Struct, Type, Union
@@ -36,24 +37,6 @@ if TYPE_CHECKING:
 
 Direction = Literal["decode", "encode"]
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-
-
-@dataclass(frozen=True, slots=True)
-class Spot:
-    """A value of a class: ``at`` is the expression for it, ``owner`` and ``field`` those of what has it, where that is a class."""
-
-    at: str
-    owner: str = ""
-    field: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Direct:
-    """A lane whose rows are the elements of a container: its span in the message's row, and the container."""
-
-    lane: int
-    row: str
-    spot: Spot
 
 
 @dataclass(slots=True)
@@ -288,11 +271,14 @@ class Walk:
             with self.writer.indented(f"if ({self.text('link is there', spot)}) {{"):
                 if present:
                     self.writer.line(present)
-                self.writer.line(f"{row}.count = 1;")
-                self.writer.line(f"{row}.start = rosetta_jit::detail::take(to.{self.lanes.rows(lane)}, 1);")
-                self.row(type_, lane, f"{row}.start", self._value("link", spot))
+                self._take_one(type_, lane, row, self._value("link", spot))
         self.writer.line("}")
         self.depth -= 1
+
+    def _take_one(self, type_: Type, lane: int, row: str, spot: Spot) -> None:
+        self.writer.line(f"{row}.count = 1;")
+        self.writer.line(f"{row}.start = rosetta_jit::detail::take(to.{self.lanes.rows(lane)}, 1);")
+        self.row(type_, lane, f"{row}.start", spot)
 
     def map(self, key: Type, value: Type, slot: Span, row: str, spot: Spot) -> None:
         """Entries of a map: later ones of equal keys replace earlier ones."""
@@ -331,8 +317,22 @@ class Walk:
         if isinstance(member.slot, Number):
             which = "set" if self.direction == "decode" else "put"
             self.writer.line(f"rosetta_jit::detail::{which}({f'{at}, {row}' if which == 'set' else f'{row}, {at}'});")
+        elif isinstance(member.slot, Span) and isinstance(self.unit.schema.resolve(type_), Struct):
+            self._mapped(type_, member.slot.lane, row, at)
         else:
             self.value(type_, member.slot, element, row, Spot(at))
+
+    def _mapped(self, type_: Type, lane: int, row: str, at: str) -> None:
+        """The value of an entry whose type contains the map: the entry has it itself, and no pointer to it."""
+        self.depth += 1
+        if self.direction == "decode":
+            self.writer.line(f"{at} = std::decay_t<decltype({at})>{{}}; /* an earlier entry may have the same key */")
+            with self.writer.indented(f"if ({row}.count > 0) {{"):
+                self.row(type_, lane, f"{row}.start", Spot(at))
+            self.writer.line("}")
+        else:
+            self._take_one(type_, lane, row, Spot(at))
+        self.depth -= 1
 
     def union(self, union: Union, slot: Variant, element: object, row: str, spot: Spot) -> None:
         """The case that is set, or none."""

@@ -1,5 +1,5 @@
 ;;; Made by rosetta-jit. Changes will be lost.
-;;; borrow: yarp.icub.torso.state, yarp3 -> rst.kinematics.JointAngles, by torso_state.mapping
+;;; decode: yarp.icub.torso.state, yarp3 -> rst.kinematics.JointAngles, by torso_state.mapping
 ;;;   10: len(.angles) <-> 3
 ;;;   11: .angles[0] <-> float32(radians(.yaw))
 ;;;   12: .angles[1] <-> float32(radians(.roll))

@@ -200,27 +200,28 @@ static torso_state_status report(torso_state_error *error, const struct site *si
                              const torso_state_holder *holder)
 {
     const struct site *site = &sites[failure->site];
-    torso_state_error found = {TORSO_STATE_FULL, 0, "", {0, 0, 0, 0}, "", 0, "", 0, 0, 0};
+    const torso_state_status status = (torso_state_status)site->status;
     (void)holder;
-    found.status = (torso_state_status)site->status;
-    found.site = (int)failure->site;
-    found.path = site->path;
-    found.detail = site->detail;
-    found.line = site->line;
+    if (error == NULL) {
+        return status;
+    }
+    memset(error, 0, sizeof *error);
+    error->status = status;
+    error->site = (int)failure->site;
+    error->path = site->path;
+    error->detail = site->detail;
+    error->line = site->line;
     if (failure->site == 0) {
-        found.lane = failure->offset;
-        found.missing = failure->indices[0];
-        found.path = lanes[failure->offset];
+        error->lane = failure->offset;
+        error->missing = failure->indices[0];
+        error->path = lanes[failure->offset];
     } else {
-        found.offset = failure->offset;
-        memcpy(found.indices, failure->indices, sizeof found.indices);
-        locate(&found, site, available);
+        error->offset = failure->offset;
+        memcpy(error->indices, failure->indices, sizeof error->indices);
+        locate(error, site, available);
     }
-    found.detail_size = length_of(found.detail);
-    if (error != NULL) {
-        *error = found;
-    }
-    return found.status;
+    error->detail_size = length_of(error->detail);
+    return status;
 }
 
 void torso_state_clear(torso_state_holder *holder)

@@ -1,5 +1,5 @@
 /* Made by rosetta-jit. Changes will be lost. */
-/* borrow: yarp.icub.torso.state, yarp3 -> rst.kinematics.JointAngles, by torso_state.mapping */
+/* decode: yarp.icub.torso.state, yarp3 -> rst.kinematics.JointAngles, by torso_state.mapping */
 /* 10: len(.angles) <-> 3 */
 /* 11: .angles[0] <-> float32(radians(.yaw)) */
 /* 12: .angles[1] <-> float32(radians(.roll)) */
@@ -460,31 +460,31 @@ codec &codec::operator=(codec &&) noexcept = default;
 
 rosetta_jit::result<rosetta_jit::done> codec::try_decode(const void *data, std::size_t size, ::torso_state::holder &target)
 {
-    torso_state_holder *const holder = memory_.get();
+    torso_state_holder *const filled = memory_.get();
     const unsigned char *const bytes = static_cast<const unsigned char *>(data);
     const int64_t end = reach(size);
-    auto &row = holder->message;
+    auto &row = filled->message;
     struct failure failure = {0, 0, {0, 0, 0, 0}};
-    holder->now = now;
-    holder->number = number;
-    holder->most = rosetta_jit::detail::most_rows(size);
-    holder->unknown.reset();
-    holder->angles.fill((*target.mutable_angles()));
-    int64_t result = borrow_1(holder, bytes, end, &failure);
+    filled->now = now;
+    filled->number = number;
+    filled->most = rosetta_jit::detail::most_rows(size);
+    filled->unknown.reset();
+    filled->angles.fill((*target.mutable_angles()));
+    int64_t result = borrow_1(filled, bytes, end, &failure);
     if (result < 0 && failure.site != 0) {
         struct failure other = {0, 0, {0, 0, 0, 0}};
-        result = borrow_2(holder, bytes, end, &other);
+        result = borrow_2(filled, bytes, end, &other);
         if (result < 0 && (other.site == 0 || other.offset > failure.offset)) {
             failure = other;
         }
     }
     if (result < 0) {
         row = {};
-        holder->angles.finish(row.angles, bytes);
-        return report(borrow_sites, failure, end - failure.offset, *holder);
+        filled->angles.finish(row.angles, bytes);
+        return report(borrow_sites, failure, end - failure.offset, *filled);
     }
-    holder->angles.finish(row.angles, bytes);
-    fill(*holder, bytes, row, target);
+    filled->angles.finish(row.angles, bytes);
+    fill(*filled, bytes, row, target);
     return rosetta_jit::done{};
 }
 

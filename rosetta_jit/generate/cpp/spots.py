@@ -1,0 +1,23 @@
+"""Where values are in the classes that generated C++ fills and reads."""
+
+from __future__ import annotations
+
+from rosetta_jit.startup.dataclass import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """A value of a class: ``at`` is the expression for it, ``owner`` and ``field`` those of what has it, where that is a class."""
+
+    at: str
+    owner: str = ""
+    field: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Direct:
+    """A lane whose rows are the elements of a container: its span in the message's row, and the container."""
+
+    lane: int
+    row: str
+    spot: Spot
