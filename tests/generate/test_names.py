@@ -44,6 +44,8 @@ AT_ONCE: dict[str | tuple[str, str], int] = {
 """How many names become one unit: fewer of what compilers take longer for than there is more of it."""
 UNITS_AT_ONCE = 25
 """So many units are given to one process of SBCL, which compiles its runtime once."""
+ROOM = 1 << 14
+"""Elements, and bytes, for which generated C has room where nothing bounds them: types that contain themselves have many here."""
 PLAIN = ("-O0",)
 OURS = """
 unit holder codec decode encode size borrow error result status failure message memory rows used capacity count start which state kept now
@@ -178,9 +180,10 @@ def case(role: str, some: list[str]) -> Case:
 
 
 def through_c(made: Case, folder: Path) -> list[str]:
-    name = driver.write(folder, generated(made.request, "c", BOTH, "unit"))
+    name = driver.write(folder, texts := generated(made.request, "c", BOTH, "unit"))
     (folder / "standard.h").write_text("".join(f"#include <{each}.h>\n" for each in HEADERS.split()))
-    options = ("-O0", "-std=gnu11", "-include", "standard.h")
+    unbounded = re.findall(r"#ifndef (UNIT_\w+)\n#define \1 \d", "".join(texts.values()))
+    options = ("-O0", "-std=gnu11", "-include", "standard.h", *(f"-D{each}={ROOM}" for each in unbounded))
     if shutil.which("clang") is not None:
         driver.compiled("clang", folder, name, *options)
     return driver.answers(driver.driver(folder, name, options=options), made.messages)
