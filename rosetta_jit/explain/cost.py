@@ -17,6 +17,7 @@ from typing import assert_never
 from rosetta_jit.explain.counts import count_text, factored, named_counts
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.terms import END, type_of
+from rosetta_jit.kernel.traits import looks_closer
 from rosetta_jit.kernel.walk import operands
 from rosetta_jit.startup.dataclass import dataclass, replace
 
@@ -130,6 +131,8 @@ class _Counter:
                 rounds = count_text(_bound(condition), self.values, self.names)
                 return Cost(repeated=(Repeated(rounds, plus(self.value(condition), self.block(body))),))
             case nodes.If(condition, then, otherwise):
+                if looks_closer(stmt):
+                    return plus(Cost(checks=1), replace(self.value(condition), operations=0))
                 return plus(self.value(condition), _dearest((self.block(then), self.block(otherwise))))
             case nodes.Switch(value, cases, default):
                 return plus(self.value(value), _dearest((*(self.block(block) for _, block in cases), self.block(default))))

@@ -8,8 +8,8 @@ from itertools import islice
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.walk import every_statement, parts_of, statements
 
-SHORT = 32
-"""Statements up to which a call costs any kernel more than 5 % of its time."""
+SHORT: dict[nodes.Direction, int] = {"decode": 48, "encode": 32, "size": 32}
+"""Statements up to which a call costs a kernel more than 5 % of its time. Who encodes makes bytes besides."""
 
 
 SHORT_IN_VECTORS = 64
@@ -84,7 +84,8 @@ def _usual_statements(kernel: ir.Kernel) -> Iterator[nodes.Stmt]:
 def is_short_and_straight(kernel: ir.Kernel) -> bool:
     """Whether a kernel, in the first of its bodies, takes no longer than a call of it by much."""
     first = kernel.bodies[0]
-    if _are_more(statements(first), SHORT) and (_are_more(statements(first), SHORT_IN_VECTORS) or not are_straight_and_compute((kernel,))):
+    is_short = not _are_more(statements(first), SHORT[kernel.direction])
+    if not is_short and (_are_more(statements(first), SHORT_IN_VECTORS) or not are_straight_and_compute((kernel,))):
         return False
     return not any(isinstance(each, nodes.For | nodes.While) for each, _ in statements(first))
 
@@ -92,6 +93,11 @@ def is_short_and_straight(kernel: ir.Kernel) -> bool:
 def is_short(kernel: ir.Kernel) -> bool:
     """Whether the first of a kernel's bodies has so few statements that it can be compiled once more."""
     return not _are_more(statements(kernel.bodies[0]), SHORT_IN_VECTORS)
+
+
+def looks_closer(stmt: nodes.If) -> bool:
+    """Whether a statement makes nothing but checks, one by one, where one of all of them has failed (`passes.gather`)."""
+    return not stmt.otherwise and all(isinstance(each, nodes.Expect) for each in stmt.then)
 
 
 def _are_more(found: Iterable[object], most: int) -> bool:

@@ -37,7 +37,24 @@ PROOF = (
     "meetings",
     "without_checks",
 )
-PASSES = ("affine", "bulk", "drop", "fold", "forget", "hoist", "join", "merge", "reuse", "simplify", "sink", "unroll", "widen", "order")
+PASSES = (
+    "affine",
+    "bulk",
+    "collect",
+    "drop",
+    "fold",
+    "forget",
+    "gather",
+    "hoist",
+    "join",
+    "merge",
+    "reuse",
+    "simplify",
+    "sink",
+    "unroll",
+    "widen",
+    "order",
+)
 MODULES = tuple(
     f"rosetta_jit.kernel.{name}" for name in ("shape", "walk", *(f"proof.{name}" for name in PROOF), *(f"passes.{name}" for name in PASSES))
 )

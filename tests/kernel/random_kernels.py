@@ -62,7 +62,7 @@ def random_kernel(seed):
         return checks, width
 
     for _ in range(random.randint(1, 8)):
-        kind = random.choice(["scalar", "scalar", "array", "branch", "skip", "fill"])
+        kind = random.choice(["scalar", "scalar", "array", "branch", "skip", "fill", "bits", "pair", "elements"])
         offset = 8 * random.randint(0, 7)
         if kind == "scalar":
             made, width = scalar(at, offset)
@@ -88,11 +88,30 @@ def random_kernel(seed):
             body += [need(at, 1), Let(size.name, kernels.Convert("i64", Load("u8", at))), need(add(at, 1), size)]
             body.append(Let(place.name, kernels.Binary("add", add(at, 1), size)))
             at = place
+        elif kind == "bits":
+            place = Place(0, ROW, offset)
+            bits = SetField(place, Binary("or", Get("u64", place), Const("u64", 1 << random.randint(0, 63))))
+            body += random.choice([(bits,), (Fill(Place(0, ROW), index(64)), bits)])
+        elif kind == "pair":
+            body += [need(at, 8), *(expect(compare_words(add(at, 4 * n), random), 2, add(at, 4 * n)) for n in range(2))]
+            at = add(at, 8)
+        elif kind == "elements":
+            count = i64(f"c{next(names)}")
+            body += [need(at, 1), Let(count.name, kernels.Convert("i64", Load("u8", at)))]
+            for n in range(random.randint(2, 5)):
+                body.append(expect(Compare("lt", index(n), count), 4, add(at, n), index(n)))
+                body.append(SetField(Place(0, ROW, offset), random.choice([count, index(n)])))
+            at = add(at, 1)
         else:
             body.append(SetField(Place(0, ROW, offset), Const("i64", random.choice([0, 1, 2**40]))))
     if random.random() < 0.3:
         body.append(expect(kernels.Compare("eq", at, kernels.END), 3, at))
     return kernel((*body, Return(at)))
+
+
+def compare_words(at, random):
+    """Whether four bytes are what they mostly are in random messages."""
+    return Compare("eq", Load("i32", at, random.choice("<<<>")), Const("i32", random.choice([0, 0, 0, -1, 7])))
 
 
 def each_round(*body, strides=(64, 8), count=8):
@@ -103,6 +122,11 @@ def each_round(*body, strides=(64, 8), count=8):
 
 def _rows(lane, count):
     return Reserve(lane, index(count)), Let(f"start_{lane}", Used(lane)), Advance(lane, index(count))
+
+
+def _bit(number, offset, type_="u64"):
+    place = Place(0, ROW, offset)
+    return SetField(place, Binary("or", Get(type_, place), Const(type_, 1 << number)))
 
 
 I8 = mul(i64("i"), 8)
@@ -375,6 +399,35 @@ PASSED = {
         ),
         strides=(64, 24, 1),
         hidden=2,
+    ),
+    "elements that must be there, of which one shows what is found between them": kernel(
+        (
+            *(ROW_EXISTS, need(BEGIN, 16), Let("count", Convert("i64", Load("u8", BEGIN)))),
+            *(expect(Compare("lt", index(number), i64("count")), 4, add(BEGIN, number), index(number)) for number in range(3)),
+            Let("found", Load("i64", add(BEGIN, 8))),
+            *(expect(Compare("lt", index(number), i64("count")), 4, BEGIN, i64("found")) for number in range(3, 5)),
+            SetField(Place(0, ROW), i64("found")),
+            Return(BEGIN),
+        )
+    ),
+    "bits of a row that is emptied, and of one that is read between": kernel(
+        (
+            *(ROW_EXISTS, need(BEGIN, 8), Fill(Place(0, ROW), index(24))),
+            *(_bit(number, 0) for number in range(3)),
+            *(_bit(3, 40), SetField(Place(0, ROW, 16), Get("i64", Place(0, ROW, 40))), _bit(4, 40)),
+            If(compare("gt", Convert("i64", Load("u8", BEGIN)), 3), (_bit(5, 0),)),
+            *(_bit(6, 0), _bit(7, 8), SetField(Place(0, ROW, 12), Const("i32", 9)), _bit(8, 8)),
+            Return(BEGIN),
+        )
+    ),
+    "bits of a row that was emptied, and then copied": kernel(
+        (
+            *(ROW_EXISTS, need(BEGIN, 8), Fill(Place(0, ROW), index(24)), Copy(Place(0, ROW), Wire(BEGIN), index(8))),
+            *(_bit(1, 0), _bit(2, 0), Return(BEGIN)),
+        )
+    ),
+    "bits of bytes that keep the others": kernel(
+        (*(ROW_EXISTS, need(BEGIN, 8)), *(_bit(number, 0, "u8") for number in (1, 2)), Return(BEGIN))
     ),
     "the same in lanes of the holder": kernel(
         (ROW_EXISTS, need(BEGIN, 16), *_rows(1, 16), Copy(Place(1, i64("start_1")), Wire(BEGIN), index(16)), Return(BEGIN)),

@@ -13,7 +13,9 @@ from rosetta_jit.kernel.ir import Routine
 from rosetta_jit.kernel.nodes import (
     Advance,
     Assign,
+    Binary,
     Compare,
+    Const,
     Copy,
     Expect,
     Fill,
@@ -36,8 +38,10 @@ from rosetta_jit.kernel.nodes import (
     Wire,
 )
 from rosetta_jit.kernel.passes import order as passes
+from rosetta_jit.kernel.passes.collect import collect
 from rosetta_jit.kernel.passes.drop import drop
 from rosetta_jit.kernel.passes.forget import forget
+from rosetta_jit.kernel.passes.gather import gather
 from rosetta_jit.kernel.passes.hoist import hoist
 from rosetta_jit.kernel.passes.join import join
 from rosetta_jit.kernel.passes.merge import merge
@@ -275,3 +279,123 @@ def test_what_a_size_kernel_leaves_is_not_forgotten():
     sizes, encoder = (replace(kernel(body, strides=(64, 8, 16), direction=direction), hidden=1) for direction in ("size", "encode"))
     assert forget(sizes) is sizes
     assert not any(isinstance(stmt, SetField) for stmt in forget(encoder).bodies[0])
+
+
+# --- bits that are set one after another ---
+
+
+def bit(number, offset=0, row=ROW):
+    place = Place(0, row, offset)
+    return SetField(place, Binary("or", Get("u64", place), Const("u64", 1 << number)))
+
+
+EMPTIED = Fill(Place(0, ROW), index(16))
+A_CHECK = expect(Compare("eq", Load("u8", BEGIN), Const("u8", 1)))
+
+
+def collected(*body):
+    made = collect(kernel((ROW_EXISTS, need(BEGIN, 8), *body, Return(BEGIN)), strides=(16,)))
+    verify(made)
+    return [stmt.value for stmt in checks(made, SetField)]
+
+
+def test_bits_of_an_emptied_row_are_written_once():
+    assert collected(EMPTIED, bit(0), A_CHECK, bit(1), SetField(Place(0, ROW, 8), index(5)), bit(5)) == [index(5), Const("u64", 35)]
+
+
+def test_bits_of_a_row_that_has_others_are_added_at_once():
+    assert collected(bit(0), A_CHECK, bit(1)) == [Binary("or", Get("u64", Place(0, ROW)), Const("u64", 3))]
+
+
+@pytest.mark.parametrize(
+    "between",
+    [
+        Let("seen", Get("u64", Place(0, ROW))),
+        Let("seen", Get("u8", Place(0, ROW, 7))),
+        SetField(Place(0, ROW, 4), index(1)),
+        SetField(Place(0, i64("other")), index(1)),
+        Copy(Place(0, ROW), Wire(BEGIN), index(8)),
+        Copy(Place(0, i64("other"), 8), Place(0, ROW), index(8)),
+        Fill(Place(0, i64("other")), index(16)),
+        If(compare("gt", i64("other"), 0), (bit(7),)),
+        If(compare("gt", i64("other"), 0), (Return(BEGIN),)),
+        expect(IsText(Place(0, ROW), index(4))),
+    ],
+    ids=lambda stmt: type(stmt).__name__,
+)
+def test_bits_that_somebody_may_see_or_write_between_stay(between):
+    body = (EMPTIED, bit(0), between, bit(1))
+    found = checks(collect(kernel((ROW_EXISTS, *body, Return(BEGIN)), strides=(16,))), SetField)
+    assert found[0].value == Const("u64", 1)
+    assert found[-1].value == Binary("or", Get("u64", Place(0, ROW)), Const("u64", 2))
+
+
+def test_bits_of_a_row_whose_number_changes_stay():
+    step = Assign("at", add(i64("at"), 1))
+    body = (Var("at", ROW), bit(0, row=i64("at")), step, bit(1, row=i64("at")))
+    assert len(checks(collect(kernel((*body, Return(BEGIN)), strides=(16,))), SetField)) == 2
+
+
+# --- checks that become one ---
+
+
+def word(at, value, order="<"):
+    return expect(Compare("eq", Load("i32", at, order), Const("i32", value)), 2, at)
+
+
+def element(number, count="count", at=None):
+    return expect(Compare("lt", index(number), i64(count)), 4, at or add(BEGIN, 8 * number), index(number))
+
+
+def gathered(*body):
+    start = (ROW_EXISTS, need(BEGIN, 16), Let("count", Get("i64", Place(0, ROW))))
+    made = gather(kernel((*start, *body, Return(BEGIN)), strides=(16,)))
+    verify(made)
+    return [stmt for stmt in made.bodies[0] if stmt not in start][:-1]
+
+
+def test_two_words_of_a_message_are_compared_at_once():
+    first, second, third = (word(add(BEGIN, 4 * number), -1 - number) for number in range(3))
+    both, alone = gathered(first, second, third)
+    assert both.condition.operand == Compare("eq", Load("u64", BEGIN), Const("u64", 0xFFFF_FFFE_FFFF_FFFF))
+    assert (both.then, alone) == ((first, second), third)
+
+
+@pytest.mark.parametrize("second", [word(add(BEGIN, 8), 1), word(add(BEGIN, 4), 1, ">"), word(BEGIN, 1)])
+def test_words_that_lie_otherwise_are_compared_alone(second):
+    assert gathered(word(BEGIN, 1), second) == [word(BEGIN, 1), second]
+
+
+def test_the_last_element_is_asked_for_first():
+    sets = [SetField(Place(0, ROW, 8), index(number)) for number in range(3)]
+    looked, last, *rest = gathered(*(each for number in range(3) for each in (element(number), sets[number])))
+    assert looked.condition.operand == last.condition == element(2).condition
+    assert (looked.then, last, rest) == ((element(0), element(1)), element(2), sets)
+
+
+@pytest.mark.parametrize(
+    "between",
+    [
+        need(BEGIN, 12),
+        A_CHECK,
+        If(compare("gt", i64("count"), 9), (Return(BEGIN),)),
+        Reserve(0, index(1)),
+        element(7, at=Get("i64", Place(0, ROW))),
+    ],
+    ids=lambda stmt: type(stmt).__name__,
+)
+def test_nothing_that_may_fail_or_end_is_crossed(between):
+    body = (element(0), element(1), between, element(2))
+    assert gathered(*body) == list(body)
+
+
+def test_elements_of_different_lists_are_asked_for_alone():
+    other = Let("other", Get("i64", Place(0, ROW, 8)))
+    body = (other, element(0), element(0, "other"), element(1), element(1, "other"), element(2))
+    assert gathered(*body) == list(body)
+
+
+def test_a_check_stays_behind_what_its_failure_shows():
+    known = Let("at", Load("i64", BEGIN))
+    body = (element(0), element(1), known, element(2, at=i64("at")))
+    assert gathered(*body) == list(body)

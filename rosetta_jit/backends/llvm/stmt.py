@@ -33,6 +33,7 @@ from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
+from rosetta_jit.kernel.traits import looks_closer
 from rosetta_jit.startup.dataclass import replace
 
 MANY_CASES = 64
@@ -138,8 +139,8 @@ def _nested(frame: Frame, statement: nodes.For | nodes.While | nodes.If | nodes.
             _for(frame, variable, expression(frame, count), body)
         case nodes.While():
             _while(frame, statement)
-        case nodes.If(condition, then, otherwise):
-            _if(frame, expression(frame, condition), then, otherwise)
+        case nodes.If():
+            _if(frame, statement)
         case nodes.Switch():
             _switch(frame, statement)
 
@@ -332,16 +333,18 @@ def _while(frame: Frame, loop: nodes.While) -> None:
     builder.position_at_end(behind)
 
 
-def _if(frame: Frame, condition: ir.Value, then: nodes.Block, otherwise: nodes.Block) -> None:
-    builder = frame.builder
+def _if(frame: Frame, statement: nodes.If) -> None:
+    builder, condition = frame.builder, expression(frame, statement.condition)
     yes, behind = frame.block("then"), frame.block("after")
-    no = frame.block("else") if otherwise else behind
-    builder.cbranch(condition, yes, no)
+    no = frame.block("else") if statement.otherwise else behind
+    branch = builder.cbranch(condition, yes, no)
+    if looks_closer(statement):
+        branch.set_weights(COLD[::-1])
     builder.position_at_end(yes)
-    _branch(frame, then, behind)
-    if otherwise:
+    _branch(frame, statement.then, behind)
+    if statement.otherwise:
         builder.position_at_end(no)
-        _branch(frame, otherwise, behind)
+        _branch(frame, statement.otherwise, behind)
     builder.position_at_end(behind)
 
 

@@ -8,8 +8,10 @@ from operator import is_
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Block
 from rosetta_jit.kernel.passes.bulk import bulk, bulk_of_bytes, group
+from rosetta_jit.kernel.passes.collect import collect
 from rosetta_jit.kernel.passes.drop import drop, without
 from rosetta_jit.kernel.passes.forget import forget
+from rosetta_jit.kernel.passes.gather import gather
 from rosetta_jit.kernel.passes.hoist import hoist
 from rosetta_jit.kernel.passes.join import join
 from rosetta_jit.kernel.passes.merge import merge
@@ -27,6 +29,7 @@ PASSES: tuple[Pass, ...] = (
     forget,
     simplify,
     forget,
+    collect,
     reuse,
     simplify,
     drop,
@@ -41,11 +44,12 @@ PASSES: tuple[Pass, ...] = (
     bulk,
     simplify,
     merge,
+    gather,
     join,
     sink,
 )
 
-FIELD_BY_FIELD = tuple(each for each in PASSES if each is not join)
+FIELD_BY_FIELD = tuple(each for each in PASSES if each not in (collect, gather, join))
 """Those for source that people read, and that may see what is done with each field."""
 
 ANY_MACHINE = tuple(bulk_of_bytes if each is bulk else each for each in FIELD_BY_FIELD if each is not group)
