@@ -11,8 +11,9 @@ The words of hidden lane k, 4 k words behind their address, are its address and 
 its own. Of a hidden lane that must grow, word 4 has the missing bytes.
 
 Addresses and lengths are written by the runtime; a kernel writes words 2 to 8 and 14, and the used lengths. Word 9 is what a failed kernel
-returned, for who called it through an entry (`backends/entry/*.ll`); words 12 and 13 are for kernels that ask (`kernel.nodes.HostValue`),
-and word 16 leads kernels to what they keep from one message to the next (`kernel.nodes.Register`).
+returned, for who called it through an entry (`backends/entry/*.ll`), which until then keeps there what it needs afterwards. Words 12 and
+13 are for kernels that ask (`kernel.nodes.HostValue`), and word 16 leads kernels to what they keep from one message to the next
+(`kernel.nodes.Register`).
 
 The epoch counts the changes of the lanes. It is negative (``~epoch``) while somebody changes them, or runs a kernel on them, in a way that
 another thread can interrupt: until it is positive again, nobody else may use them (`runtime.lanes.Lanes`). Kernels know nothing of it.

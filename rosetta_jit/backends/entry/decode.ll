@@ -6,6 +6,7 @@
 ; alone is part of this function, the message that it leaves to the next one is `call_of_next`'s (`first_body.ll`): a function that calls nothing
 ; but at its very end needs no stack.
 declare ptr @any_call(ptr, ptr, i64, ptr)
+declare void @llvm.assume(i1)
 
 define ptr @call(ptr %self, ptr %args, i64 %nargsf, ptr %names) {
   %alone = call i1 @is_alone(i64 %nargsf, ptr %names)
@@ -32,9 +33,11 @@ decode:
   %data = getelementptr i8, ptr %message, i64 32
   %size.at = getelementptr i8, ptr %message, i64 16
   %size = load i64, ptr %size.at
+  call void @assume_row(ptr %state)
   call void @enter(ptr %state, i64 %epoch, i64 1)
   call void @lend_registers(ptr %context, ptr %state)
   call void @tell(ptr %context, ptr %state)
+  call void @leave_arguments(ptr %state, ptr %args)
   %result = call i64 @usual(ptr %data, i64 %size, ptr %state)
   %known = icmp ne i64 %result, -9223372036854775808
   br i1 %known, label %finish, label %ask, !prof !0
@@ -57,16 +60,27 @@ define internal ptr @finish(ptr %context, ptr %state, ptr %args, ptr %message, i
   br i1 %good, label %return, label %failed, !prof !0
 return:
   store i64 1, ptr %state
-  call void @retain(ptr %context, ptr %message)
+  %source = call ptr @message_behind(ptr %state, ptr %message)
+  call void @retain(ptr %context, ptr %source)
   %holder.at = getelementptr ptr, ptr %context, i64 1
   %holder = load ptr, ptr %holder.at
   call void @keep(ptr %holder)
   ret ptr %holder
 failed:
   store i64 0, ptr %state
+  %arguments = call ptr @arguments_behind(ptr %state, ptr %args)
   call void @untell(ptr %context, ptr %state)
   call void @say_failed(ptr %context)
   call void @note(i64 %result, ptr %state)
-  %answer = tail call ptr @slow(ptr %context, ptr %args, i64 1, ptr null)
+  %answer = tail call ptr @slow(ptr %context, ptr %arguments, i64 1, ptr null)
   ret ptr %answer
+}
+
+; The program's own holder has room for its one message, always: word 18 of its state, which kernels look at for any row.
+define internal void @assume_row(ptr %state) alwaysinline {
+  %rows.at = getelementptr i64, ptr %state, i64 18
+  %rows = load i64, ptr %rows.at
+  %has.row = icmp sgt i64 %rows, 0
+  call void @llvm.assume(i1 %has.row)
+  ret void
 }

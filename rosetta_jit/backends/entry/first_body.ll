@@ -1,6 +1,6 @@
 ; The kernel's first body is part of the usual call; what it leaves to the next one is told by a result that is no other (`backends.llvm.function`).
 declare i64 @kernel.usual(ptr, i64, i64, ptr, i64)
-declare preserve_mostcc i64 @kernel.next(ptr, i64, i64, ptr, i64)
+declare i64 @kernel.next(ptr, i64, i64, ptr, i64)
 
 define internal i64 @usual(ptr %data, i64 %size, ptr %state) alwaysinline {
   %result = call i64 @kernel.usual(ptr %data, i64 0, i64 %size, ptr %state, i64 0)
@@ -20,7 +20,7 @@ define internal ptr @call_of_next(ptr %self, ptr %args) noinline {
   %data = getelementptr i8, ptr %message, i64 32
   %size.at = getelementptr i8, ptr %message, i64 16
   %size = load i64, ptr %size.at
-  %result = call preserve_mostcc i64 @kernel.next(ptr %data, i64 0, i64 %size, ptr %state, i64 0)
+  %result = call i64 @kernel.next(ptr %data, i64 0, i64 %size, ptr %state, i64 0)
   %answer = tail call ptr @finish(ptr %context, ptr %state, ptr %args, ptr %message, i64 %result)
   ret ptr %answer
 }

@@ -165,7 +165,7 @@ def _own_parts(program: Program, *, whole: bool, unusual: ir.Module | None = Non
     if program.entry == "bridge":
         yield references_text(options.get("references", ()))
     if program.is_inside:
-        usual = (*USUAL[program.entry], "first_body.ll" if program.has_usual else "all_bodies.ll")
+        usual = (*USUAL[program.entry], "arguments.ll", "first_body.ll" if program.has_usual else "all_bodies.ll")
         yield _usual(_entry_text(usual, program), SYMBOLS[program.entry])
     if program.has_own_many:
         yield from _own_many(program.first, whole=whole)
@@ -176,7 +176,7 @@ def _surrounding_texts(program: Program) -> tuple[str, ...]:
     rest = ALONE if program.has_own_many else REST[program.entry]
     if program.entry == "encode" and leaves_something(program.kernels[1]):
         rest = tuple("leaving.ll" if each == "unmeasured.ll" else each for each in rest)
-    around = (rest,) if program.is_inside else ((*USUAL[program.entry], "all_bodies.ll"), rest)
+    around = (rest,) if program.is_inside else ((*USUAL[program.entry], "arguments_left.ll", "all_bodies.ll"), rest)
     return tuple(_entry_text(templates, program) for templates in around if templates)
 
 

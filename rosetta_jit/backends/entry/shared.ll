@@ -84,18 +84,30 @@ done:
 
 ; The state of a holder of exactly the program's type, else null.
 define internal ptr @state_of(ptr %context, ptr %holder) alwaysinline {
-  %type.at = getelementptr i8, ptr %holder, i64 8
-  %type = load ptr, ptr %type.at
-  %expected.at = getelementptr ptr, ptr %context, i64 4
-  %expected = load ptr, ptr %expected.at
-  %mine = icmp eq ptr %type, %expected
+  %mine = call i1 @is_of_type(ptr %context, ptr %holder)
   br i1 %mine, label %load, label %foreign
 load:
-  %state.at = getelementptr i8, ptr %holder, i64 16
-  %state = load ptr, ptr %state.at
+  %state = call ptr @state_in(ptr %holder)
   ret ptr %state
 foreign:
   ret ptr null
+}
+
+; Whether an object is of exactly the program's type of holders.
+define internal i1 @is_of_type(ptr %context, ptr %object) alwaysinline {
+  %type.at = getelementptr i8, ptr %object, i64 8
+  %type = load ptr, ptr %type.at
+  %expected.at = getelementptr ptr, ptr %context, i64 4
+  %expected = load ptr, ptr %expected.at
+  %same = icmp eq ptr %type, %expected
+  ret i1 %same
+}
+
+; The state of a holder; null if it has none yet.
+define internal ptr @state_in(ptr %holder) alwaysinline {
+  %state.at = getelementptr i8, ptr %holder, i64 16
+  %state = load ptr, ptr %state.at
+  ret ptr %state
 }
 
 ; Export an object's buffer into the view; false if an error is set. Of a bytearray we do ourselves what it would do, in a fifth of the time,
@@ -221,18 +233,26 @@ define internal void @keep(ptr %object) alwaysinline {
 }
 
 ; One more reference to any object, and one less. CPython does it itself where the count may stand for more than a count, as that of an immortal
-; object, or where the reference is the last one.
-define internal void @keep_any(ptr %object) alwaysinline {
+; object, or where the reference is the last one. What is kept is given back, so that it need not outlive a call.
+define internal ptr @keep_any(ptr %object) alwaysinline {
   %count = load i64, ptr %object
   %plain = icmp ult i64 %count, 1073741824
   br i1 %plain, label %here, label %there, !prof !0
 here:
   %more = add i64 %count, 1
   store i64 %more, ptr %object
-  ret void
+  br label %done
 there:
+  %counted = call ptr @counted_by_python(ptr %object)
+  br label %done
+done:
+  %kept = phi ptr [ %object, %here ], [ %counted, %there ]
+  ret ptr %kept
+}
+
+define internal ptr @counted_by_python(ptr %object) noinline cold {
   call void @Py_IncRef(ptr %object)
-  ret void
+  ret ptr %object
 }
 
 define internal void @drop_any(ptr %object) alwaysinline {

@@ -81,7 +81,8 @@ def emit(
     following = _following(unusual or module, kernel, 1, f"{inside}.next", routines)
     if following is not None and (has_usual or unusual is not None):
         following.linkage = ""  # others call it
-        following = following if unusual is None else _of_next(module, following.name)
+        following.calling_convention = "preserve_mostcc" if usual is None else ""  # who calls the usual body keeps little
+        following = following if unusual is None else _declared(module, following)
     if usual is None or following is None:
         _attempt(function, kernel, 0, routines, following)
     else:
@@ -268,6 +269,13 @@ def _of_next(module: ir.Module, name: str) -> ir.Function:
     function.attributes.add("noinline")
     function.calling_convention = "preserve_mostcc"
     return function
+
+
+def _declared(module: ir.Module, function: ir.Function) -> ir.Function:
+    """The same function for another module."""
+    same = _of_next(module, function.name)
+    same.calling_convention = function.calling_convention
+    return same
 
 
 def _width(kernel: Kernel) -> int:
