@@ -426,6 +426,9 @@ PASSED = {
             *(_bit(1, 0), _bit(2, 0), Return(BEGIN)),
         )
     ),
+    "bits before and after a row is emptied": kernel(
+        (*(ROW_EXISTS, need(BEGIN, 8)), _bit(1, 0), Fill(Place(0, ROW), index(24)), _bit(2, 0), Return(BEGIN))
+    ),
     "bits of bytes that keep the others": kernel(
         (*(ROW_EXISTS, need(BEGIN, 8)), *(_bit(number, 0, "u8") for number in (1, 2)), Return(BEGIN))
     ),

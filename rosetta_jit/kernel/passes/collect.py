@@ -6,7 +6,7 @@ in the holder is nobody's business, so that checks between the statements do not
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import field
 
 from rosetta_jit.kernel.ir import Kernel
@@ -87,16 +87,25 @@ def collect(kernel: Kernel) -> Kernel:
 
 
 def _block(block: Block, variables: set[str]) -> Block:
+    inside = [with_blocks(stmt, lambda inner: _block(inner, variables)) for stmt in block]
+    return _with_sets(inside, variables) if any(map(_sets_bits, inside)) else tuple(inside)
+
+
+def _sets_bits(stmt: Stmt) -> bool:
+    return isinstance(stmt, SetField) and isinstance(stmt.value, Binary) and stmt.value.op == "or"
+
+
+def _with_sets(block: Sequence[Stmt], variables: set[str]) -> Block:
     result: list[Stmt | None] = []
     known = _Known()
-    for old in block:
-        stmt = with_blocks(old, lambda inner: _block(inner, variables))
+    for stmt in block:
+        kept: Stmt = stmt
         match stmt:
             case Fill(Place(lane, row, 0) as place, Const(_, size), 0) if _stays(row, variables):
                 known.forget(lane, _EVERYWHERE)
                 known.empty[place] = int(size)
             case SetField(place, Binary("or", Get(type_, same), Const(_, bits))) if same == place and _stays(place.row, variables):
-                stmt, needless = known.add(stmt, type_, int(bits), len(result))
+                kept, needless = known.add(stmt, type_, int(bits), len(result))
                 if needless is not None:
                     result[needless] = None
             case _:
@@ -104,7 +113,7 @@ def _block(block: Block, variables: set[str]) -> Block:
                 known = _Known() if touched is None else known
                 for lane, offset in touched or ():
                     known.forget(lane, offset)
-        result.append(stmt)
+        result.append(kept)
     return tuple(stmt for stmt in result if stmt is not None)
 
 
