@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from itertools import islice
 
 from rosetta_jit.kernel import ir, nodes
-from rosetta_jit.kernel.walk import every_statement, parts_of, statements
+from rosetta_jit.kernel.walk import blocks_of, every_statement, parts_of, statements
 
 SHORT: dict[nodes.Direction, int] = {"decode": 48, "encode": 32, "size": 32}
 """Statements up to which a call costs a kernel more than 5 % of its time. Who encodes makes bytes besides."""
@@ -84,7 +84,7 @@ def _usual_statements(kernel: ir.Kernel) -> Iterator[nodes.Stmt]:
 def is_short_and_straight(kernel: ir.Kernel) -> bool:
     """Whether a kernel, in the first of its bodies, takes no longer than a call of it by much."""
     first = kernel.bodies[0]
-    is_short = not _are_more(statements(first), SHORT[kernel.direction])
+    is_short = not _are_more(_on_the_way(first), SHORT[kernel.direction])
     if not is_short and (_are_more(statements(first), SHORT_IN_VECTORS) or not are_straight_and_compute((kernel,))):
         return False
     return not any(isinstance(each, nodes.For | nodes.While) for each, _ in statements(first))
@@ -93,6 +93,15 @@ def is_short_and_straight(kernel: ir.Kernel) -> bool:
 def is_short(kernel: ir.Kernel) -> bool:
     """Whether the first of a kernel's bodies has so few statements that it can be compiled once more."""
     return not _are_more(statements(kernel.bodies[0]), SHORT_IN_VECTORS)
+
+
+def _on_the_way(block: nodes.Block) -> Iterator[nodes.Stmt]:
+    """The statements of a block and of those inside, but for what runs where a check has failed."""
+    for stmt in block:
+        yield stmt
+        if not (isinstance(stmt, nodes.If) and looks_closer(stmt)):
+            for inside in blocks_of(stmt):
+                yield from _on_the_way(inside)
 
 
 def looks_closer(stmt: nodes.If) -> bool:
