@@ -83,8 +83,8 @@ def _more(lane: Any, room: int, missing: int, size: int, most: int, path: str) -
     wanted = room + missing
     if wanted > most:
         raise _Failed(0, 0, (path,))
-    if room:
-        wanted = max(wanted, min(most, 2 * room))
+    if room or missing == 1:
+        wanted = max(wanted, min(most, 2 * room), min(most, 16))
     grown = bytearray(wanted * size)
     grown[: len(lane)] = lane
     return grown, wanted

@@ -18,6 +18,7 @@ from rosetta_jit.lowering.codec.field_order import NONE, Case, read_cases
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields, span_of
 from rosetta_jit.lowering.codec.packed import read_fixed, read_varints, reads_several
+from rosetta_jit.lowering.codec.runs import has_runs, read_run
 from rosetta_jit.lowering.codec.tagged_message import (
     Message,
     array_starts,
@@ -262,6 +263,8 @@ def _read_element(message: Message, entry: Entry) -> None:
         case Number(_, scalar, order):
             value = writer.let("value", writer.load(scalar_name(scalar), where, order))
             _append(message, lane, value)
+            if has_runs(entry, message.tagged):
+                read_run(writer, fields, lane, entry.value, entry.number << 3 | entry.wire, message.stop)
         case Varint() as varint:
             value = _varint_value(message, varint, fields.layout.lanes[lane].element, where, read_element)
             with writer.nested() as known:

@@ -403,7 +403,13 @@ template <class Container> void resize_to(Container &target, std::int64_t count)
 {
     if constexpr (is_repeated<Container>::value) {
         if constexpr (std::is_arithmetic_v<typename Container::value_type>) {
-            target.Resize(static_cast<int>(count), {});
+            const int more = static_cast<int>(count) - target.size();
+            if (more > 0) {
+                target.Reserve(static_cast<int>(count));
+                target.AddNAlreadyReserved(more); /* they are written next: to set them before would take as long */
+            } else {
+                target.Truncate(static_cast<int>(count));
+            }
         } else {
             target.Reserve(static_cast<int>(count));
             while (target.size() > count) {
@@ -415,6 +421,19 @@ template <class Container> void resize_to(Container &target, std::int64_t count)
         }
     } else if constexpr (can_resize<Container>::value) {
         target.resize(static_cast<std::size_t>(count));
+    }
+}
+
+template <class Container> struct is_vector : std::false_type {};
+template <class Element, class Memory> struct is_vector<std::vector<Element, Memory>> : std::true_type {};
+
+/* How many elements a container gets that lacks one: protobuf's arrays come one by one, so that more will follow. A bounded one may take no more. */
+template <class Container> std::int64_t enlarged(const Container &target)
+{
+    if constexpr (is_repeated<Container>::value || is_vector<Container>::value) {
+        return std::max<std::int64_t>(8, 2 * count_of(target));
+    } else {
+        return count_of(target) + 1;
     }
 }
 
@@ -515,10 +534,15 @@ template <class Container, class Row> void assign(Container &&target, const Row 
     }
 }
 
-/* Bytes that nothing has to make room for first. */
+/* Bytes that nothing has to make room for first. A text that has too little is made anew, which takes fewer instructions than to let it grow. */
 inline void assign(std::string &target, const unsigned char *bytes, std::int64_t count)
 {
-    target.assign(reinterpret_cast<const char *>(bytes), static_cast<std::size_t>(count));
+    const char *const text = reinterpret_cast<const char *>(bytes);
+    if (static_cast<std::size_t>(count) > target.capacity()) {
+        target = std::string(text, static_cast<std::size_t>(count));
+    } else {
+        target.assign(text, static_cast<std::size_t>(count));
+    }
 }
 
 template <class Memory> void assign(std::vector<std::uint8_t, Memory> &target, const unsigned char *bytes, std::int64_t count)
@@ -691,7 +715,7 @@ template <class Row, class Container> struct container_lane {
             return false;
         }
         const std::int64_t wanted = capacity + missing;
-        resize_to(*container, wanted);
+        resize_to(*container, missing == 1 && sizeof(Row) > 1 ? std::min(most, enlarged(*container)) : wanted);
         look();
         return capacity >= wanted; /* one of a fixed length has the room that it has */
     }
