@@ -16,7 +16,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.api.options import request_of, type_request
 from rosetta_jit.cli import main
-from rosetta_jit.generate.build import Wishes, generated
+from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
 from tests.generate.driver import STRICT, answers, compiled, driver, expected, harmed, needs_gcc, write
 from tests.golden import GOLDEN, check_golden
 
@@ -168,7 +168,7 @@ def test_a_hostile_schema_stays_in_its_place(tmp_path):
     assert answers(program, [message]) == [f"ok {message.hex()}"]
 
 
-OWN_NAMES = "int64_t load_i16_le store_i16_le HAS_ORDER TEXT evil_Inner EVIL_H codec most i i_5 Inner ROSETTA_JIT_COLD linux restrict"
+OWN_NAMES = "int64_t load_i16_le store_i16_le HAS_ORDER ONCE TEXT evil_Inner EVIL_H codec most i i_5 Inner ROSETTA_JIT_COLD linux restrict"
 """Names of the runtime, of its macros, of what the unit itself defines; and one that another becomes where it is numbered."""
 
 
@@ -182,8 +182,38 @@ def named(kind):
 @needs_gcc
 @pytest.mark.parametrize("kind", ["int32", "string", "Inner", "Inner[]", "string[]", "float32[2]"])
 def test_fields_are_called_as_the_unit_calls_its_own(tmp_path, kind):
-    name = write(tmp_path, generated(named(kind), "c", BOTH, "evil"))
-    subprocess.run(["gcc", *STRICT, "-fsyntax-only", tmp_path / f"{name}.c"], check=True)
+    for wishes in (NO_WISHES, Wishes(freestanding=True)):
+        name = write(tmp_path, generated(named(kind), "c", BOTH, "evil", wishes))
+        subprocess.run(["gcc", *STRICT, "-fsyntax-only", tmp_path / f"{name}.c"], check=True)
+
+
+IN_LCM = "int16_t a; int32_t b; int64_t c; float d; double e; int8_t f; double g[3]; int32_t h[2];"
+IN_IDL = "short a; unsigned long b; long long c; float d; double e; octet f; double g[3]; sequence<long> h;"
+SCALARS = {
+    "ros1": ("a/M", {"schema": "int16 a\nuint32 b\nint64 c\nfloat32 d\nfloat64 e\nuint8 f\nfloat64[3] g\nint32[] h\n"}),
+    "lcm": ("a.m", {"schema": {"m.lcm": f"package a; struct m {{ {IN_LCM} }}"}}),
+    "cdr-giop": ("A::M", {"schema": {"m.idl": f"module A {{ struct M {{ {IN_IDL} }}; }};"}, "byte_order": "big"}),
+}
+ALL_SCALARS = {"a": -2, "b": 7, "c": -(1 << 40), "d": 1.5, "e": -0.1, "f": 3, "g": [1.0, 2.0, 1e300], "h": [1, -1]}
+
+
+@needs_gcc
+@pytest.mark.parametrize("encoding", ["cdr-giop", "lcm", "ros1"])
+def test_small_code_of_a_machine_that_aligns_its_numbers(tmp_path, encoding):
+    """Numbers of all sizes, little- and big-endian: functions that are there once read and write them."""
+    gcc = "arm-linux-gnueabihf-gcc"
+    if shutil.which(gcc) is None or shutil.which("qemu-arm") is None:
+        pytest.skip("gcc for ARM or qemu-user are not installed")
+    type_, schema = SCALARS[encoding]
+    options = {"encoding": encoding, **schema}
+    decode, encode = (of(type_, **options) for of in (rj.Decoder.of, rj.Encoder.of))
+    good = [bytes(encode(encode.holder_type.from_dict(each))) for each in (ALL_SCALARS, {})]
+    name = write(tmp_path, generated(type_request("decode", type_, options), "c", BOTH, "unit", Wishes(freestanding=True)))
+    assert "ONCE uint32_t load_u32_" in (tmp_path / f"{name}.c").read_text()
+    machine = ("-Os", "-mno-unaligned-access", "-static")
+    messages = harmed(good, 12, encoding)
+    found = answers(driver(tmp_path, name, gcc, machine), messages, "qemu-arm")
+    assert found == [expected(decode, encode, each) for each in messages]
 
 
 def test_texts_end_neither_literals_nor_comments():
@@ -232,7 +262,7 @@ def test_a_full_disk_leaves_all_files_as_they_were(tmp_path, capsys, monkeypatch
 def test_the_lines_of_the_mapping_stand_beside_what_comes_from_them():
     text = generated(TORSO, "c", BOTH, "torso")["torso.c"]
     assert (
-        "(float)(load_f64_le(bytes, 16) * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */"
+        "(float)(load_f64_le(bytes + 16) * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */"
         in text
     )
     assert "const float element_2 = angles[start + 1]; /* torso_state.mapping:12: " in text

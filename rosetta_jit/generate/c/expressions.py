@@ -230,7 +230,7 @@ def _is_single(value: nodes.Expr) -> str:
 
 
 def _loaded(scope: Scope, type_: nodes.Scalar, at: str, order: str) -> str:
-    return f"{scope.calls(f'load_{type_}{_suffix(type_, order)}')}({scope.takes('bytes')}, {at})"
+    return f"{scope.calls(f'load_{type_}{_suffix(type_, order)}')}({scope.takes('bytes')} + {at})"
 
 
 def _suffix(type_: nodes.Scalar, order: str) -> str:
@@ -242,7 +242,7 @@ def store(scope: Scope, at: nodes.Expr, value: nodes.Expr, order: str) -> str:
     """A statement that writes a scalar to the message."""
     type_ = type_of(value)
     name = scope.calls(f"store_{type_}{_suffix(type_, order)}")
-    return f"{name}({scope.takes('bytes')}, {expression(scope, at)}, {expression(scope, value)});"
+    return f"{name}({scope.takes('bytes')} + {expression(scope, at)}, {expression(scope, value)});"
 
 
 def read(scope: Scope, type_: nodes.Scalar, place: nodes.Place) -> str:

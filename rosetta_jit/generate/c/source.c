@@ -124,9 +124,13 @@ const char *${name}_status_text(${name}_status status)
     (void)status;
     return "";
 #else
-    switch (status) {
+    static const char texts[] =
 $texts
+        "unknown";
+    const char *text = texts;
+    for (int number = (int)status < 0 || (int)status > $last ? $count : (int)status; number > 0; number--) {
+        text += length_of(text) + 1;
     }
-    return "unknown";
+    return text;
 #endif
 }

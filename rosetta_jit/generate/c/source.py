@@ -125,13 +125,15 @@ def source(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...], printed: Mappi
         step=f"    {_number(unit)} step;\n" if _has_steps(unit) else "",
         includes=_includes(unit, called),
         asserts="\n".join(f'_Static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in structs),
-        support=support(without_unused(called, printed)),
+        support=support(without_unused(called, printed), small=unit.freestanding),
         lanes=",\n    ".join([*(text_literal(_shown(each.name)) for each in unit.layout.lanes), *_scratch(lanes)]),
         scratch=f"    {_number(unit)} scratch;\n" if _says(unit) else "",
         locate=_locate(unit),
         said=SAID.format(status=unit.name.upper()) if _says(unit) else "",
         functions="\n\n".join([clear(unit.name, lanes), REACH, *functions]),
-        texts="\n".join(f'    case {unit.name.upper()}_{each.upper()}:\n        return "{each}";' for each in STATUSES),
+        texts="\n".join(f'        "{each}\\0"' for each in STATUSES),
+        last=len(STATUSES) - 1,
+        count=len(STATUSES),
     )
     return re.sub(r"\n{3,}", "\n\n", text)
 

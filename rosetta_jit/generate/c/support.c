@@ -1,4 +1,4 @@
-/* What generated functions call. Each section becomes part of a file that needs it; `$name` stands for each of the words behind `name:`. */
+/* What generated functions call. Each section becomes part of a file that needs it; `$name` stands for each of the words behind `name:`, `$static` for what functions are. */
 
 /* == failure == */
 /* Where and why a message cannot be read or written. `site` is a row of the table of sites, as wide as the machine counts best; 0 stands for a lane without room. */
@@ -69,121 +69,121 @@ static inline int64_t bytes_of(int64_t rows, int64_t stride)
 #endif
 
 /* == load_u8 == */
-static inline uint8_t load_u8(const unsigned char *bytes, int64_t at)
+static inline uint8_t load_u8(const unsigned char *at)
 {
-    return bytes[at];
+    return *at;
 }
 
 /* == load_i8 == */
-static inline int8_t load_i8(const unsigned char *bytes, int64_t at)
+static inline int8_t load_i8(const unsigned char *at)
 {
-    return (int8_t)bytes[at];
+    return (int8_t)*at;
 }
 
 /* == load_bool == */
-static inline bool load_bool(const unsigned char *bytes, int64_t at)
+static inline bool load_bool(const unsigned char *at)
 {
-    return bytes[at] != 0;
+    return *at != 0;
 }
 
 /* == load_u${bits}_le | bits: 16 32 64 | needs: host_order == */
-static inline uint${bits}_t load_u${bits}_le(const unsigned char *bytes, int64_t at)
+${static} uint${bits}_t load_u${bits}_le(const unsigned char *at)
 {
 #if HAS_ORDER
     uint${bits}_t number;
-    memcpy(&number, bytes + at, sizeof number);
+    memcpy(&number, at, sizeof number);
     return IN_ORDER_le(${bits}, number);
 #else
     uint64_t number = 0;
     for (int byte = ${bits} / 8 - 1; byte >= 0; byte--) {
-        number = number << 8 | bytes[at + byte];
+        number = number << 8 | at[byte];
     }
     return (uint${bits}_t)number;
 #endif
 }
 
 /* == load_u${bits}_be | bits: 16 32 64 | needs: host_order == */
-static inline uint${bits}_t load_u${bits}_be(const unsigned char *bytes, int64_t at)
+${static} uint${bits}_t load_u${bits}_be(const unsigned char *at)
 {
 #if HAS_ORDER
     uint${bits}_t number;
-    memcpy(&number, bytes + at, sizeof number);
+    memcpy(&number, at, sizeof number);
     return IN_ORDER_be(${bits}, number);
 #else
     uint64_t number = 0;
     for (int byte = 0; byte < ${bits} / 8; byte++) {
-        number = number << 8 | bytes[at + byte];
+        number = number << 8 | at[byte];
     }
     return (uint${bits}_t)number;
 #endif
 }
 
 /* == load_i${bits}_${order} | bits: 16 32 64 | order: le be | needs: load_u${bits}_${order} == */
-static inline int${bits}_t load_i${bits}_${order}(const unsigned char *bytes, int64_t at)
+static inline int${bits}_t load_i${bits}_${order}(const unsigned char *at)
 {
-    return (int${bits}_t)load_u${bits}_${order}(bytes, at);
+    return (int${bits}_t)load_u${bits}_${order}(at);
 }
 
 /* == load_f${bits}_${order} | bits: 32 64 | order: le be | needs: load_u${bits}_${order} float${bits}_of == */
-static inline ${real} load_f${bits}_${order}(const unsigned char *bytes, int64_t at)
+static inline ${real} load_f${bits}_${order}(const unsigned char *at)
 {
-    return float${bits}_of(load_u${bits}_${order}(bytes, at));
+    return float${bits}_of(load_u${bits}_${order}(at));
 }
 
 /* == store_u8 == */
-static inline void store_u8(unsigned char *bytes, int64_t at, uint8_t number)
+static inline void store_u8(unsigned char *at, uint8_t number)
 {
-    bytes[at] = number;
+    *at = number;
 }
 
 /* == store_i8 == */
-static inline void store_i8(unsigned char *bytes, int64_t at, int8_t number)
+static inline void store_i8(unsigned char *at, int8_t number)
 {
-    bytes[at] = (unsigned char)number;
+    *at = (unsigned char)number;
 }
 
 /* == store_bool == */
-static inline void store_bool(unsigned char *bytes, int64_t at, bool holds)
+static inline void store_bool(unsigned char *at, bool holds)
 {
-    bytes[at] = holds ? 1 : 0;
+    *at = holds ? 1 : 0;
 }
 
 /* == store_u${bits}_le | bits: 16 32 64 | needs: host_order == */
-static inline void store_u${bits}_le(unsigned char *bytes, int64_t at, uint${bits}_t number)
+${static} void store_u${bits}_le(unsigned char *at, uint${bits}_t number)
 {
 #if HAS_ORDER
     const uint${bits}_t ordered = IN_ORDER_le(${bits}, number);
-    memcpy(bytes + at, &ordered, sizeof ordered);
+    memcpy(at, &ordered, sizeof ordered);
 #else
     for (int byte = 0; byte < ${bits} / 8; byte++) {
-        bytes[at + byte] = (unsigned char)(number >> (8 * byte) & 255u);
+        at[byte] = (unsigned char)(number >> (8 * byte) & 255u);
     }
 #endif
 }
 
 /* == store_u${bits}_be | bits: 16 32 64 | needs: host_order == */
-static inline void store_u${bits}_be(unsigned char *bytes, int64_t at, uint${bits}_t number)
+${static} void store_u${bits}_be(unsigned char *at, uint${bits}_t number)
 {
 #if HAS_ORDER
     const uint${bits}_t ordered = IN_ORDER_be(${bits}, number);
-    memcpy(bytes + at, &ordered, sizeof ordered);
+    memcpy(at, &ordered, sizeof ordered);
 #else
     for (int byte = 0; byte < ${bits} / 8; byte++) {
-        bytes[at + byte] = (unsigned char)(number >> (${bits} - 8 - 8 * byte) & 255u);
+        at[byte] = (unsigned char)(number >> (${bits} - 8 - 8 * byte) & 255u);
     }
 #endif
 }
 
 /* == store_i${bits}_${order} | bits: 16 32 64 | order: le be | needs: store_u${bits}_${order} == */
-static inline void store_i${bits}_${order}(unsigned char *bytes, int64_t at, int${bits}_t number)
+static inline void store_i${bits}_${order}(unsigned char *at, int${bits}_t number)
 {
-    store_u${bits}_${order}(bytes, at, (uint${bits}_t)number);
+    store_u${bits}_${order}(at, (uint${bits}_t)number);
 }
 
 /* == store_f${bits}_${order} | bits: 32 64 | order: le be | needs: store_u${bits}_${order} bits_of_f${bits} == */
-static inline void store_f${bits}_${order}(unsigned char *bytes, int64_t at, ${real} number)
+static inline void store_f${bits}_${order}(unsigned char *at, ${real} number)
 {
-    store_u${bits}_${order}(bytes, at, bits_of_f${bits}(number));
+    store_u${bits}_${order}(at, bits_of_f${bits}(number));
 }
 
 /* == float${bits}_of | bits: 32 64 == */

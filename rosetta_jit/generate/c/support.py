@@ -1,4 +1,4 @@
-"""The functions that generated C calls, of which a file has those that it needs: sections of `support.c`.
+"""The functions that generated C calls, of which a file has those that it needs: sections of `support.c`, for small machines of `small.c`.
 
 A section's head names it, says for which words it is repeated (``bits: 16 32``) and which other sections it needs.
 """
@@ -30,14 +30,19 @@ class Section:
 
 
 @cache
-def sections() -> dict[str, Section]:
-    """All sections, in the order of the file."""
-    text = Path(__file__).with_name("support.c").read_text("utf-8")
+def sections(*, small: bool = False) -> dict[str, Section]:
+    """All sections, in the order of the file; with ``small`` those of `small.c` stand for those of the same names."""
+    files = ("support.c", "small.c") if small else ("support.c",)
+    return {each.name: each for file in files for each in _sections(Path(__file__).with_name(file).read_text("utf-8"), small=small)}
+
+
+def _sections(text: str, *, small: bool) -> Iterator[Section]:
     _, *parts = HEAD.split(text)
-    return {each.name: each for head, body in zip(parts[::2], parts[1::2], strict=True) for each in _expanded(head, body.strip("\n"))}
+    for head, body in zip(parts[::2], parts[1::2], strict=True):
+        yield from _expanded(head, body.strip("\n"), small=small)
 
 
-def _expanded(head: str, body: str) -> Iterator[Section]:
+def _expanded(head: str, body: str, *, small: bool) -> Iterator[Section]:
     """A section for each combination of its words."""
     name, *clauses = (part.strip() for part in head.split("|"))
     words = {key: values.split() for key, _, values in (clause.partition(":") for clause in clauses)}
@@ -46,26 +51,27 @@ def _expanded(head: str, body: str) -> Iterator[Section]:
         known = dict(zip(words, chosen, strict=True))
         known["real"] = REAL.get(known.get("float", known.get("bits", "")), "")
         known["ctype"] = C_TYPES.get(known.get("scalar", ""), "")
+        known["static"] = "ONCE" if small and known.get("bits") == "32" else "static inline"
         filled = [Template(each).substitute(known) for each in (name, *needs, body)]
-        yield Section(filled[0], tuple(filled[1:-1]), filled[-1])
+        yield Section(filled[0], (*filled[1:-1], *(["once"] if "ONCE " in filled[-1] and name != "once" else [])), filled[-1])
 
 
-def support(called: Iterable[str]) -> str:
+def support(called: Iterable[str], *, small: bool = False) -> str:
     """The text of some sections, and of those that they need."""
-    known, wanted = sections(), set[str]()
+    known, wanted = sections(small=small), set[str]()
     pending = list(called)
     while pending:
         name = pending.pop()
         if name not in wanted:
             wanted.add(name)
             pending += known[name].needs
-    ordered = [*_in_order(wanted)]
+    ordered = [*_in_order(wanted, known)]
     return "\n\n".join(known[name].text for name in ordered if known[name].text)
 
 
-def _in_order(wanted: set[str]) -> Iterator[str]:
+def _in_order(wanted: set[str], known: dict[str, Section]) -> Iterator[str]:
     """Each after those that it needs, else as in the file."""
-    known, done = sections(), set[str]()
+    done = set[str]()
 
     def visit(name: str) -> Iterator[str]:
         if name not in done:

@@ -26,7 +26,7 @@ fmod sqrt sin cos tan asin acos atan atan2 fabs floor ceil trunc rint near far s
 """
 _LIMITS = [f"{sign}INT{bits}_C" for sign in ("", "U") for bits in (8, 16, 32, 64, "MAX")]
 
-_OF_FILES = ("HAS_ORDER", "IN_ORDER_le", "IN_ORDER_be", "TEXT")
+_OF_FILES = ("HAS_ORDER", "ONCE", "IN_ORDER_le", "IN_ORDER_be", "TEXT")
 """Macros of the files themselves, besides those that begin with the unit's name."""
 _TYPES = {*C_TYPES.values(), "size_t", "ptrdiff_t", "intptr_t", "uintptr_t", "intmax_t", "uintmax_t"}
 

@@ -56,39 +56,39 @@ static int64_t full(struct failure *failure, ptrdiff_t lane, int64_t missing)
 #define HAS_ORDER 0
 #endif
 
-static inline uint32_t load_u32_le(const unsigned char *bytes, int64_t at)
+static inline uint32_t load_u32_le(const unsigned char *at)
 {
 #if HAS_ORDER
     uint32_t number;
-    memcpy(&number, bytes + at, sizeof number);
+    memcpy(&number, at, sizeof number);
     return IN_ORDER_le(32, number);
 #else
     uint64_t number = 0;
     for (int byte = 32 / 8 - 1; byte >= 0; byte--) {
-        number = number << 8 | bytes[at + byte];
+        number = number << 8 | at[byte];
     }
     return (uint32_t)number;
 #endif
 }
 
-static inline uint64_t load_u64_le(const unsigned char *bytes, int64_t at)
+static inline uint64_t load_u64_le(const unsigned char *at)
 {
 #if HAS_ORDER
     uint64_t number;
-    memcpy(&number, bytes + at, sizeof number);
+    memcpy(&number, at, sizeof number);
     return IN_ORDER_le(64, number);
 #else
     uint64_t number = 0;
     for (int byte = 64 / 8 - 1; byte >= 0; byte--) {
-        number = number << 8 | bytes[at + byte];
+        number = number << 8 | at[byte];
     }
     return (uint64_t)number;
 #endif
 }
 
-static inline int32_t load_i32_le(const unsigned char *bytes, int64_t at)
+static inline int32_t load_i32_le(const unsigned char *at)
 {
-    return (int32_t)load_u32_le(bytes, at);
+    return (int32_t)load_u32_le(at);
 }
 
 static inline double float64_of(uint64_t bits)
@@ -98,38 +98,38 @@ static inline double float64_of(uint64_t bits)
     return number;
 }
 
-static inline double load_f64_le(const unsigned char *bytes, int64_t at)
+static inline double load_f64_le(const unsigned char *at)
 {
-    return float64_of(load_u64_le(bytes, at));
+    return float64_of(load_u64_le(at));
 }
 
-static inline void store_u32_le(unsigned char *bytes, int64_t at, uint32_t number)
+static inline void store_u32_le(unsigned char *at, uint32_t number)
 {
 #if HAS_ORDER
     const uint32_t ordered = IN_ORDER_le(32, number);
-    memcpy(bytes + at, &ordered, sizeof ordered);
+    memcpy(at, &ordered, sizeof ordered);
 #else
     for (int byte = 0; byte < 32 / 8; byte++) {
-        bytes[at + byte] = (unsigned char)(number >> (8 * byte) & 255u);
+        at[byte] = (unsigned char)(number >> (8 * byte) & 255u);
     }
 #endif
 }
 
-static inline void store_u64_le(unsigned char *bytes, int64_t at, uint64_t number)
+static inline void store_u64_le(unsigned char *at, uint64_t number)
 {
 #if HAS_ORDER
     const uint64_t ordered = IN_ORDER_le(64, number);
-    memcpy(bytes + at, &ordered, sizeof ordered);
+    memcpy(at, &ordered, sizeof ordered);
 #else
     for (int byte = 0; byte < 64 / 8; byte++) {
-        bytes[at + byte] = (unsigned char)(number >> (8 * byte) & 255u);
+        at[byte] = (unsigned char)(number >> (8 * byte) & 255u);
     }
 #endif
 }
 
-static inline void store_i32_le(unsigned char *bytes, int64_t at, int32_t number)
+static inline void store_i32_le(unsigned char *at, int32_t number)
 {
-    store_u32_le(bytes, at, (uint32_t)number);
+    store_u32_le(at, (uint32_t)number);
 }
 
 static inline uint64_t bits_of_f64(double number)
@@ -139,9 +139,9 @@ static inline uint64_t bits_of_f64(double number)
     return bits;
 }
 
-static inline void store_f64_le(unsigned char *bytes, int64_t at, double number)
+static inline void store_f64_le(unsigned char *at, double number)
 {
-    store_u64_le(bytes, at, bits_of_f64(number));
+    store_u64_le(at, bits_of_f64(number));
 }
 
 /* Without texts an error has its status, its offset and the number of its site, a row of the tables below. */
@@ -279,10 +279,10 @@ static int64_t decode_1(torso_state_holder *holder, const unsigned char *restric
         return fail(failure, 1, -1); /* trailing: not of the usual length */
     }
     memset(message, 0, 32);
-    if (load_i32_le(bytes, 0) != 266) {
+    if (load_i32_le(bytes + 0) != 266) {
         return fail(failure, 2, 0); /* tag: must be 266 */
     }
-    if (load_i32_le(bytes, 4) != 3) {
+    if (load_i32_le(bytes + 4) != 3) {
         return fail(failure, 3, 4); /* count: must be 3 */
     }
     if (3 > holder->angles.capacity - angles_used) {
@@ -292,9 +292,9 @@ static int64_t decode_1(torso_state_holder *holder, const unsigned char *restric
     angles_used += 3;
     message->angles.start = start; /* torso_state.mapping:10: len(.angles) <-> 3 */
     message->angles.count = 3; /* torso_state.mapping:10: len(.angles) <-> 3 */
-    angles[start] = (float)(load_f64_le(bytes, 8) * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
-    angles[start + 1] = (float)(load_f64_le(bytes, 16) * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
-    angles[start + 2] = (float)(load_f64_le(bytes, 24) * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
+    angles[start] = (float)(load_f64_le(bytes + 8) * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
+    angles[start + 1] = (float)(load_f64_le(bytes + 16) * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
+    angles[start + 2] = (float)(load_f64_le(bytes + 24) * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
     holder->unknown.used = 0;
     holder->angles.used = angles_used;
     return 32;
@@ -309,7 +309,7 @@ static int64_t decode_2(torso_state_holder *holder, const unsigned char *restric
     if (end < 4) {
         return fail(failure, 4, 0); /* truncated: the message ends here */
     }
-    const int64_t code = (int64_t)load_i32_le(bytes, 0);
+    const int64_t code = (int64_t)load_i32_le(bytes + 0);
     double yaw_2 = 0.0;
     double roll_2 = 0.0;
     double pitch_2 = 0.0;
@@ -319,12 +319,12 @@ static int64_t decode_2(torso_state_holder *holder, const unsigned char *restric
         if (end < 32) {
             return fail(failure, 5, 4); /* truncated: the message ends here */
         }
-        if (load_i32_le(bytes, 4) != 3) {
+        if (load_i32_le(bytes + 4) != 3) {
             return fail(failure, 3, 4); /* count: must be 3 */
         }
-        yaw_2 = load_f64_le(bytes, 8);
-        roll_2 = load_f64_le(bytes, 16);
-        pitch_2 = load_f64_le(bytes, 24);
+        yaw_2 = load_f64_le(bytes + 8);
+        roll_2 = load_f64_le(bytes + 16);
+        pitch_2 = load_f64_le(bytes + 24);
         next = 32;
         break;
     }
@@ -332,21 +332,21 @@ static int64_t decode_2(torso_state_holder *holder, const unsigned char *restric
         if (end < 44) {
             return fail(failure, 6, 4); /* truncated: the message ends here */
         }
-        if (load_i32_le(bytes, 4) != 3) {
+        if (load_i32_le(bytes + 4) != 3) {
             return fail(failure, 3, 4); /* count: must be 3 */
         }
-        if (load_i32_le(bytes, 8) != 10) {
+        if (load_i32_le(bytes + 8) != 10) {
             return fail(failure, 7, 8); /* tag .yaw: must be 10 */
         }
-        yaw_2 = load_f64_le(bytes, 12);
-        if (load_i32_le(bytes, 20) != 10) {
+        yaw_2 = load_f64_le(bytes + 12);
+        if (load_i32_le(bytes + 20) != 10) {
             return fail(failure, 8, 20); /* tag .roll: must be 10 */
         }
-        roll_2 = load_f64_le(bytes, 24);
-        if (load_i32_le(bytes, 32) != 10) {
+        roll_2 = load_f64_le(bytes + 24);
+        if (load_i32_le(bytes + 32) != 10) {
             return fail(failure, 9, 32); /* tag .pitch: must be 10 */
         }
-        pitch_2 = load_f64_le(bytes, 36);
+        pitch_2 = load_f64_le(bytes + 36);
         next = 44;
         break;
     }
@@ -457,29 +457,29 @@ static int64_t encode_message(const torso_state_holder *holder, unsigned char *r
     if (end < 32) {
         return fail(failure, 2, 0); /* length: no room for the message */
     }
-    store_i32_le(bytes, 0, 266);
-    store_i32_le(bytes, 4, 3);
+    store_i32_le(bytes + 0, 266);
+    store_i32_le(bytes + 4, 3);
     if (0 >= count) {
         failure->indices[0] = 0;
         return fail(failure, 3, 8); /* index .angles[{}]: no such element (torso_state.mapping:11:3) */
     }
     const float element = angles[start]; /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
     const double yaw = (double)element * 57.29577951308232;
-    store_f64_le(bytes, 8, yaw);
+    store_f64_le(bytes + 8, yaw);
     if (1 >= count) {
         failure->indices[0] = 1;
         return fail(failure, 4, 16); /* index .angles[{}]: no such element (torso_state.mapping:12:3) */
     }
     const float element_2 = angles[start + 1]; /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
     const double roll = (double)element_2 * 57.29577951308232;
-    store_f64_le(bytes, 16, roll);
+    store_f64_le(bytes + 16, roll);
     if (2 >= count) {
         failure->indices[0] = 2;
         return fail(failure, 5, 24); /* index .angles[{}]: no such element (torso_state.mapping:13:3) */
     }
     const float element_3 = angles[start + 2]; /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
     const double pitch = (double)element_3 * 57.29577951308232;
-    store_f64_le(bytes, 24, pitch);
+    store_f64_le(bytes + 24, pitch);
     if (count != 3) {
         return fail(failure, 6, 32); /* rejected: `len(.angles)` is not `3`, as the mapping says (torso_state.mapping:10:3) */
     }
@@ -543,42 +543,29 @@ const char *torso_state_status_text(torso_state_status status)
     (void)status;
     return "";
 #else
-    switch (status) {
-    case TORSO_STATE_OK:
-        return "ok";
-    case TORSO_STATE_FULL:
-        return "full";
-    case TORSO_STATE_TRUNCATED:
-        return "truncated";
-    case TORSO_STATE_TRAILING:
-        return "trailing";
-    case TORSO_STATE_TAG:
-        return "tag";
-    case TORSO_STATE_CONSTANT:
-        return "constant";
-    case TORSO_STATE_COUNT:
-        return "count";
-    case TORSO_STATE_LENGTH:
-        return "length";
-    case TORSO_STATE_NESTING:
-        return "nesting";
-    case TORSO_STATE_TEXT:
-        return "text";
-    case TORSO_STATE_VARINT:
-        return "varint";
-    case TORSO_STATE_RANGE:
-        return "range";
-    case TORSO_STATE_INDEX:
-        return "index";
-    case TORSO_STATE_MISSING:
-        return "missing";
-    case TORSO_STATE_IMAGE:
-        return "image";
-    case TORSO_STATE_REJECTED:
-        return "rejected";
-    case TORSO_STATE_UNION:
-        return "union";
+    static const char texts[] =
+        "ok\0"
+        "full\0"
+        "truncated\0"
+        "trailing\0"
+        "tag\0"
+        "constant\0"
+        "count\0"
+        "length\0"
+        "nesting\0"
+        "text\0"
+        "varint\0"
+        "range\0"
+        "index\0"
+        "missing\0"
+        "image\0"
+        "rejected\0"
+        "union\0"
+        "unknown";
+    const char *text = texts;
+    for (int number = (int)status < 0 || (int)status > 16 ? 17 : (int)status; number > 0; number--) {
+        text += length_of(text) + 1;
     }
-    return "unknown";
+    return text;
 #endif
 }

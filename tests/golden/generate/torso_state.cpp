@@ -104,39 +104,39 @@ ROSETTA_JIT_COLD static int64_t full(struct failure *failure, ptrdiff_t lane, in
 #define HAS_ORDER 0
 #endif
 
-static inline uint32_t load_u32_le(const unsigned char *bytes, int64_t at)
+static inline uint32_t load_u32_le(const unsigned char *at)
 {
 #if HAS_ORDER
     uint32_t number;
-    memcpy(&number, bytes + at, sizeof number);
+    memcpy(&number, at, sizeof number);
     return IN_ORDER_le(32, number);
 #else
     uint64_t number = 0;
     for (int byte = 32 / 8 - 1; byte >= 0; byte--) {
-        number = number << 8 | bytes[at + byte];
+        number = number << 8 | at[byte];
     }
     return (uint32_t)number;
 #endif
 }
 
-static inline uint64_t load_u64_le(const unsigned char *bytes, int64_t at)
+static inline uint64_t load_u64_le(const unsigned char *at)
 {
 #if HAS_ORDER
     uint64_t number;
-    memcpy(&number, bytes + at, sizeof number);
+    memcpy(&number, at, sizeof number);
     return IN_ORDER_le(64, number);
 #else
     uint64_t number = 0;
     for (int byte = 64 / 8 - 1; byte >= 0; byte--) {
-        number = number << 8 | bytes[at + byte];
+        number = number << 8 | at[byte];
     }
     return (uint64_t)number;
 #endif
 }
 
-static inline int32_t load_i32_le(const unsigned char *bytes, int64_t at)
+static inline int32_t load_i32_le(const unsigned char *at)
 {
-    return (int32_t)load_u32_le(bytes, at);
+    return (int32_t)load_u32_le(at);
 }
 
 static inline double float64_of(uint64_t bits)
@@ -146,38 +146,38 @@ static inline double float64_of(uint64_t bits)
     return number;
 }
 
-static inline double load_f64_le(const unsigned char *bytes, int64_t at)
+static inline double load_f64_le(const unsigned char *at)
 {
-    return float64_of(load_u64_le(bytes, at));
+    return float64_of(load_u64_le(at));
 }
 
-static inline void store_u32_le(unsigned char *bytes, int64_t at, uint32_t number)
+static inline void store_u32_le(unsigned char *at, uint32_t number)
 {
 #if HAS_ORDER
     const uint32_t ordered = IN_ORDER_le(32, number);
-    memcpy(bytes + at, &ordered, sizeof ordered);
+    memcpy(at, &ordered, sizeof ordered);
 #else
     for (int byte = 0; byte < 32 / 8; byte++) {
-        bytes[at + byte] = (unsigned char)(number >> (8 * byte) & 255u);
+        at[byte] = (unsigned char)(number >> (8 * byte) & 255u);
     }
 #endif
 }
 
-static inline void store_u64_le(unsigned char *bytes, int64_t at, uint64_t number)
+static inline void store_u64_le(unsigned char *at, uint64_t number)
 {
 #if HAS_ORDER
     const uint64_t ordered = IN_ORDER_le(64, number);
-    memcpy(bytes + at, &ordered, sizeof ordered);
+    memcpy(at, &ordered, sizeof ordered);
 #else
     for (int byte = 0; byte < 64 / 8; byte++) {
-        bytes[at + byte] = (unsigned char)(number >> (8 * byte) & 255u);
+        at[byte] = (unsigned char)(number >> (8 * byte) & 255u);
     }
 #endif
 }
 
-static inline void store_i32_le(unsigned char *bytes, int64_t at, int32_t number)
+static inline void store_i32_le(unsigned char *at, int32_t number)
 {
-    store_u32_le(bytes, at, (uint32_t)number);
+    store_u32_le(at, (uint32_t)number);
 }
 
 static inline uint64_t bits_of_f64(double number)
@@ -187,9 +187,9 @@ static inline uint64_t bits_of_f64(double number)
     return bits;
 }
 
-static inline void store_f64_le(unsigned char *bytes, int64_t at, double number)
+static inline void store_f64_le(unsigned char *at, double number)
 {
-    store_u64_le(bytes, at, bits_of_f64(number));
+    store_u64_le(at, bits_of_f64(number));
 }
 
 const part borrow_parts_5[] = {
@@ -233,10 +233,10 @@ static int64_t borrow_1(torso_state_holder *holder, const unsigned char *restric
         return fail(failure, 1, -1); /* trailing: not of the usual length */
     }
     memset(message, 0, 32);
-    if (load_i32_le(bytes, 0) != 266) {
+    if (load_i32_le(bytes + 0) != 266) {
         return fail(failure, 2, 0); /* tag: must be 266 */
     }
-    if (load_i32_le(bytes, 4) != 3) {
+    if (load_i32_le(bytes + 4) != 3) {
         return fail(failure, 3, 4); /* count: must be 3 */
     }
     if (3 > holder->angles.capacity - angles_used) {
@@ -249,9 +249,9 @@ static int64_t borrow_1(torso_state_holder *holder, const unsigned char *restric
     angles_used += 3;
     message->angles.start = start; /* torso_state.mapping:10: len(.angles) <-> 3 */
     message->angles.count = 3; /* torso_state.mapping:10: len(.angles) <-> 3 */
-    angles[start] = (float)(load_f64_le(bytes, 8) * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
-    angles[start + 1] = (float)(load_f64_le(bytes, 16) * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
-    angles[start + 2] = (float)(load_f64_le(bytes, 24) * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
+    angles[start] = (float)(load_f64_le(bytes + 8) * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
+    angles[start + 1] = (float)(load_f64_le(bytes + 16) * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
+    angles[start + 2] = (float)(load_f64_le(bytes + 24) * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
     holder->unknown.used = 0;
     holder->angles.used = angles_used;
     return 32;
@@ -266,7 +266,7 @@ static int64_t borrow_2(torso_state_holder *holder, const unsigned char *restric
     if (end < 4) {
         return fail(failure, 4, 0); /* truncated: the message ends here */
     }
-    const int64_t code = (int64_t)load_i32_le(bytes, 0);
+    const int64_t code = (int64_t)load_i32_le(bytes + 0);
     double yaw_2 = 0.0;
     double roll_2 = 0.0;
     double pitch_2 = 0.0;
@@ -276,12 +276,12 @@ static int64_t borrow_2(torso_state_holder *holder, const unsigned char *restric
         if (end < 32) {
             return fail(failure, 5, 4); /* truncated: the message ends here */
         }
-        if (load_i32_le(bytes, 4) != 3) {
+        if (load_i32_le(bytes + 4) != 3) {
             return fail(failure, 3, 4); /* count: must be 3 */
         }
-        yaw_2 = load_f64_le(bytes, 8);
-        roll_2 = load_f64_le(bytes, 16);
-        pitch_2 = load_f64_le(bytes, 24);
+        yaw_2 = load_f64_le(bytes + 8);
+        roll_2 = load_f64_le(bytes + 16);
+        pitch_2 = load_f64_le(bytes + 24);
         next = 32;
         break;
     }
@@ -289,21 +289,21 @@ static int64_t borrow_2(torso_state_holder *holder, const unsigned char *restric
         if (end < 44) {
             return fail(failure, 6, 4); /* truncated: the message ends here */
         }
-        if (load_i32_le(bytes, 4) != 3) {
+        if (load_i32_le(bytes + 4) != 3) {
             return fail(failure, 3, 4); /* count: must be 3 */
         }
-        if (load_i32_le(bytes, 8) != 10) {
+        if (load_i32_le(bytes + 8) != 10) {
             return fail(failure, 7, 8); /* tag .yaw: must be 10 */
         }
-        yaw_2 = load_f64_le(bytes, 12);
-        if (load_i32_le(bytes, 20) != 10) {
+        yaw_2 = load_f64_le(bytes + 12);
+        if (load_i32_le(bytes + 20) != 10) {
             return fail(failure, 8, 20); /* tag .roll: must be 10 */
         }
-        roll_2 = load_f64_le(bytes, 24);
-        if (load_i32_le(bytes, 32) != 10) {
+        roll_2 = load_f64_le(bytes + 24);
+        if (load_i32_le(bytes + 32) != 10) {
             return fail(failure, 9, 32); /* tag .pitch: must be 10 */
         }
-        pitch_2 = load_f64_le(bytes, 36);
+        pitch_2 = load_f64_le(bytes + 36);
         next = 44;
         break;
     }
@@ -368,29 +368,29 @@ static int64_t encode_message(torso_state_source *holder, const torso_state_Join
     if (end < 32) {
         return fail(failure, 1, 0); /* length: no room for the message */
     }
-    store_i32_le(bytes, 0, 266);
-    store_i32_le(bytes, 4, 3);
+    store_i32_le(bytes + 0, 266);
+    store_i32_le(bytes + 4, 3);
     if (0 >= count) {
         failure->indices[0] = 0;
         return fail(failure, 2, 8); /* index .angles[{}]: no such element (torso_state.mapping:11:3) */
     }
     const float element = angles[start]; /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
     const double yaw = (double)element * 57.29577951308232;
-    store_f64_le(bytes, 8, yaw);
+    store_f64_le(bytes + 8, yaw);
     if (1 >= count) {
         failure->indices[0] = 1;
         return fail(failure, 3, 16); /* index .angles[{}]: no such element (torso_state.mapping:12:3) */
     }
     const float element_2 = angles[start + 1]; /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
     const double roll = (double)element_2 * 57.29577951308232;
-    store_f64_le(bytes, 16, roll);
+    store_f64_le(bytes + 16, roll);
     if (2 >= count) {
         failure->indices[0] = 2;
         return fail(failure, 4, 24); /* index .angles[{}]: no such element (torso_state.mapping:13:3) */
     }
     const float element_3 = angles[start + 2]; /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
     const double pitch = (double)element_3 * 57.29577951308232;
-    store_f64_le(bytes, 24, pitch);
+    store_f64_le(bytes + 24, pitch);
     if (count != 3) {
         return fail(failure, 5, 32); /* rejected: `len(.angles)` is not `3`, as the mapping says (torso_state.mapping:10:3) */
     }

@@ -534,15 +534,10 @@ template <class Container, class Row> void assign(Container &&target, const Row 
     }
 }
 
-/* Bytes that nothing has to make room for first. A text that has too little is made anew, which takes fewer instructions than to let it grow. */
+/* Bytes that nothing has to make room for first. */
 inline void assign(std::string &target, const unsigned char *bytes, std::int64_t count)
 {
-    const char *const text = reinterpret_cast<const char *>(bytes);
-    if (static_cast<std::size_t>(count) > target.capacity()) {
-        target = std::string(text, static_cast<std::size_t>(count));
-    } else {
-        target.assign(text, static_cast<std::size_t>(count));
-    }
+    target.assign(reinterpret_cast<const char *>(bytes), static_cast<std::size_t>(count));
 }
 
 template <class Memory> void assign(std::vector<std::uint8_t, Memory> &target, const unsigned char *bytes, std::int64_t count)
