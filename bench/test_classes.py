@@ -14,8 +14,12 @@ from rosetta_jit.api.options import type_request
 CHAPTER = "Generated C++ in frameworks' classes"
 OURS = "rosetta_jit, generated C++"
 PEERS = {"ros1": "roscpp", "ros2": "roscpp", "protobuf": "protobuf"}
-JOBS = {"decode": ("an object, used again", 1), "encode": ("a buffer that is given", None)}
-"""What each makes, and the target."""
+JOBS = {
+    "decode": ("decoded", "an object, used again", 1),
+    "anew": ("decoded into a new object", "an object, made anew", None),
+    "encode": ("encoded", "a buffer that is given", None),
+}
+"""What is done, what each makes, and the target."""
 ROS = ("Imu", "JointState, 32 joints", "LaserScan 1080", "PoseArray 1000", "Image 640x480")
 PROTOBUF = {
     "RST JointAngles, packed": "angles.proto",
@@ -32,12 +36,12 @@ def against(tmp_path, effort, found, record):
     def measure(name, request, holder, messages, **given):
         taken = peers.measured(peers.program(request, holder, tmp_path, **given), messages, effort.rounds, effort.round_s)
         whose = {OURS: "ours", f"{PEERS[holder]} in C++": "theirs"}
-        for job, (makes, at_most) in JOBS.items():
+        for job, (done, makes, at_most) in JOBS.items():
             outcome = Outcome({who: taken[f"{each} {job}"] for who, each in whose.items()})
             contenders = [Contender(who, "ours" if each == "ours" else "peer", makes, lambda: 0.0) for who, each in whose.items()]
-            found("comparisons", comparison(CHAPTER, f"{name}, {job}d", contenders, outcome))
+            found("comparisons", comparison(CHAPTER, f"{name}, {done}", contenders, outcome))
             mine, other = (words.time(outcome.took(who).median) for who in whose)
-            what, said = f"{name}, generated C++, {job}d", f"{mine} against {other}"
+            what, said = f"{name}, generated C++, {done}", f"{mine} against {other}"
             record(what, outcome.ratio(*whose), at_most, f"x {PEERS[holder]}", said, messages=1)
 
     return measure

@@ -34,20 +34,22 @@ using Theirs = Message;
 
 using Bytes = std::vector<unsigned char>;
 
-// A message in several places, of which each round reads or writes another: where two blocks lie modulo a page can make a copy ten times slower.
+// Several places for a message, of which each turn reads or writes another: where two blocks lie modulo a page can make a copy ten times slower. They are
+// the same for ours and for theirs: how fast memory is depends on which one it is.
 struct Places {
     static constexpr std::size_t COUNT = 5, STEP = 1376;
     std::vector<Bytes> memory;
 
-    explicit Places(const Bytes& message) {
+    explicit Places(std::size_t size) {
         for (std::size_t place = 0; place < COUNT; place++) {
-            memory.emplace_back(place * STEP);
-            memory.back().insert(memory.back().end(), message.begin(), message.end());
+            memory.emplace_back(place * STEP + size);
         }
     }
-    unsigned char* of(int round) {
-        const std::size_t place = static_cast<std::size_t>(round) % COUNT;
-        return memory[place].data() + place * STEP;
+    unsigned char* of(int turn, const Bytes& message) {
+        const std::size_t place = static_cast<std::size_t>(turn) % COUNT;
+        unsigned char* const at = memory[place].data() + place * STEP;
+        std::copy(message.begin(), message.end(), at);
+        return at;
     }
 };
 
@@ -91,7 +93,15 @@ std::string canonical(const Theirs& message) {
 template <class Class, class Read> double read(Read work, std::int64_t iterations) {
     Class message;
     publish(message);
-    return nanoseconds(iterations, [&] { return work(message); });
+    return work(message) ? nanoseconds(iterations, [&] { return work(message); }) : -1;  // its memory is there then
+}
+
+template <class Class, class Read> double read_anew(Read work, std::int64_t iterations) {
+    return nanoseconds(iterations, [&] {
+        Class message;
+        publish(message);
+        return work(message);
+    });
 }
 
 template <class Class, class Write> double write(const Class& message, unsigned char* place, Write work, std::int64_t iterations) {
@@ -123,7 +133,7 @@ Bytes content(const char* path) {
 
 struct Contender {
     const char* name;
-    std::function<double(std::int64_t iterations, int round)> job;
+    std::function<double(std::int64_t iterations, int turn)> job;
     std::int64_t iterations;
 };
 
@@ -140,31 +150,48 @@ int main(int, char** arguments) {
         std::fputs("the messages that are read or written differ\n", stderr);
         return 1;
     }
-    Places our_places(ours), their_places(theirs);
+    Places places(std::max(ours.size(), theirs.size()));
     const auto encode = [&](const Message& message, unsigned char* buffer) { return codec.try_encode(message, buffer, ours.size()).has_value(); };
     const auto peer_encode = [&](const Theirs& message, unsigned char* buffer) { return theirs_write(message, buffer, theirs.size()); };
     Contender contenders[] = {
-        {"ours decode", [&](std::int64_t iterations, int round) {
-            const unsigned char* const data = our_places.of(round);
+        {"ours decode", [&](std::int64_t iterations, int turn) {
+            const unsigned char* const data = places.of(turn, ours);
             return read<Message>([&](Message& message) { return codec.try_decode(data, ours.size(), message).has_value(); }, iterations);
         }, 0},
-        {"theirs decode", [&](std::int64_t iterations, int round) {
-            const unsigned char* const data = their_places.of(round);
+        {"theirs decode", [&](std::int64_t iterations, int turn) {
+            const unsigned char* const data = places.of(turn, theirs);
             return read<Theirs>([&](Theirs& message) { return theirs_read(data, theirs.size(), message); }, iterations);
         }, 0},
-        {"ours encode", [&](std::int64_t iterations, int round) { return write(one, our_places.of(round), encode, iterations); }, 0},
-        {"theirs encode", [&](std::int64_t iterations, int round) { return write(other, their_places.of(round), peer_encode, iterations); }, 0},
+        {"ours anew", [&](std::int64_t iterations, int turn) {
+            const unsigned char* const data = places.of(turn, ours);
+            return read_anew<Message>([&](Message& message) { return codec.try_decode(data, ours.size(), message).has_value(); }, iterations);
+        }, 0},
+        {"theirs anew", [&](std::int64_t iterations, int turn) {
+            const unsigned char* const data = places.of(turn, theirs);
+            return read_anew<Theirs>([&](Theirs& message) { return theirs_read(data, theirs.size(), message); }, iterations);
+        }, 0},
+        {"ours encode", [&](std::int64_t iterations, int turn) { return write(one, places.of(turn, ours), encode, iterations); }, 0},
+        {"theirs encode", [&](std::int64_t iterations, int turn) { return write(other, places.of(turn, theirs), peer_encode, iterations); }, 0},
     };
     for (Contender& each : contenders) {
         each.iterations = std::max<std::int64_t>(1, static_cast<std::int64_t>(round_ns / std::max(each.job(100, 0), 0.1)));
     }
-    for (int round = 0; round < rounds; round++) {  // in turns, so that a busy moment of the machine hits all alike
-        for (const Contender& each : contenders) {
-            const double took = each.job(each.iterations, round);
-            if (took < 0) {
-                return 1;
+    constexpr int TURNS = 10, COUNT = sizeof contenders / sizeof *contenders;
+    for (int round = 0; round < rounds; round++) {
+        double took[COUNT] = {};
+        for (int turn = 0; turn < TURNS; turn++) {  // so that a busy moment of the machine hits all alike; who comes first changes
+            for (int number = 0; number < COUNT; number++) {
+                const int place = (number + turn) % COUNT;
+                const Contender& each = contenders[place];
+                const double taken = each.job(std::max<std::int64_t>(1, each.iterations / TURNS), turn);
+                if (taken < 0) {
+                    return 1;
+                }
+                took[place] += taken / TURNS;
             }
-            std::printf("%s %.3f\n", each.name, took);
+        }
+        for (int number = 0; number < COUNT; number++) {
+            std::printf("%s %.3f\n", contenders[number].name, took[number]);
         }
     }
     return 0;
