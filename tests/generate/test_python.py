@@ -178,6 +178,17 @@ def test_messages_within_others_are_written_from_the_objects(module):
             unit.encode(made)
 
 
+def test_wide_texts_are_written_in_code_units(module):
+    """Those of ROS 2, which its bytes have as UTF-16; bounded ones, and behind other fields, too."""
+    given = {"encoding": "cdr", "schema": "uint8 before\nwstring wide\nfloat64 after\nwstring<=9 bounded\nwstring[] many\n"}
+    request = type_request("decode", "w/msg/Wide", given)
+    unit, encode = module(request), rj.Encoder.of("w/msg/Wide", **given)
+    values = {"before": 1, "wide": "aé€😀", "after": 0.5, "bounded": "x", "many": ["", "ab"]}
+    message = encode(encode.holder_type.from_dict(values))
+    assert unit.encode(unit.Wide(**values)) == message
+    answers_as_the_library(unit, (rj.Decoder.of("w/msg/Wide", **given), encode), harmed([bytes(message)], 12, "wide"))
+
+
 def test_decimal_numbers(module):
     request, programs, messages = numbers_in_texts()
     answers_as_the_library(module(request), programs, harmed(messages, 12, "numbers"))

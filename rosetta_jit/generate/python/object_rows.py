@@ -236,7 +236,7 @@ class Binder:
 
     def _sequence(self, at: str, type_: String | Bytes | Array, slot: Span, found: dict[int, str]) -> None:
         lane = self.unit.layout.lanes[slot.lane]
-        if lane.links is not None or type_ == String("utf-16"):
+        if lane.links is not None or (isinstance(type_, String) and type_.encoding == "utf-16"):
             raise NotInParts
         own = self.local((at if at.replace(".", "").isidentifier() and "." in at else lane.name).rpartition(".")[2] or "value")
         self.function.line(f'{own} = {at}.encode("utf-8", "surrogateescape")' if isinstance(type_, String) else f"{own} = {at}")
