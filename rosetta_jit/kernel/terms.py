@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from rosetta_jit.kernel import nodes
 
 BEGIN, END, ROW = nodes.Local("i64", "begin"), nodes.Local("i64", "end"), nodes.Local("i64", "row")
@@ -52,6 +54,14 @@ def mul(left: nodes.Expr, right: nodes.Expr | int) -> nodes.Expr:
             return nodes.Binary("mul", right, left)
         case _:
             return nodes.Binary("mul", left, right)
+
+
+def joined(op: nodes.Arithmetic, terms: Sequence[nodes.Expr]) -> nodes.Expr:
+    """Terms under one operation, whichever are grouped: a tree of halves, as a chain of many would nest deeper than expressions may."""
+    if len(terms) == 1:
+        return terms[0]
+    half = len(terms) // 2
+    return nodes.Binary(op, joined(op, terms[:half]), joined(op, terms[half:]))
 
 
 def type_of(expr: nodes.Expr) -> nodes.Scalar:

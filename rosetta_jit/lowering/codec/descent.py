@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import field
 
 from rosetta_jit.kernel.nodes import Binary, Block, Compare, Const, Expect, Expr, Get, If, Local, SetField, Switch, Used, While
-from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
+from rosetta_jit.kernel.terms import BEGIN, END, add, index, joined, mul
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderElements, HolderFields
 from rosetta_jit.lowering.codec.walk import begin_elements, if_present, switch_cases, walk
 from rosetta_jit.lowering.codec.work_list import link
@@ -263,11 +263,9 @@ def descend(nested: Mapping[str, Codec], attempt: Codec, fields: HolderFields, w
 
 def _most_rounds(writer: Writer, fields: HolderFields, states: int) -> Expr:
     """Each row is visited in each state at most once, and there are no more rows than bytes, or rows of lanes."""
-    rows: Expr = index(2)
     if writer.direction == "decode":
         rows = add(Binary("sub", END, BEGIN), 2)
         writer.expect(Compare("le", rows, index(MAX_SIZE // states)), "length", Where(), "the message is larger than any memory")
     else:
-        for lane, _ in fields.layout.recursive:
-            rows = Binary("add", rows, Used(lane))
+        rows = add(joined("add", [Used(lane) for lane, _ in fields.layout.recursive]), 2)
     return writer.let("most", mul(writer.let("rows", rows), states))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rosetta_jit.kernel.nodes import Binary, Compare, Const, Expr, Get, If, Local, Place, Used, While
-from rosetta_jit.kernel.terms import BEGIN, END, add, index
+from rosetta_jit.kernel.terms import BEGIN, END, add, index, joined
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields
 from rosetta_jit.lowering.codec.tagged import read_message
 from rosetta_jit.lowering.codec.work_list import BEGIN_WORD, DEPTH_WORD, END_WORD, MORE_WORD, in_scratch, link
@@ -24,11 +24,7 @@ def read_rows(encoding: Encoding, fields: HolderFields, writer: Writer, rows: di
         return
     limit = writer.let("limit", add(Binary("sub", END, BEGIN), 1))
     done = writer.var("done", index(0))
-    pending: Expr | None = None
-    for lane, cursor in rows.items():
-        waits = Compare("lt", cursor, Used(lane))
-        pending = waits if pending is None else Binary("or", pending, waits)
-    assert pending is not None
+    pending = joined("or", [Compare("lt", cursor, Used(lane)) for lane, cursor in rows.items()])
     end = writer.position
     with writer.nested() as body:
         for lane, struct in fields.layout.recursive:

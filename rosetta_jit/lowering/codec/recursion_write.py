@@ -7,7 +7,7 @@ before children), then the lengths. To measure, the list is made and gone throug
 from __future__ import annotations
 
 from rosetta_jit.kernel import nodes
-from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
+from rosetta_jit.kernel.terms import BEGIN, END, add, index, joined, mul
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields, span_of
 from rosetta_jit.lowering.codec.tagged_write import Lengths, present, write_message, write_tag
 from rosetta_jit.lowering.codec.varint_write import write_varint
@@ -97,9 +97,7 @@ def _measure(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: W
 
 
 def _list_rows(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: Writer, scratch: int) -> Rows:
-    most: nodes.Expr = index(0)
-    for lane, _ in fields.layout.recursive:
-        most = add(most, nodes.Used(lane))
+    most = joined("add", [nodes.Used(lane) for lane, _ in fields.layout.recursive])
     rows = Rows(scratch, writer.var("rows", index(0)), writer.let("most", most))
     _visit(writer, fields, tagged, rows)
     at = writer.var("at_row", index(0))
