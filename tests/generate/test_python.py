@@ -435,3 +435,18 @@ def test_arrays_that_are_not_the_fields_are_refused(ranges, module):
 def test_other_languages_have_no_arrays_of_numpy():
     with pytest.raises(SchemaError, match="no-numpy"):
         generated(TORSO, "c", BOTH, "torso", NUMPY)
+
+
+def test_short_integers_are_read_without_a_call(module):
+    """Tags and lengths of one byte, at the end of a message too; and texts of which one is not ASCII."""
+    given = {
+        "encoding": "protobuf",
+        "schema": {"t.proto": 'syntax = "proto3"; package t; message M { repeated string v = 1; int64 n = 2; }'},
+    }
+    request = type_request("decode", "t.M", given)
+    assert re.search(r"= data\[\w+\] if .*\w+ < end else 128\n", generated(request, "python", ("decode",), "unit")["unit.py"])
+    unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    values = [["", "a", "b" * 200], ["é", "", "x"], []]
+    good = [bytes(programs[1](programs[1].holder_type.from_dict({"v": each, "n": -1}))) for each in values]
+    answers_as_the_library(unit, programs, harmed([*good, b"\x0a", b"\x10", b"\x10\x80", b"\x8a\x00\x01a"], 12, "short"))
+    assert [unit.decode(each).v for each in good] == values

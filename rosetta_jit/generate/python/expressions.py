@@ -318,6 +318,9 @@ def _convert(target: nodes.Scalar, source: nodes.Scalar, value: str) -> str:
         return f"_saturated({bare(value)}, {least}, {most})"
     if source == "bool":
         return f"int({bare(value)})"
+    if (source[0], target[0]) == ("u", "i") and nodes.WIDTH[source] == nodes.WIDTH[target] and value.isidentifier():
+        bits = 8 * nodes.WIDTH[target]
+        return f"({value} if {value} < {2 ** (bits - 1)} else {value} - {2**bits})"
     return value if is_wider(target, source) else _wrapped(target, value)
 
 

@@ -212,4 +212,24 @@ def _routine(writer: Writer, role: Role, routine: ir.Routine, function: Function
     _blank(writer)
     writer.line(f"def {name}({', '.join(['data', 'end', 'sites', 'indices', *parameters, *own])}):")
     writer.lines += function.writer.lines
-    return Attempt(name, tuple(parameters))
+    return Attempt(name, tuple(parameters), _is_mostly_a_byte(routine))
+
+
+def _is_mostly_a_byte(routine: ir.Routine) -> bool:
+    """Whether a routine reads a byte, and goes on if that is 128 or more: a caller may look at it without a call."""
+    match routine.parameters, routine.results, routine.body:
+        case (
+            (at,),
+            (value, after),
+            (
+                nodes.Require(needed, nodes.Const(_, 1)),
+                nodes.Let(byte, nodes.Load("u8", place)),
+                nodes.Var(first, nodes.Convert("u64", nodes.Local(_, converted))),
+                nodes.Var(behind, nodes.Binary("add", begin, nodes.Const(_, 1))),
+                nodes.If(nodes.Compare("ge", nodes.Local(_, compared), nodes.Const(_, 128)), _, ()),
+            ),
+        ):
+            is_read = needed == place == begin == at and byte == converted == compared
+            return is_read and (first, behind) == (value.name, after.name)
+        case _:
+            return False

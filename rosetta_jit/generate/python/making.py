@@ -109,6 +109,9 @@ class Make:
             case Array(inner) if self._is_borrowed(inner, slot.lane):
                 assert isinstance(inner, String)
                 return self._texts(inner, slot, start, count)
+            case Array(String("utf-8" | "octets")) if lane == 0 and isinstance(element, Span):
+                text_lane, rows = self.scope.view(element.lane, ""), self.scope.view(slot.lane, "q")
+                return f"_texts({text_lane}, data, {rows}[{start} * 2 : ({start} + {count}) * 2])"
             case Array(inner):
                 return f"[{self._each(lambda index: self.row(inner, slot.lane, index), start, count)}]"
             case Map(key, value):

@@ -133,6 +133,15 @@ def _text(lane: Any, data: Any, start: int, count: int) -> str:
     return str(lane[start : start + count], "utf-8", "surrogateescape")
 
 
+def _texts(lane: Any, data: Any, spans: Any) -> list[str]:
+    """The texts of an array: where all of a lane is ASCII they are parts of one text."""
+    rows = zip(spans[::2], spans[1::2], strict=True)
+    if not lane.isascii():
+        return [_text(lane, data, start, count) for start, count in rows]
+    whole = lane.decode()
+    return [whole[start : start + count] if count >= 0 else _text(lane, data, start, count) for start, count in rows]
+
+
 def _bytes(lane: Any, data: Any, start: int, count: int) -> bytes:
     return bytes(data[start : start - 1 - count]) if count < 0 else bytes(lane[start : start + count])
 

@@ -22,10 +22,14 @@ from rosetta_jit.startup.dataclass import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """A body as a function: its name, and the names of what it needs of the message's lanes and row."""
+    """A body as a function: its name, and the names of what it needs of the message's lanes and row.
+
+    Of a routine, ``is_mostly_a_byte`` says that its results are a byte and the place behind it, unless that byte is 128 or more.
+    """
 
     name: str
     needs: tuple[str, ...]
+    is_mostly_a_byte: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -341,6 +345,13 @@ def _call(function: Function, call: nodes.Call) -> None:
     indices = "indices" if function.is_routine else _tuple([function.text(each) for each in call.indices])
     arguments = ", ".join(["data", "end", _tuple(sites), indices, *routine.needs, *(function.text(each) for each in call.arguments)])
     bound = f"{', '.join(results)}{',' if len(results) == 1 else ''} = " if results else ""
+    if routine.is_mostly_a_byte:
+        at, (value, after) = expression(scope, call.arguments[0]), results
+        least = "" if is_not_negative(call.arguments[0], function.positive) else "0 <= "
+        function.line(f"{value} = data[{bare(at)}] if {least}{at} < end else 128")
+        function.line(f"{after} = {at} + 1")
+        function.line(f"if {value} >= 128:")
+        bound = f"    {bound}"
     function.line(f"{bound}{routine.name}({arguments})")
 
 
