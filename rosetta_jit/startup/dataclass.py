@@ -15,6 +15,8 @@ from operator import attrgetter
 from types import CodeType, FunctionType
 from typing import TYPE_CHECKING, Any, cast
 
+from rosetta_jit.startup.stores import STORES
+
 if TYPE_CHECKING:
     from dataclasses import dataclass as dataclass  # noqa: PLC0414 - what others import from here
     from dataclasses import replace as replace  # noqa: PLC0414
@@ -126,7 +128,8 @@ def _init(fields: Mapping[str, dataclasses.Field[Any]], names: dict[str, Any], *
             raise TypeError(f"non-default argument {name!r} follows default argument")
     code = _stores(tuple(kinds), has_post_init=has_post_init)
     parameters = ("self", *(name for name, each in fields.items() if each.init))
-    return FunctionType(code.replace(co_varnames=parameters), names, "__init__", tuple(defaults))
+    named = code.replace(co_name="__init__", co_qualname="__init__", co_varnames=parameters)
+    return FunctionType(named, names, "__init__", tuple(defaults))
 
 
 def _made_anew(store: Callable[[object, object], None], make: Callable[[], object]) -> Callable[[object, object], None]:
@@ -137,6 +140,8 @@ def _made_anew(store: Callable[[object, object], None], make: Callable[[], objec
 @cache
 def _stores(kinds: tuple[tuple[bool, bool], ...], *, has_post_init: bool) -> CodeType:
     """The code of an `__init__`: for each field, whether it is a parameter, and whether it has a value of its own if it is none."""
+    if 0 < len(kinds) <= len(STORES) and not has_post_init and all(is_parameter for is_parameter, _ in kinds):
+        return STORES[len(kinds) - 1]
     parameters, body = ["self"], list[str]()
     for number, (is_parameter, has_default) in enumerate(kinds):
         if is_parameter:
