@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.definitions import Definition
     from rosetta_jit.frameworks.probe import Probes
     from rosetta_jit.parsing.idl import FrontEnd
-    from rosetta_jit.runtime.holder import Manners
     from rosetta_jit.wire.codec import Encoding
     from rosetta_jit.wire.other_type import Partners
     from rosetta_jit.wire.self_describing import Tree
@@ -179,15 +178,6 @@ class Framework:
     def front_end(self, file: str) -> FrontEnd:
         """The front end for a file that it `reads`, imported when it is first called."""
         return _lazy(next(place for suffix, place in self.idl.items() if file.endswith(suffix)))
-
-
-def manners_of(place: str) -> Manners:
-    """The manners at a place, plain ones for none."""
-    if not place:
-        from rosetta_jit.runtime.holder import PLAIN
-
-        return PLAIN
-    return cast("Manners", object_at(place))
 
 
 def _lazy(place: str) -> FrontEnd:

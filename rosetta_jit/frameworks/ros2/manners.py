@@ -7,7 +7,6 @@ range or beyond a bound ValueError, also where Python runs with ``-O`` and rosid
 
 from __future__ import annotations
 
-import json
 import sys
 from typing import Any, ClassVar
 
@@ -112,7 +111,11 @@ def _is_initial(field: Field) -> bool:
 
 def _default(field: Field) -> Any:
     several = field.option("default")
-    return json.loads(several) if isinstance(several, str) else field.default
+    if not isinstance(several, str):
+        return field.default
+    import json  # few fields have defaults of several values
+
+    return json.loads(several)
 
 
 def spelled(type_: Type) -> str:

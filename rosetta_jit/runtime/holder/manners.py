@@ -78,5 +78,5 @@ PLAIN = Manners(
 
 
 def manners_at(place: str) -> Manners:
-    """The manners at a place."""
-    return object_at(place)
+    """The manners at a place, plain ones for none."""
+    return object_at(place) if place else PLAIN
