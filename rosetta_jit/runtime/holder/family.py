@@ -23,8 +23,7 @@ from rosetta_jit.runtime.attributes.methods import put
 from rosetta_jit.runtime.holder.classes import Holder, HolderClass, HolderFamily
 from rosetta_jit.runtime.holder.manners import PLAIN, Manners, manners_at
 from rosetta_jit.runtime.holder.message import OWN_NAMES, Access, View, in_row, read_field, recipe, write_field
-from rosetta_jit.runtime.holder.objects.foreign import Foreign, Wholes
-from rosetta_jit.runtime.holder.record import Record
+from rosetta_jit.runtime.holder.record import Entry, Record
 from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES
 from rosetta_jit.runtime.holder.serialising import building_method, serialising_methods
 from rosetta_jit.runtime.holder.tree import Tree, written_within
@@ -35,12 +34,14 @@ from rosetta_jit.runtime.looks.described import Constructor, Described
 from rosetta_jit.runtime.memory_plan import Plan, plan
 from rosetta_jit.runtime.row_counts import begun_as, initialised, roomier
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.garbage import object_at
 from rosetta_jit.startup.late import Late
 from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.attributes.sameness import Sameness
     from rosetta_jit.runtime.holder import access
+    from rosetta_jit.runtime.holder.objects.foreign import Foreign, Wholes
     from rosetta_jit.runtime.holder.objects.giving import Givers
     from rosetta_jit.runtime.holder.objects.taking import Takers
 else:
@@ -62,7 +63,7 @@ class Family:
         self.tree = Tree(self.type, self.schema, self.layout)
         self.plan = initialised(plan(self.layout, initial=self.tree.initial))
         self.cell = [self.plan]
-        self.array_type, self.sequence, self.mapping = manners.array_type, manners.sequence, manners.mapping
+        self.array_type = manners.array_type
         self.assigns_whole = manners.assigns_whole
         self._accesses: dict[int, Access] = {}
         self._views: dict[str, type[View]] = {}
@@ -203,13 +204,25 @@ class Family:
         return Sameness()
 
     @property
+    def sequence(self) -> Callable[[View, Entry], Any]:
+        """What shows arrays of anything but numbers."""
+        return object_at(self.manners.sequence)
+
+    @property
+    def mapping(self) -> Callable[[View, Entry], Any]:
+        """What shows maps."""
+        return object_at(self.manners.mapping)
+
+    @cached_property
     def foreign(self) -> Foreign:
         """The peculiarities of objects of the framework's own package."""
-        return self.manners.foreign
+        return object_at(self.manners.foreign)
 
     @cached_property
     def wholes(self) -> Wholes:
         """How objects of other classes are handed over at once."""
+        from rosetta_jit.runtime.holder.objects.foreign import Wholes
+
         return Wholes(self.foreign, self)
 
     @cached_property
