@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field
 from fnmatch import fnmatch
 from typing import TYPE_CHECKING, Literal, Protocol, cast
 
 from rosetta_jit.model.types import Schema, Struct, name_parts
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:

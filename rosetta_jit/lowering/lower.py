@@ -8,7 +8,6 @@ of an encoding becomes a body of the kernel.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Kernel
@@ -38,7 +37,7 @@ from rosetta_jit.model.expr import Side
 from rosetta_jit.model.initial_values import InitialValues
 from rosetta_jit.model.layout import Layout
 from rosetta_jit.model.types import Schema, Struct, Type
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 from rosetta_jit.wire.codec import Codec, Encoding, Tagged
 
 if TYPE_CHECKING:

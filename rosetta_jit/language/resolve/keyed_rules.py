@@ -8,7 +8,6 @@ elements of the loop's numbers.
 
 from __future__ import annotations
 
-from dataclasses import field
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -21,7 +20,7 @@ from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Rule, SetL
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array
 from rosetta_jit.model.walk import parts
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 if TYPE_CHECKING:
     Loop = For[Rule, Expr]

@@ -7,7 +7,6 @@ the checks that follow do not report the same mistake in other words.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from itertools import pairwise
 from typing import assert_never
 
@@ -47,7 +46,7 @@ from rosetta_jit.model.expr import Side
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Schema, String, Type
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import unit_files as words
@@ -22,7 +21,7 @@ from rosetta_jit.model.limits import MAX_UNIT_PARTS
 from rosetta_jit.model.types import Array, Declaration, Field, Float, Int, PartUnit, Schema, Struct, Type, Union, name_parts
 from rosetta_jit.model.units import Context
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 if TYPE_CHECKING:
     Way = tuple[str | int | None, ...]

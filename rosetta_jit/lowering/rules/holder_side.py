@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
-from dataclasses import field
 
 from rosetta_jit.kernel.nodes import Address, Assign, Binary, Compare, Const, Expr, Get, If, Place, Select, SetField, Switch, Used
 from rosetta_jit.kernel.terms import add, index
@@ -25,7 +24,7 @@ from rosetta_jit.lowering.writer import Writer, block, integer
 from rosetta_jit.model.initial_values import InitialValues, selected
 from rosetta_jit.model.layout import Member, Number, Row, Span, Variant
 from rosetta_jit.model.types import Array, Bytes, Constant, Field, Optional, String, Struct, Union
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 from rosetta_jit.wire.codec import Path
 
 Key = tuple[object, ...]

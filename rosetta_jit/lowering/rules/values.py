@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
 from pathlib import PurePath
 from typing import assert_never, cast
 
@@ -29,7 +28,7 @@ from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.expr import Operator
 from rosetta_jit.model.types import Bool, Enum
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 
 @dataclass(frozen=True, slots=True)
