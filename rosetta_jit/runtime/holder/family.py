@@ -24,7 +24,6 @@ from rosetta_jit.runtime.holder.classes import Holder, HolderClass, HolderFamily
 from rosetta_jit.runtime.holder.manners import PLAIN, Manners, manners_at
 from rosetta_jit.runtime.holder.message import OWN_NAMES, Access, View, in_row, read_field, recipe, write_field
 from rosetta_jit.runtime.holder.record import Entry, Record
-from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES
 from rosetta_jit.runtime.holder.serialising import building_method, serialising_methods
 from rosetta_jit.runtime.holder.tree import Tree, written_within
 from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes
@@ -129,6 +128,8 @@ class Family:
     @property
     def sequences(self) -> OfSequences:
         """The functions that compiled code calls for sequences."""
+        from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES
+
         return OF_SEQUENCES
 
     @property
