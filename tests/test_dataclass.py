@@ -8,13 +8,13 @@ import inspect
 import math
 import pickle
 import weakref
-from dataclasses import field
 from pathlib import Path
 from typing import ClassVar
 
 import pytest
 
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
+from rosetta_jit.startup.stores import STORES
 
 PACKAGE = Path(__file__).resolve().parent.parent / "rosetta_jit"
 
@@ -40,9 +40,9 @@ class Theirs:
 
     first: int
     second: str = "two"
-    third: list = field(default_factory=list)
-    span: object = field(default=None, compare=False, repr=False)
-    derived: float = field(default=0.5, init=False)
+    third: list = dataclasses.field(default_factory=list)
+    span: object = dataclasses.field(default=None, compare=False, repr=False)
+    derived: float = dataclasses.field(default=0.5, init=False)
     KIND: ClassVar[str] = "kind"
 
 
@@ -186,6 +186,26 @@ class Apart:
 @dataclass(frozen=True, slots=True, weakref_slot=True)
 class Watched:
     value: int
+
+
+def test_fields_of_the_standard_library_are_refused():
+    """They would be taken for values."""
+    with pytest.raises(TypeError, match="imported from where"):
+
+        @dataclass(frozen=True, slots=True)
+        class Mixed:
+            value: list = dataclasses.field(default_factory=list)
+
+
+@pytest.mark.parametrize("count", range(len(STORES) + 2))
+def test_each_number_of_fields_is_set(count):
+    names = [f"field{number}" for number in range(count)]
+    made = dataclass(slots=True)(type("Made", (), {"__annotations__": dict.fromkeys(names, "int")}))
+    value = made(*range(count))
+    assert [getattr(value, name) for name in names] == list(range(count))
+    assert made(**{name: number for number, name in enumerate(names)}) == value
+    with pytest.raises(TypeError, match=r"__init__\(\)"):
+        made(*range(count + 1))
 
 
 def test_objects_may_be_equal_to_themselves_alone():

@@ -7,7 +7,6 @@ from contextlib import AbstractContextManager, suppress
 from functools import lru_cache, partial
 from typing import Any
 
-from rosetta_jit.api import cacheable as certainty
 from rosetta_jit.errors import CacheWarning, warn
 from rosetta_jit.kernel.entries import HOST, ON_DEMAND
 from rosetta_jit.runtime import run
@@ -15,7 +14,6 @@ from rosetta_jit.runtime.cache.kernels import Cache
 from rosetta_jit.runtime.cache.names import entry_name, request_name
 from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.allowed import ForeignCodeError
-from rosetta_jit.runtime.on_demand import Place
 from rosetta_jit.startup.garbage import seldom_collected
 
 RECENT = 8
@@ -72,6 +70,8 @@ def _within_stack() -> AbstractContextManager[None]:
 
 
 def _compiled(build: Any, cache: Cache, link: Callable[[Mapping[str, Any], bytes], Linked]) -> Linked:
+    from rosetta_jit.api import cacheable as certainty
+
     doubts = certainty.doubts(build.called)
     name = None if doubts else entry_name(build.text)
     if name is not None:
@@ -120,6 +120,8 @@ def library(image: bytes, symbols: Sequence[str], called: Sequence[str], *, leav
     prepare = partial(_host_functions, called) if called else len
     if not leaves_rare_of:
         return native.load(image, wanted, prepare)
+    from rosetta_jit.runtime.on_demand import Place
+
     return native.load(image, (*wanted, ON_DEMAND), lambda addresses: Place(addresses[ON_DEMAND], prepare(addresses)), leaves_rare_of)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypedDict
@@ -107,6 +106,8 @@ def type_request(direction: Direction, type_: str | type, options: Options) -> R
 
 def _from_descriptors(type_: str | type, schema: bytes | None) -> str:
     """A type that comes as protobuf's own descriptors, as text."""
+    import json  # few types come so
+
     from rosetta_jit.frameworks.protobuf.descriptors import from_file_descriptor_set, from_message_class
     from rosetta_jit.model.serial import to_plain
     from rosetta_jit.model.types import Ref

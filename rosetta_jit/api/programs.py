@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Any, Self, Unpack
 from rosetta_jit.api.loading import answer, interpreted_kernel, is_as_before, library, sites_of
 from rosetta_jit.api.options import Options, request_of, type_request
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.base import manners_of
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref
 from rosetta_jit.pipeline.request import Request
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import callable_class, public_class
+from rosetta_jit.runtime.code.native import Library
 from rosetta_jit.runtime.decoder import DecoderBase
 from rosetta_jit.runtime.encoder import EncoderBase
 from rosetta_jit.runtime.holder import Holder, holder_class_of
+from rosetta_jit.runtime.holder.manners import manners_at
 from rosetta_jit.runtime.looks.described import DescribedProgram
-from rosetta_jit.runtime.on_demand import OnDemand
 from rosetta_jit.runtime.program import Loaded
 from rosetta_jit.runtime.registers import Kept
 from rosetta_jit.startup.cached import cached_property
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from rosetta_jit.pipeline.build import Build
     from rosetta_jit.pipeline.checked_mapping import CheckedMapping
     from rosetta_jit.pipeline.stages import StageName
+    from rosetta_jit.runtime.on_demand import OnDemand
 
 
 class _Made:
@@ -222,9 +223,18 @@ def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
         asks_host=header["asks_host"],
         limit=header["limit"],
         state=Kept.of(header["state"]),
-        on_demand=OnDemand.of(header, code),
+        on_demand=_on_demand(header, code),
         **_wires(header),
     )
+
+
+def _on_demand(header: Mapping[str, Any], code: Library) -> OnDemand | None:
+    """A program's knowledge of another one to which it leaves messages that hardly ever come; None where it leaves none."""
+    if header["rare"] is None:
+        return None
+    from rosetta_jit.runtime.on_demand import OnDemand
+
+    return OnDemand.of(header, code)
 
 
 def _interpreted(build: Build) -> Loaded:
@@ -251,7 +261,7 @@ def _wires(header: Mapping[str, Any]) -> dict[str, Any]:
 
 def _holder_type(header: Mapping[str, Any]) -> type[Holder]:
     """The holder class, whose messages can serialise themselves if their manners have it."""
-    manners = manners_of(header["manners"])
+    manners = manners_at(header["manners"])
     base: Any = manners.base
     if manners.serialising is not None and vars(base)["programs_"] is None:
         base.programs_ = Serialising(*manners.serialising)

@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
-from dataclasses import field
 
 from rosetta_jit.kernel import walk
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Advance, Block, Stmt
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 MAX_IDENTIFIER = 60
 """Longer names from schemas are cut."""

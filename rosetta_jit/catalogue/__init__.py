@@ -10,9 +10,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if not TYPE_CHECKING:
-    from rosetta_jit.startup.late import Late
+    from rosetta_jit.startup.late import late_modules
 
-    def __getattr__(name):
-        if name.startswith("_"):
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        return Late(f"{__name__}.{name}")
+    __getattr__ = late_modules(__name__)

@@ -9,7 +9,6 @@ several attempts the first. Operations are those on values: where a value lies i
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
 from functools import reduce
 from types import MappingProxyType
 from typing import assert_never
@@ -19,7 +18,7 @@ from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.terms import END, type_of
 from rosetta_jit.kernel.traits import looks_closer
 from rosetta_jit.kernel.walk import operands
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field
 from fnmatch import fnmatch
 from typing import TYPE_CHECKING, Literal, Protocol, cast
 
 from rosetta_jit.model.types import Schema, Struct, name_parts
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.definitions import Definition
     from rosetta_jit.frameworks.probe import Probes
     from rosetta_jit.parsing.idl import FrontEnd
-    from rosetta_jit.runtime.holder import Manners
     from rosetta_jit.wire.codec import Encoding
     from rosetta_jit.wire.other_type import Partners
     from rosetta_jit.wire.self_describing import Tree
@@ -179,15 +177,6 @@ class Framework:
     def front_end(self, file: str) -> FrontEnd:
         """The front end for a file that it `reads`, imported when it is first called."""
         return _lazy(next(place for suffix, place in self.idl.items() if file.endswith(suffix)))
-
-
-def manners_of(place: str) -> Manners:
-    """The manners at a place, plain ones for none."""
-    if not place:
-        from rosetta_jit.runtime.holder import PLAIN
-
-        return PLAIN
-    return cast("Manners", object_at(place))
 
 
 def _lazy(place: str) -> FrontEnd:

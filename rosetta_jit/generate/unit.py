@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from typing import TYPE_CHECKING, Literal, cast
 
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Scalar
 from rosetta_jit.model.layout import Layout
 from rosetta_jit.model.types import Schema
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.origins import Origin

@@ -7,13 +7,12 @@ Of an integer, floats may hold what a step gives: then nothing is rounded.
 from __future__ import annotations
 
 import math
-from dataclasses import field
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
 from rosetta_jit.language.typed import Expr
 from rosetta_jit.model.types import Bool, Enum, Float, Int, Type
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 if TYPE_CHECKING:
     from fractions import Fraction

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import field
 from typing import assert_never
 
 from rosetta_jit.catalogue import fields as words
@@ -18,7 +17,7 @@ from rosetta_jit.model.expr import Expr as Untyped
 from rosetta_jit.model.layout import map_entry
 from rosetta_jit.model.mapping import OF_WIRES
 from rosetta_jit.model.types import Array, Bytes, Enum, Field, Int, Map, Optional, Schema, Struct, Type, Union
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,6 @@ text is checked, and a length that the target fixes is checked.
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import Literal as OneOf
 from typing import TypeAlias
 
@@ -23,7 +22,7 @@ from rosetta_jit.model.expr import Operator, Side
 from rosetta_jit.model.rules import Assign, Default, For, Ignore, Reject, SetLength, SetState, When
 from rosetta_jit.model.types import Bool, Field, Int, Type
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 INT64 = Int(64)
 BOOL = Bool()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
 
 from rosetta_jit.language.typed import Place
 from rosetta_jit.model import mapping as model
@@ -11,7 +10,7 @@ from rosetta_jit.model.expr import Side
 from rosetta_jit.model.mapping import Via
 from rosetta_jit.model.types import Type
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 
 @dataclass(frozen=True, slots=True)

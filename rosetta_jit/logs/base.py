@@ -7,10 +7,9 @@ block = bytes, and a row a message: its channel, its times, where it lies
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import field
 from typing import TYPE_CHECKING, Protocol, cast
 
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import LogError, ReportError
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.logs.base import Block

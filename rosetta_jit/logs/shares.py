@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
 from typing import TYPE_CHECKING, Any, Literal
 
 from rosetta_jit.errors import LogError
@@ -17,7 +16,7 @@ from rosetta_jit.logs.channel import Channel
 from rosetta_jit.logs.decoded_parts import CLOCKS
 from rosetta_jit.logs.log import open_log
 from rosetta_jit.logs.moments import nanoseconds
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -8,7 +8,6 @@ of an encoding becomes a body of the kernel.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Kernel
@@ -16,7 +15,6 @@ from rosetta_jit.kernel.nodes import Block, Capacity, Compare, Direction, Fill, 
 from rosetta_jit.kernel.nodes import Place as KernelPlace
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index
 from rosetta_jit.language.check.discriminators import Discriminator, discriminators_of
-from rosetta_jit.language.check.wire_shares import Share
 from rosetta_jit.language.scope import Message
 from rosetta_jit.language.typed import Rule
 from rosetta_jit.lowering.codec.ending import end, length_first
@@ -27,22 +25,28 @@ from rosetta_jit.lowering.rules.holder_side import HolderSide
 from rosetta_jit.lowering.rules.in_place import obstacle
 from rosetta_jit.lowering.rules.initial_values import initialise, opened_lanes
 from rosetta_jit.lowering.rules.packed_values import AssignedByRules, look_up_arrays
-from rosetta_jit.lowering.rules.shares import clear, fixed_arrays, initial_of, keep_texts, kept_lanes
 from rosetta_jit.lowering.rules.state import begin
 from rosetta_jit.lowering.rules.statements import Runner
 from rosetta_jit.lowering.rules.values import Values
 from rosetta_jit.lowering.rules.wire_side import WireSide
-from rosetta_jit.lowering.staging import staged_fields
 from rosetta_jit.lowering.writer import References, Where, Writer, block
 from rosetta_jit.model.expr import Side
 from rosetta_jit.model.initial_values import InitialValues
 from rosetta_jit.model.layout import Layout
 from rosetta_jit.model.types import Schema, Struct, Type
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
+from rosetta_jit.startup.late import Late
 from rosetta_jit.wire.codec import Codec, Encoding, Tagged
 
 if TYPE_CHECKING:
+    from rosetta_jit.language.check.wire_shares import Share
+    from rosetta_jit.lowering import staging
+    from rosetta_jit.lowering.rules import shares
+
     Relate = Callable[[HolderFields, Codec], None]
+else:
+    shares = Late("rosetta_jit.lowering.rules.shares")
+    staging = Late("rosetta_jit.lowering.staging")
 
 SCRATCH_STRIDE = 8
 
@@ -69,7 +73,7 @@ def lower(
         How they refer to it: see `rosetta_jit.lowering.writer.References`. By the sign of their spans if None.
     """
     registers, share = (0, None) if mapped is None else (mapped.registers, mapped.share)
-    kept = () if share is None else kept_lanes(share, layout)
+    kept = () if share is None else shares.kept_lanes(share, layout)
     lowering = _Lowering(encoding, layout, direction, borrow, references, registers, kept)
     if mapped is None:
         return lowering.kernel(name, lambda fields, attempt: _own(encoding, attempt, fields))
@@ -102,10 +106,10 @@ class Mapped:
         if self.share is None or filled == "wire":
             initialise(fields, of_message, cell.row, opened)
             return HolderSide(fields, initial, opened, self.unions)
-        clear(fields, self.share)
-        initialise(fields, initial_of(self.share, of_message, fields.layout), cell.row, opened)
-        for names in fixed_arrays(self.share, fields.layout, opened):
-            keep_texts(fields, names)
+        shares.clear(fields, self.share)
+        initialise(fields, shares.initial_of(self.share, of_message, fields.layout), cell.row, opened)
+        for names in shares.fixed_arrays(self.share, fields.layout, opened):
+            shares.keep_texts(fields, names)
         return HolderSide(fields, initial, opened, self.unions, joined=self.share.joined)
 
 
@@ -219,7 +223,7 @@ def _staged(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: Ma
     """Decode the message into lanes of its own type, then run the rules; or run them, then encode what they made."""
     writer = fields.writer
     begin(writer, mapped.rules)
-    message = staged_fields(writer, fields.layout, mapped.wire_layout)
+    message = staging.staged_fields(writer, fields.layout, mapped.wire_layout)
     if writer.direction == "decode":
         _own(encoding, attempt, message)
         _run(mapped.rules, HolderSide(message), mapped.side(fields, mapped.holder, filled="holder"))

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
-from dataclasses import field
 
 from rosetta_jit.kernel import ir, nodes, state
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, type_of
 from rosetta_jit.kernel.walk import subexpressions
 from rosetta_jit.lowering.limits import MAX_SIZE, MAX_STATEMENTS
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 
 class TooManyStatementsError(Exception):

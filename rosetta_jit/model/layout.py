@@ -15,13 +15,12 @@ such a lane end with hidden words (`LINK_WORDS`) in which kernels keep their wor
 
 from __future__ import annotations
 
-from dataclasses import field
 from functools import cached_property
 from typing import assert_never
 
 from rosetta_jit.model import types
 from rosetta_jit.model.limits import MAX_ROW_BYTES, MAX_SLOTS
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 SPAN_BYTES = 16
 LINK_WORDS = 6

@@ -11,13 +11,12 @@ both directions alone, with the place on the holder's side.
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import TYPE_CHECKING, TypeAlias
 from typing import Literal as OneOf
 
 from rosetta_jit.model.expr import Expr, Len, List, Path
 from rosetta_jit.model.rules import Assign, Default, For, Ignore, Reject, SetLength, SetState, When
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Source, Span

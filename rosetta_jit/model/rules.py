@@ -9,10 +9,9 @@ all have theirs. Filters (an Assign with ``where``) are loops there, of which so
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Span

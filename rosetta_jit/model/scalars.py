@@ -5,10 +5,9 @@ They contain no expressions, and so expressions can name them: the type of a par
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Span

@@ -1,10 +1,11 @@
 """Types as plain data and back: what a cached program keeps so that a warm process rebuilds its holder without an IDL.
 
-    {"type": Node, "declared": {name: Node}}          only what the type reaches
+    {"declared": {name: Node}, "type": Node}          only what the type reaches
     Node  = {"is": class, attribute: Value, ...}      a class of the model; attributes that have their default are left out
     Value = Node | [Value, ...] | {"hex": bytes} | number | text | bool | null
 
-Documentation and spans stay behind: only the compiler reads them.
+All keys stand in the order of the alphabet: equal types are equal to the byte, however these data are written. Documentation and spans stay
+behind: only the compiler reads them.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ def to_plain(type_: types.Type, schema: types.Schema) -> Plain:
         name = pending.pop()
         if name not in declared:
             declared[name] = _plain(schema.types[name], pending, 0)
-    return {"type": root, "declared": dict(sorted(declared.items()))}
+    return {"declared": dict(sorted(declared.items())), "type": root}
 
 
 def from_plain(plain: Plain) -> tuple[types.Type, types.Schema]:
@@ -72,7 +73,7 @@ def _plain(value: object, pending: list[str], depth: int) -> object:
         attribute = cast("object", getattr(value, name))
         if attribute != default:
             plain[name] = _plain(attribute, pending, inner)
-    return plain
+    return dict(sorted(plain.items()))
 
 
 def _value(plain: Any, depth: int) -> Any:

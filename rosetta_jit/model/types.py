@@ -13,11 +13,10 @@ Scalars carry the word that their IDL uses (`spelling`): two IDL types with the 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.model.scalars import Bool, Enum, Float, Int, String
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic

@@ -34,7 +34,6 @@ from rosetta_jit.lowering.writer import References, TooManyStatementsError
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct
-from rosetta_jit.pipeline.checked_mapping import CheckedMapping
 from rosetta_jit.pipeline.declared import declared_types, files_of, of_a_size, readers_of, report
 from rosetta_jit.pipeline.kept_state import kept_of
 from rosetta_jit.pipeline.recent import recently
@@ -42,7 +41,6 @@ from rosetta_jit.pipeline.request import ByteOrder, GivenFunction, Request
 from rosetta_jit.pipeline.stages import Made, shown
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.pipeline.user_functions import called_functions, check_compiled, check_given
-from rosetta_jit.pipeline.wires import types_of_wire
 from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.runtime.limits import MAX_PIXEL_BYTES
 from rosetta_jit.runtime.run import GRACE_BYTES
@@ -51,10 +49,16 @@ from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import replace
 from rosetta_jit.startup.entry_points import files_of_offered
 from rosetta_jit.startup.garbage import imported
+from rosetta_jit.startup.late import late
 from rosetta_jit.wire.codec import Encoding, Rare
 
 if TYPE_CHECKING:
     from rosetta_jit.backends.entry.program import Options
+    from rosetta_jit.pipeline import checked_mapping
+    from rosetta_jit.pipeline import wires as several_wires
+    from rosetta_jit.pipeline.checked_mapping import CheckedMapping
+else:
+    checked_mapping, several_wires = late("rosetta_jit.pipeline", "checked_mapping", "wires")
 
 
 class Build:
@@ -335,7 +339,7 @@ def check_mapping(
     known = [name for each in readers.frameworks.values() for name in each.encodings]
     if encoding is not None and encoding not in known:
         raise report(request, words.no_encoding(encoding, known))
-    return CheckedMapping(check(parse_mapping(search.open(path)), readers, search, reading, parameters))
+    return checked_mapping.CheckedMapping(check(parse_mapping(search.open(path)), readers, search, reading, parameters))
 
 
 def _mapped_types(build: Build) -> Types:
@@ -345,7 +349,7 @@ def _mapped_types(build: Build) -> Types:
     if rules is None or not rules:
         raise MappingError((words.no_rules(checked.mapping.wire_span, request.direction),))
     if checked.mapping.wires:
-        return types_of_wire(checked, request, _both(checked), rules)
+        return several_wires.types_of_wire(checked, request, _both(checked), rules)
     if request.wire is not None:
         span = checked.mapping.wire_span
         raise MappingError((wires.unknown(span, request.wire, ()) if request.wire else wires.single(span),))

@@ -10,8 +10,8 @@ from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.installed import Readers, installed
+from rosetta_jit.language.imports.declarations import UNITS_SUFFIX
 from rosetta_jit.language.imports.search import Reading, SearchPath, refusal
-from rosetta_jit.language.parse.unit_file import SUFFIX
 from rosetta_jit.model.expansion import excess
 from rosetta_jit.model.serial import from_plain
 from rosetta_jit.model.types import Array, Declaration, Map, Optional, Schema, String, Struct, Type, Union, same_name
@@ -76,7 +76,7 @@ def _imported(request: Request, files: Files) -> Schema:
     """All that the named files declare; without names, the files given as text, or the file where such a type should be."""
     readers = readers_of(request)
     type_name = request.type or ""
-    names_given = tuple(name for name in files.texts if not name.endswith(SUFFIX))
+    names_given = tuple(name for name in files.texts if not name.endswith(UNITS_SUFFIX))
     names = request.imports or names_given or tuple(readers.guesses(type_name))
     types: dict[str, Any] = {}
     constants: dict[str, Any] = {}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal, cast
@@ -16,6 +15,9 @@ Direction = Literal["decode", "encode"]
 ByteOrder = Literal["little", "big"]
 Backend = Literal["numba", "llvm", "python", "interpreter"] | str
 """Ours, or the name of an installed one."""
+
+NO_PARAMETERS = "{}"
+"""What a mapping's parameters are where none are given, as JSON."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +79,7 @@ class Request:
     borrow: bool = False
     byte_order: ByteOrder | None = None
     lenient: tuple[str, ...] = ()
-    parameters: str = "{}"
+    parameters: str = NO_PARAMETERS
     functions: tuple[GivenFunction, ...] = ()
     backend: Backend | None = None
     wire: str | None = None
@@ -145,6 +147,10 @@ def plain_parameters(parameters: Mapping[str, object]) -> str:
     TypeError
         A value is no bool, number, text or list of these.
     """
+    if not parameters:
+        return NO_PARAMETERS
+    import json  # most programs have none
+
     return json.dumps({name: _plain(name, value) for name, value in parameters.items()}, sort_keys=True)
 
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.parameters.state import NO_STATE, Declared
 from rosetta_jit.language.typed import Rule
 from rosetta_jit.model.types import Schema, Struct
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.language.check.wire_shares import Share

@@ -13,14 +13,13 @@ from __future__ import annotations
 import ctypes
 import sys
 from collections.abc import Callable
-from dataclasses import field
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rosetta_jit.runtime import type_specs
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     Words = np.ndarray[tuple[int], np.dtype[np.int64]]

@@ -18,7 +18,6 @@ from rosetta_jit.runtime.holder import Holder
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.runtime.memory import LARGE
-from rosetta_jit.runtime.message_spans import MessageSpans, laid_out, source_of, together
 from rosetta_jit.runtime.program import Loaded, Program, is_foreign
 from rosetta_jit.runtime.row_counts import roomier
 from rosetta_jit.startup.cached import cached_property
@@ -30,12 +29,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime import filling as batches
+    from rosetta_jit.runtime import message_spans
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.filling import Filling, OnError
     from rosetta_jit.runtime.holder.objects.giving import Givers
+    from rosetta_jit.runtime.message_spans import MessageSpans
     from rosetta_jit.runtime.on_demand import OnDemand
 else:
-    (batches,) = late("rosetta_jit.runtime", "filling")
+    batches, message_spans = late("rosetta_jit.runtime", "filling", "message_spans")
 
 _Object = TypeVar("_Object")
 
@@ -175,8 +176,8 @@ class DecoderBase(Program):
             Another thread is filling, changing or encoding the batch.
         """
         if offsets is None:
-            messages, offsets = together(messages)
-        batch = self._batch(len(laid_out(messages, offsets)[1])) if into is None else into
+            messages, offsets = message_spans.together(messages)
+        batch = self._batch(len(message_spans.laid_out(messages, offsets)[1])) if into is None else into
         lanes = self._lanes_to_fill(batch, on_error)
         before = lanes.source[0]
         with lanes, self._keeping(lanes):
@@ -208,7 +209,7 @@ class DecoderBase(Program):
 
     def _go_on(self, batch: Batch, lanes: Lanes, messages: Any, offsets: Any, on_error: OnError, done: int) -> None:
         """Inside ``with lanes:``, decode messages step by step, behind so many that are."""
-        source, spans = laid_out(messages, offsets)
+        source, spans = message_spans.laid_out(messages, offsets)
         data, count = run.readable(source), len(spans)
         filling = batches.Filling(self._loaded, batch, on_error, count, self._compiled_many, self._made_for)
         if done:
@@ -275,7 +276,7 @@ class DecoderBase(Program):
         if len(arguments) == 1 and self._context[1][THREAD] != get_ident():
             return self(message) if self._becomes_mine() else self(message, self._holder_of_thread())
         holder = self._holder if len(arguments) == 1 else self._checked(arguments[1])
-        source, before = source_of(message), holder.lanes_.source[0]
+        source, before = message_spans.source_of(message), holder.lanes_.source[0]
         data = run.readable(source)
         if self._loaded.wire is not None:
             self._join(data, holder, self._loaded.wire)

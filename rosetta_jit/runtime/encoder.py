@@ -18,18 +18,21 @@ from rosetta_jit.runtime.holder.classes import settle_lanes
 from rosetta_jit.runtime.holder.message import Message, place
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_CLASSES
-from rosetta_jit.runtime.message_spans import MessageSpans
 from rosetta_jit.runtime.program import Loaded, Program, is_foreign, one_by_one
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer as Buffer
     from numpy.typing import NDArray
 
+    from rosetta_jit.runtime import message_spans
     from rosetta_jit.runtime.batch import Batch
 
     Target = tuple[NDArray[np.uint8], int]
     """A buffer, and where to write in it."""
+else:
+    (message_spans,) = late("rosetta_jit.runtime", "message_spans")
 
 PARAMETERS = "holder", "buffer", "offset"
 
@@ -197,7 +200,7 @@ class EncoderBase(Program):
         return count
 
     def _written(self, lanes: Lanes, buffer: NDArray[np.uint8], offsets: NDArray[np.int64], first: int, count: int) -> int:
-        spans = MessageSpans.of(offsets)
+        spans = message_spans.MessageSpans.of(offsets)
         if self._compiled_many is not None:
             return self._compiled_many(buffer.ctypes.data, buffer.size, *spans.addresses, first, count, lanes.address)
         return one_by_one(self._loaded.kernel, buffer, spans, first, count, lanes, self._loaded.size)

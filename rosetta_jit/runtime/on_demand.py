@@ -63,10 +63,8 @@ class OnDemand:
     library: Library
 
     @classmethod
-    def of(cls, header: Mapping[str, Any], library: Library) -> OnDemand | None:
-        """From the header of a program, which has its name, too; None where it leaves no messages to another one."""
-        if header["rare"] is None:
-            return None
+    def of(cls, header: Mapping[str, Any], library: Library) -> OnDemand:
+        """From the header of a program that leaves messages to another one. It has the program's name, too."""
         opening, byte_order = header["rare"]
         return cls(bytes.fromhex(opening), byte_order, header["name"], library)
 

@@ -1,22 +1,24 @@
 """`dataclass` as the standard library's, made in a tenth of the time: processes that start quickly cannot spend theirs on making classes.
 
-The standard one compiles six methods for each class, half a millisecond a class. Here `__init__` is the code of a class of the same shape
-with other names; comparison, hash, repr and the refusal to be changed are the same few functions for all, over the fields' values; and what
-the standard library knows of a class it works out when it is asked for. What is asked for beyond the `OPTIONS`, classes without slots, and
-those that inherit fields or bring such methods themselves, are left to the standard library.
+The standard one compiles six methods for each class, half a millisecond a class, and takes as long to be imported. Here `__init__` is the
+code of a class of the same shape with other names; comparison, hash, repr and the refusal to be changed are the same few functions for all,
+over the fields' values; and what the standard library knows of a class it works out when it is asked for. What is asked for beyond the
+`OPTIONS`, classes without slots, and those that inherit fields or bring such methods themselves, are left to the standard library.
 """
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Mapping
 from functools import cache
 from operator import attrgetter
 from types import CodeType, FunctionType
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.startup.stores import STORES
 
 if TYPE_CHECKING:
     from dataclasses import dataclass as dataclass  # noqa: PLC0414 - what others import from here
+    from dataclasses import field as field  # noqa: PLC0414
     from dataclasses import replace as replace  # noqa: PLC0414
 
 OPTIONS = frozenset(("frozen", "slots", "eq", "repr", "weakref_slot"))
@@ -24,7 +26,21 @@ _OWN = frozenset(("__init__", "__eq__", "__hash__", "__repr__", "__setattr__", "
 _FIELDS = "__dataclass_fields__"
 _DESCRIBED = (_FIELDS, "__dataclass_params__")
 """Where the standard library keeps what it knows of a class."""
-_PLAIN: dataclasses.Field[Any] = dataclasses.field()
+MISSING: Any = object()
+
+
+class Field:
+    """What a class says of one of its fields; ``options`` are those of `dataclasses.field`."""
+
+    __slots__ = ("compare", "default", "default_factory", "init", "options", "repr")
+
+    def __init__(self, options: dict[str, Any]) -> None:
+        self.options = options
+        self.default, self.default_factory = options.get("default", MISSING), options.get("default_factory", MISSING)
+        self.init, self.repr, self.compare = options.get("init", True), options.get("repr", True), options.get("compare", True)
+
+
+_PLAIN = Field({})
 """Of which nothing is said."""
 
 
@@ -33,25 +49,33 @@ if not TYPE_CHECKING:
     def dataclass(cls=None, /, **options):
         """As `dataclasses.dataclass`."""
         if cls is not None or not options.keys() <= OPTIONS or not options.get("slots"):
-            return dataclasses.dataclass(cls, **options)
+            return _standard(cls, options) if cls is not None else lambda plain: _standard(plain, options)
         return lambda plain: _made(plain, options)
+
+    def field(**options):
+        """As `dataclasses.field`."""
+        return Field(options)
 
     def replace(instance, /, **changes):
         """As `dataclasses.replace`, in a third of the time: what is made here brings its own."""
         own = vars(instance.__class__).get("__replace__")
-        return dataclasses.replace(instance, **changes) if own is None else own(instance, **changes)
+        if own is not None:
+            return own(instance, **changes)
+        from dataclasses import replace as replaced
+
+        return replaced(instance, **changes)
 
 
 def _made(plain: type[Any], options: Mapping[str, bool]) -> type[Any]:
-    annotated = {name: str(each) for name, each in plain.__annotations__.items() if not str(each).startswith("ClassVar")}
-    inherits = any(hasattr(base, _DESCRIBED[0]) for base in plain.__bases__)
-    if inherits or not _OWN.isdisjoint(vars(plain)) or any("InitVar" in each for each in annotated.values()):
-        return dataclasses.dataclass(**options)(plain)
+    own, said = vars(plain), {name: str(each) for name, each in plain.__annotations__.items()}
+    inherits = any(hasattr(base, _FIELDS) for base in plain.__bases__)
+    if inherits or not _OWN.isdisjoint(own) or any("InitVar" in each for each in said.values()):
+        return _standard(plain, options)
     if not plain.__doc__:
         plain.__doc__ = plain.__name__  # else the standard library writes the signature there, for which it imports and asks `inspect`
-    fields = {name: _field(vars(plain).get(name, dataclasses.MISSING)) for name in annotated}
+    fields = {name: _field(own.get(name, MISSING)) for name, each in said.items() if not each.startswith("ClassVar")}
     names: dict[str, Any] = {}
-    kept = {name: each for name, each in vars(plain).items() if name not in fields and name not in ("__dict__", "__weakref__")}
+    kept = {name: each for name, each in own.items() if name not in fields and name not in ("__dict__", "__weakref__")}
     described = {name: _Described(name, plain, options) for name in _DESCRIBED}
     slots = {"__slots__": (*fields, "__weakref__") if options.get("weakref_slot") else tuple(fields), "__qualname__": plain.__qualname__}
     methods = _methods(fields, options, _init(fields, names, has_post_init=hasattr(plain, "__post_init__")))
@@ -59,13 +83,13 @@ def _made(plain: type[Any], options: Mapping[str, bool]) -> type[Any]:
     made: Any = kind(plain.__name__, plain.__bases__, {**kept, **slots, **methods, **described})
     for number, (name, each) in enumerate(fields.items()):
         store = getattr(made, name).__set__
-        names[f"set{number}"] = store if each.default_factory is dataclasses.MISSING else _made_anew(store, each.default_factory)
+        names[f"set{number}"] = store if each.default_factory is MISSING else _made_anew(store, each.default_factory)
     for each in described.values():
         each.made = made
     return made
 
 
-def _methods(fields: Mapping[str, dataclasses.Field[Any]], options: Mapping[str, bool], init: Callable[..., None]) -> dict[str, Any]:
+def _methods(fields: Mapping[str, Field], options: Mapping[str, bool], init: Callable[..., None]) -> dict[str, Any]:
     """All that a class gets; given to it at once, because a class that is changed tells all that have looked at it."""
     given = tuple(name for name, each in fields.items() if each.init)
     methods: dict[str, Any] = {"__init__": init, "__match_args__": given, "__replace__": _replace(given)}
@@ -81,11 +105,23 @@ def _methods(fields: Mapping[str, dataclasses.Field[Any]], options: Mapping[str,
     return methods
 
 
-def _field(default: Any) -> dataclasses.Field[Any]:
+def _field(default: Any) -> Field:
     """What a field's declaration says of it."""
-    if default is dataclasses.MISSING:
+    if default is MISSING:
         return _PLAIN
-    return cast("dataclasses.Field[Any]", default if isinstance(default, dataclasses.Field) else dataclasses.field(default=default))
+    if type(default).__module__ == "dataclasses":
+        raise TypeError("`field` is to be imported from where `dataclass` is")
+    return default if isinstance(default, Field) else Field({"default": default})
+
+
+def _standard(plain: type[Any], options: Mapping[str, Any]) -> type[Any]:
+    """The class as the standard library makes it."""
+    import dataclasses
+
+    for name, each in tuple(vars(plain).items()):
+        if isinstance(each, Field):
+            setattr(plain, name, dataclasses.field(**each.options))
+    return dataclasses.dataclass(**options)(plain)
 
 
 class _Described:
@@ -102,21 +138,21 @@ class _Described:
 
     def __get__(self, instance: object, owner: type[Any] | None = None) -> Any:
         if self._name == _FIELDS:
-            described = dataclasses.dataclass(init=False, repr=False, eq=False, match_args=False)(self._plain)
+            described = _standard(self._plain, {"init": False, "repr": False, "eq": False, "match_args": False})
         else:
-            described = dataclasses.dataclass(**self._options)(type(self._plain.__name__, (), {}))
+            described = _standard(type(self._plain.__name__, (), {}), self._options)
         found = getattr(described, self._name)
         setattr(self.made, self._name, found)
         return found
 
 
-def _init(fields: Mapping[str, dataclasses.Field[Any]], names: dict[str, Any], *, has_post_init: bool) -> Callable[..., None]:
+def _init(fields: Mapping[str, Field], names: dict[str, Any], *, has_post_init: bool) -> Callable[..., None]:
     """Objects are made often, and generic code would be slow at it: each class has its own, with ``names`` of its own for what it needs."""
     kinds: list[tuple[bool, bool]] = []
     defaults: list[Any] = []
     for number, (name, field) in enumerate(fields.items()):
-        is_made = field.default_factory is not dataclasses.MISSING
-        is_optional = is_made or field.default is not dataclasses.MISSING
+        is_made = field.default_factory is not MISSING
+        is_optional = is_made or field.default is not MISSING
         kinds.append((field.init, is_optional and not field.init))
         if is_optional:
             names[f"default{number}"] = field.default
@@ -126,17 +162,20 @@ def _init(fields: Mapping[str, dataclasses.Field[Any]], names: dict[str, Any], *
             raise TypeError(f"non-default argument {name!r} follows default argument")
     code = _stores(tuple(kinds), has_post_init=has_post_init)
     parameters = ("self", *(name for name, each in fields.items() if each.init))
-    return FunctionType(code.replace(co_varnames=parameters), names, "__init__", tuple(defaults))
+    named = code.replace(co_name="__init__", co_qualname="__init__", co_varnames=parameters)
+    return FunctionType(named, names, "__init__", tuple(defaults))
 
 
 def _made_anew(store: Callable[[object, object], None], make: Callable[[], object]) -> Callable[[object, object], None]:
     """Stores what is given, or else what a factory makes."""
-    return lambda self, value: store(self, make() if value is dataclasses.MISSING else value)
+    return lambda self, value: store(self, make() if value is MISSING else value)
 
 
 @cache
 def _stores(kinds: tuple[tuple[bool, bool], ...], *, has_post_init: bool) -> CodeType:
     """The code of an `__init__`: for each field, whether it is a parameter, and whether it has a value of its own if it is none."""
+    if 0 < len(kinds) <= len(STORES) and not has_post_init and all(is_parameter for is_parameter, _ in kinds):
+        return STORES[len(kinds) - 1]
     parameters, body = ["self"], list[str]()
     for number, (is_parameter, has_default) in enumerate(kinds):
         if is_parameter:
@@ -187,11 +226,15 @@ def _repr(names: tuple[str, ...]) -> Callable[[Any], str]:
 
 
 def _refuse_to_set(self: Any, name: str, value: object) -> None:  # noqa: ARG001 - whatever they are
-    raise dataclasses.FrozenInstanceError(f"cannot assign to field {name!r}")
+    from dataclasses import FrozenInstanceError
+
+    raise FrozenInstanceError(f"cannot assign to field {name!r}")
 
 
 def _refuse_to_delete(self: Any, name: str) -> None:  # noqa: ARG001 - whichever it is
-    raise dataclasses.FrozenInstanceError(f"cannot delete field {name!r}")
+    from dataclasses import FrozenInstanceError
+
+    raise FrozenInstanceError(f"cannot delete field {name!r}")
 
 
 def _state(names: tuple[str, ...]) -> Callable[[Any], list[Any]]:

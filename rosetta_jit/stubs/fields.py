@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import Any, assert_never
 
 from rosetta_jit.model.layout import scalar_of
@@ -10,7 +9,7 @@ from rosetta_jit.model.types import Bool, Enum, Float, Int
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.holder.classes import HolderFamily
 from rosetta_jit.runtime.holder.record import Blob, Child, Entry, Items, Node, Numbers, Pairs, Record, Scalar, ScalarType, Text
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 WORDS = ("bool_", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32", "float64")
 NUMBERS = {scalar: f"numpy.ndarray[typing.Any, numpy.dtype[numpy.{word}]]" for scalar, word in zip(SCALARS, WORDS, strict=True)}

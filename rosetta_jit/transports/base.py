@@ -5,12 +5,11 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import field
 from time import monotonic, time_ns
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.errors import TransportError
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 from rosetta_jit.startup.garbage import object_at
 from rosetta_jit.transports.end import End
 from rosetta_jit.transports.limits import MAX_QUEUE_BYTES

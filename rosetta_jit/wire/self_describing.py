@@ -11,9 +11,8 @@ says which codes there are in one dialect, and which code each has in another on
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 
 @dataclass(frozen=True, slots=True)

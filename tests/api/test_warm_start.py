@@ -60,6 +60,28 @@ def test_the_second_process_imports_nothing_that_compiled_code_replaces(tmp_path
     assert ran.stdout.split() == []
 
 
+BARE = """
+import sys
+import numpy
+before = set(sys.modules)
+import rosetta_jit as rj
+rj.Decoder("yarp/icub/torso_state.mapping", encoding="yarp3")
+unused = ["copy", "dataclasses", "fnmatch", "json", "mmap"]
+protobuf = [f"frameworks.protobuf.{name}" for name in ("introspection", "objects", "repeated")]
+holder = [f"runtime.holder.{name}" for name in ("dictionary", "sequence", "objects.foreign")]
+rooms = ["api.cacheable", "frameworks.base", "runtime.message_spans", "runtime.on_demand", *protobuf, *holder]
+print(*sorted({*unused, *(f"rosetta_jit.{name}" for name in rooms)} & (set(sys.modules) - before)))
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux" or os.uname().machine != "x86_64", reason="other systems have no prelinked code")
+def test_the_second_process_imports_nothing_that_its_type_has_no_use_for(tmp_path):
+    environment = {**os.environ, "ROSETTA_JIT_CACHE_DIR": str(tmp_path / "cache")}
+    start(tmp_path / "cache")
+    ran = subprocess.run([sys.executable, "-c", BARE], env=environment, check=True, capture_output=True, text=True)
+    assert ran.stdout.split() == []
+
+
 MANNERS = """
 import sys
 import rosetta_jit.frameworks.corba.manners, rosetta_jit.frameworks.lcm.manners, rosetta_jit.frameworks.protobuf.manners
@@ -118,8 +140,11 @@ import numpy, llvmlite.binding
 before = set(sys.modules)
 import rosetta_jit as rj
 rj.Decoder("own.mapping", encoding="yarp3")
-codec = (f"lowering.codec.{name}" for name in ("tagged", "recursion_write", "descent"))
-rooms = ("language.both_ways.packing", "language.laws.guarantees", *codec)
+codec = (f"lowering.codec.{name}" for name in ("tagged", "recursion_write", "descent", "xcdr2_members"))
+rules = (f"lowering.rules.{name}" for name in ("filters", "putting", "reductions", "shares"))
+resolve = (f"language.resolve.{name}" for name in ("coerced_values", "key_search", "rest", "same_names"))
+words = ("frameworks.protobuf.diagnostics", "frameworks.yarp.bottle_diagnostics", "catalogue.pipeline")
+rooms = ("language.both_ways.packing", "language.laws.guarantees", "language.parse.unit_file", *codec, *rules, *resolve, *words)
 unused = {"lark", "numba", "difflib", "fractions", "pint", "PIL", *(f"rosetta_jit.{name}" for name in rooms)}
 print(*sorted(unused & (set(sys.modules) - before)))
 """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import marshal
 import os
 import sys
 import threading
@@ -74,8 +75,11 @@ def test_every_flipped_byte_is_damage():
                 unseal(NAME, bytes(altered))
 
 
-@pytest.mark.parametrize("header", [b"", b"{", b"[]", b"[" * 100_000, b"\xff"])
-def test_a_header_that_is_no_json_object_is_damage(header):
+WHOLE = marshal.dumps({"a": 1}, 2)
+
+
+@pytest.mark.parametrize("header", [b"", b"{", WHOLE[:-1], WHOLE[1:], marshal.dumps([]), b"\xff"])
+def test_a_header_that_is_no_dict_is_damage(header):
     payload = len(header).to_bytes(4, "little") + header
     digest = sha256(NAME.encode() + b"\0" + payload).digest()
     with pytest.raises(DamagedError):

@@ -8,6 +8,7 @@ import sys
 
 import pytest
 
+from rosetta_jit.runtime.attributes import code
 from rosetta_jit.runtime.attributes.code import FILES, SYMBOLS, Accessors, text, whole
 from rosetta_jit.runtime.attributes.groups import GROUPS, part_of
 from rosetta_jit.runtime.callable import is_native
@@ -137,3 +138,16 @@ assert made == [], made
 def test_a_process_without_a_cache_compiles_what_it_calls():
     surroundings = {"PATH": "", "ROSETTA_JIT_CACHE": "off", "PYTHONPATH": ":".join(sys.path)}
     subprocess.run([sys.executable, "-c", PROCESS], check=True, env=surroundings)
+
+
+def test_the_cache_is_asked_for_a_group_when_an_address_of_it_is(monkeypatch):
+    """A process pays for the groups that its types need."""
+    asked = []
+    monkeypatch.setattr(code, "known", asked.append)
+    accessors = Accessors()
+    assert asked == []
+    address = accessors["get_f64"]
+    assert accessors["get_f64"] == address
+    assert asked == ["accessors: scalar f64"]
+    assert accessors["set_f64"]
+    assert asked == ["accessors: scalar f64"]

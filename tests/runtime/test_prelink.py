@@ -159,3 +159,10 @@ def test_other_processors_and_systems_are_left_to_a_linker():
 def test_it_is_kept_as_bytes():
     code = from_bytes(compile_program([kernels.fixed(2)], "decode", with_numba=False))
     assert from_bytes(to_bytes(code)) == code
+
+
+def test_prelinked_code_that_is_cut_is_damaged():
+    image = prelinked(compiled(COUNTER))
+    for size in range(len(image)):
+        with pytest.raises(ForeignCodeError, match="damaged"):
+            from_bytes(image[:size])

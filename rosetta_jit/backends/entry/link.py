@@ -19,13 +19,11 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from string import Template
-from typing import Unpack
+from typing import TYPE_CHECKING, Unpack
 
 from llvmlite import binding, ir
 
-from rosetta_jit.backends.entry.host_table import table_text
 from rosetta_jit.backends.entry.program import Options, Program
-from rosetta_jit.backends.entry.references import references_text
 from rosetta_jit.backends.llvm import definitions, support
 from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.kernel.entries import SYMBOLS, EntryName
@@ -36,6 +34,12 @@ from rosetta_jit.runtime.cache.texts import kept
 from rosetta_jit.runtime.code.assembler import linked, make_private, object_of, run_few_passes, run_passes, shortened, target_machine
 from rosetta_jit.runtime.code.prelink import is_prelinking, prelinked
 from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.startup.late import late
+
+if TYPE_CHECKING:
+    from rosetta_jit.backends.entry import host_table, references
+else:
+    host_table, references = late("rosetta_jit.backends.entry", "host_table", "references")
 
 USUAL: dict[EntryName, tuple[str, ...]] = {
     "decode": ("owning.ll", "decode.ll"),
@@ -161,9 +165,9 @@ def _own_parts(program: Program, *, whole: bool, unusual: ir.Module | None = Non
 
         yield str(compile_function(function))
     if program.calls_host and our_functions(kernels):
-        yield table_text(kernels)
+        yield host_table.table_text(kernels)
     if program.entry == "bridge":
-        yield references_text(options.get("references", ()))
+        yield references.references_text(options.get("references", ()))
     if program.is_inside:
         usual = (*USUAL[program.entry], "arguments.ll", "first_body.ll" if program.has_usual else "all_bodies.ll")
         yield _usual(_entry_text(usual, program), SYMBOLS[program.entry])

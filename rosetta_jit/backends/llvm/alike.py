@@ -9,15 +9,21 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.backends.llvm.alike_names import Carried, carried_names, stay_inside
 from rosetta_jit.backends.llvm.outline import Outline, Slot, is_number
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Assign, Block, Call, Const, Copy, Expr, Fill, For, If, Local, Reserve, Scalar, Stmt, Switch, While
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
 from rosetta_jit.kernel.walk import blocks_of, parts_of, statements
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.backends.llvm import alike_names
+    from rosetta_jit.backends.llvm.alike_names import Carried
+else:
+    alike_names = Late("rosetta_jit.backends.llvm.alike_names")
 
 MANY = 512
 """Statements of a body from which on series are looked for: below, LLVM takes no time worth mentioning."""
@@ -236,8 +242,8 @@ def _case(group: Sequence[tuple[int, Block, list[Slot]]]) -> Cases | None:
 
 def _series(last: Block, rows: Sequence[Sequence[Slot]], uses: Counter[str] | None) -> Series | None:
     """The series of some stretches, of which ``last`` is the last one, by what stands in the slots of each; None if it is none."""
-    carried = carried_names(rows)
-    if carried is None or (uses is not None and not stay_inside(rows, uses)):
+    carried = alike_names.carried_names(rows)
+    if carried is None or (uses is not None and not alike_names.stay_inside(rows, uses)):
         return None
     columns = _Columns()
     found: dict[tuple[Any, ...], Number | None] = {}

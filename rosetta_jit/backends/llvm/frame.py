@@ -8,7 +8,6 @@ so many registers, and LLVM would spend minutes on finding that out.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
 from functools import lru_cache
 
 from llvmlite import ir
@@ -17,7 +16,7 @@ from rosetta_jit.backends.llvm.alike import NOTHING, Found
 from rosetta_jit.kernel.ir import Routine
 from rosetta_jit.kernel.nodes import Call, Scalar
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANE_WORDS, LANES, NOW, NUMBER, REGISTERS, USED, lane_word
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 I1, I8, I16, I32, I64 = (ir.IntType(bits) for bits in (1, 8, 16, 32, 64))
 F32, F64, POINTER = ir.FloatType(), ir.DoubleType(), ir.PointerType()

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from llvmlite import ir
 
@@ -25,8 +25,6 @@ from rosetta_jit.backends.llvm.expr import (
     wire_pointer,
 )
 from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Frame, StoredExit, Variable, constant, forgotten, state_word
-from rosetta_jit.backends.llvm.host import host_called
-from rosetta_jit.backends.llvm.rounds import print_switch, rounds_of
 from rosetta_jit.backends.llvm.series import print_cases, print_series
 from rosetta_jit.kernel import ir as kernel
 from rosetta_jit.kernel import nodes
@@ -35,6 +33,14 @@ from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
 from rosetta_jit.kernel.traits import looks_closer
 from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.backends.llvm import host
+    from rosetta_jit.backends.llvm import rounds as rounds_of_switch
+else:
+    host = Late("rosetta_jit.backends.llvm.host")
+    rounds_of_switch = Late("rosetta_jit.backends.llvm.rounds")
 
 MANY_CASES = 64
 ANY_SITE = -1
@@ -252,7 +258,7 @@ def _inline(frame: Frame, call: nodes.Call, routine: kernel.Routine) -> None:
 
 
 def _host_call(frame: Frame, call: nodes.HostCall) -> None:
-    status, result = host_called(frame, call)
+    status, result = host.host_called(frame, call)
     good = _cold(frame, frame.builder.icmp_signed("==", status, ir.Constant(status.type, 0)))
     _fail(frame, (call.failure.site,), constant(1), expression(frame, call.failure.at), call.failure.indices)
     frame.builder.position_at_end(good)
@@ -322,12 +328,12 @@ def _while(frame: Frame, loop: nodes.While) -> None:
     builder.position_at_end(head)
     builder.cbranch(expression(frame, loop.condition), inside, behind)
     builder.position_at_end(inside)
-    rounds = rounds_of(loop)
+    rounds = rounds_of_switch.rounds_of(loop)
     if rounds is None:
         _branch(frame, loop.body, head)
     else:
         end = frame.block("end")
-        print_switch(frame, rounds, end, behind, block)
+        rounds_of_switch.print_switch(frame, rounds, end, behind, block)
         builder.position_at_end(end)
         _branch(frame, rounds.end, head)
     builder.position_at_end(behind)

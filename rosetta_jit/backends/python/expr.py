@@ -7,13 +7,12 @@ exception, and one that is only moved keeps all bits of a NaN.
 from __future__ import annotations
 
 import math
-from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.state import NOW, NUMBER
 from rosetta_jit.kernel.terms import is_wider, type_of
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.backends.printing import Namespace

@@ -1,1 +1,10 @@
 """LCM: `.lcm`, fingerprints, the wire encoding, and the manners of lcm-gen's classes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if not TYPE_CHECKING:
+    from rosetta_jit.startup.late import late_modules
+
+    __getattr__ = late_modules(__name__, "diagnostics")

@@ -7,7 +7,6 @@ file that uses it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.diagnostics import Diagnostic
@@ -17,7 +16,7 @@ from rosetta_jit.frameworks.lcm.reading import read
 from rosetta_jit.frameworks.lcm.shape import PRIMITIVES
 from rosetta_jit.frameworks.lcm.tree import Declaration, File, Member, Name, StructDeclaration, qualified
 from rosetta_jit.source import Source
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.parsing.idl import Load

@@ -7,7 +7,6 @@ each field, and rotates the sum. A struct that is met again inside itself adds 0
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import field
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.lcm import diagnostics as say
@@ -15,7 +14,7 @@ from rosetta_jit.frameworks.lcm.limits import MAX_DEPTH, MAX_WAYS
 from rosetta_jit.frameworks.lcm.shape import shape_of, written_sizes
 from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Enum, Field, Ref, Schema, Struct
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 MASK = (1 << 64) - 1
 STRUCT_SEED, ENUM_SEED = 0x12345678, 0x87654321

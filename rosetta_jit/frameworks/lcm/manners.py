@@ -7,7 +7,6 @@ cannot be decoded raises `rosetta_jit.errors.DecodeError`, a ValueError that say
 
 from __future__ import annotations
 
-import sys
 from functools import cache
 from typing import Any, ClassVar, Self
 
@@ -16,7 +15,6 @@ import numpy as np
 from rosetta_jit.frameworks.lcm.fingerprint import fingerprint
 from rosetta_jit.frameworks.lcm.shape import shape_of
 from rosetta_jit.runtime.holder import PLAIN, Family, Holder, Manners
-from rosetta_jit.runtime.holder.objects.foreign import Foreign
 from rosetta_jit.runtime.holder.serialising import Programs, encoded, programs_of
 
 
@@ -94,16 +92,6 @@ def _taken(name: str) -> bool:
     return name.startswith("__") or (name.strip("_") != name and hasattr(LcmMessage, name))
 
 
-def class_of(owner: type, struct: str) -> type | None:  # noqa: ARG001  packages have one class for a struct
-    """The class of a struct, if somebody has imported its package. One without a package has a module of its own."""
-    package, _, name = struct.rpartition(".")
-    return getattr(sys.modules.get(package or name), name, None)
-
-
-OBJECTS = Foreign(class_of=class_of)
-"""Objects of the classes that lcm-gen writes."""
-
-
 LCM_GEN = Manners(
     LcmMessage,
     np.ndarray,
@@ -112,7 +100,7 @@ LCM_GEN = Manners(
     assigns_whole=True,
     members=members,
     serialising=("lcm", "lcm"),
-    foreign=OBJECTS,
+    foreign="rosetta_jit.frameworks.lcm.objects:OBJECTS",
     place="rosetta_jit.frameworks.lcm.manners:LCM_GEN",
     methods=lambda _: {"encode": "encode", "decode": "make"},
 )

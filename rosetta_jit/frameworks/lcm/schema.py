@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import field
 from math import isfinite
 from typing import TYPE_CHECKING
 
@@ -14,7 +13,7 @@ from rosetta_jit.frameworks.lcm.shape import BYTE, CONSTANTS, INTEGERS, PRIMITIV
 from rosetta_jit.frameworks.lcm.tree import Constant, EnumDeclaration, Member, Name, StructDeclaration, Word, qualified
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Array, Bytes, Enum, Field, Float, Int, NamedConstant, Ref, Schema, Struct, Type
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.lcm.files import Gathered

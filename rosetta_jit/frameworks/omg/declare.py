@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
 from typing import assert_never
 
 from rosetta_jit.diagnostics import Diagnostic
@@ -19,7 +18,7 @@ from rosetta_jit.frameworks.omg.scopes import Entry, Scope
 from rosetta_jit.frameworks.omg.types import TypeMaker, enum_entry, value_of
 from rosetta_jit.model.types import Bool, Declaration, Enum, Field, Float, Int, NamedConstant, Ref, String, Struct, Type
 from rosetta_jit.source import Source, Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 
 @dataclass(slots=True)

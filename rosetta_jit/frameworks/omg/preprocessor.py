@@ -6,7 +6,6 @@ A file is read once, however often it is included: what rosidl writes has no inc
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import field
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -17,7 +16,7 @@ from rosetta_jit.frameworks.omg.cursor import SyntaxProblem
 from rosetta_jit.frameworks.omg.lexer import LiteralError, Token, tokens, unescape
 from rosetta_jit.frameworks.omg.limits import MAX_EXPANDED, MAX_FILES
 from rosetta_jit.source import Source, Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.parsing.idl import Load

@@ -7,7 +7,6 @@ import re
 import subprocess
 import sys
 from bisect import bisect_right
-from dataclasses import field
 from itertools import accumulate
 from pathlib import Path
 from typing import Any
@@ -18,7 +17,7 @@ from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.includes import MAIN, STANDARD, USER, Texts
 from rosetta_jit.frameworks.orocos.limits import MAX_COMPILER_BYTES, MAX_DECLARATION_DEPTH, MAX_ERRORS, MAX_MEMBERS, MAX_PROCESSOR_SECONDS
 from rosetta_jit.source import Source, Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 SECONDS = 30
 """How long the answer to a header is waited for, on a machine that has other work."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +16,7 @@ from rosetta_jit.frameworks.orocos.limits import MAX_PROBLEMS, MAX_SIZE
 from rosetta_jit.frameworks.orocos.messages import NUMBERS, STRING, array, options_of, with_messages, wrapped
 from rosetta_jit.model.types import Array, Bytes, Declaration, Enum, Field, Int, NamedConstant, Ref, Schema, Struct, Type
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.orocos.compiler import Places

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import field
 from typing import NoReturn
 from xml.parsers import expat
 
@@ -13,7 +12,7 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.limits import MAX_ELEMENTS
 from rosetta_jit.source import Source, Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 TYPES = ("alias", "array", "character", "compound", "container", "enum", "null", "numeric", "opaque", "pointer")
 PARTS = {"compound": "field", "enum": "value"}

@@ -8,7 +8,6 @@ bytes, ``size`` and ``alignment`` of a struct.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
 from typing import assert_never
 
 from rosetta_jit.frameworks.orocos.limits import MAX_PADDING
@@ -29,7 +28,7 @@ from rosetta_jit.model.types import (
     Type,
     Union,
 )
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 UNDERLYING = "underlying"
 """The option of a field whose enum is not an int: the scalar that it is instead."""

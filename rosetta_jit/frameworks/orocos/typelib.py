@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -31,7 +30,7 @@ from rosetta_jit.frameworks.orocos.messages import NUMBERS, array, with_messages
 from rosetta_jit.frameworks.orocos.messages import STRING as TEXT
 from rosetta_jit.model.types import Array, Bytes, Declaration, Enum, Field, Float, Int, Ref, Schema, Struct, Type
 from rosetta_jit.source import Source, Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.parsing.idl import Load

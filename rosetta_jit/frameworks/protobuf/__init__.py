@@ -1,1 +1,10 @@
 """Protocol Buffers: .proto, the wire encoding, and the manners of its messages."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if not TYPE_CHECKING:
+    from rosetta_jit.startup.late import late_modules
+
+    __getattr__ = late_modules(__name__, "diagnostics")

@@ -10,12 +10,11 @@ import math
 import re
 import struct
 from collections.abc import Iterable, Iterator
-from dataclasses import field
 
 from rosetta_jit.errors import DecodeError, SchemaError
 from rosetta_jit.frameworks.protobuf import diagnostics as words
 from rosetta_jit.frameworks.protobuf.limits import MAX_INFERRED_DEPTH, MAX_INFERRED_FIELDS
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 VARINT, FIXED64, BYTES, FIXED32 = 0, 1, 2, 5
 WIRE_TYPES = {VARINT: "varint", FIXED64: "64 bits", BYTES: "length-delimited", FIXED32: "32 bits"}

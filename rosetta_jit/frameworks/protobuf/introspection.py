@@ -5,14 +5,13 @@ Numbers and names are those of `google.protobuf.descriptor.FieldDescriptor`. Onl
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import Any, ClassVar
 
 from rosetta_jit.frameworks.protobuf.json_names import camel_case
 from rosetta_jit.model.layout import map_entry
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.cached import cached_property
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 TYPES = {
     "double": 1,

@@ -1,6 +1,6 @@
 """Holders that behave as protobuf's generated Python classes do, so that code written against those keeps working.
 
-What differs, and why: repeated numbers are numpy arrays (see `rosetta_jit.frameworks.protobuf.repeated`); bytes fields also take
+What differs, and why: repeated numbers are numpy arrays (see `rosetta_jit.frameworks.protobuf.number_array`); bytes fields also take
 bytearrays, memoryviews and numpy arrays; views of nested messages do not outlive the next decode into their holder, and show the element
 at their index where elements before it are deleted; NaN differs from NaN; errors of parsing and serialising are
 `rosetta_jit.errors.DecodeError` and `EncodeError`.
@@ -12,11 +12,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
 from rosetta_jit.errors import EncodeError
-from rosetta_jit.frameworks.protobuf.introspection import EnumClass, FieldDescriptor, MessageDescriptor, nested_names
-from rosetta_jit.frameworks.protobuf.objects import OBJECTS
+from rosetta_jit.frameworks.protobuf.number_array import NumberArray
 from rosetta_jit.frameworks.protobuf.presence import known, missing, requires, set_entries
-from rosetta_jit.frameworks.protobuf.repeated import MapField, NumberArray, repeated
-from rosetta_jit.model.types import Enum
+from rosetta_jit.model.types import Enum, Union
 from rosetta_jit.runtime.holder import Family, Holder, Manners
 from rosetta_jit.runtime.holder.classes import clear
 from rosetta_jit.runtime.holder.message import Message, View, make_present, place
@@ -25,8 +23,11 @@ from rosetta_jit.runtime.holder.serialising import Kind, Programs, encoded, prog
 from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
+    from rosetta_jit.frameworks.protobuf import introspection
+    from rosetta_jit.frameworks.protobuf.introspection import FieldDescriptor, MessageDescriptor
     from rosetta_jit.runtime.holder import access, arena, merge
 else:
+    (introspection,) = late("rosetta_jit.frameworks.protobuf", "introspection")
     access, arena, merge = late("rosetta_jit.runtime.holder", "access", "arena", "merge")
 
 
@@ -233,24 +234,33 @@ class _Nested:
         return self.family.of_struct(self.name)
 
 
+class _Descriptor:
+    """The descriptor of a class, made when first asked for: then it is an attribute of the class."""
+
+    def __init__(self, family: Family) -> None:
+        self.family = family
+
+    def __get__(self, instance: object, owner: type) -> MessageDescriptor:
+        made = introspection.MessageDescriptor(self.family.struct, self.family.schema)
+        self.family.holder.DESCRIPTOR = made  # pyright: ignore[reportAttributeAccessIssue] - it is a class of these manners
+        return made
+
+
 def members(family: Family) -> dict[str, Any]:
     """What a generated class has besides its fields: its descriptor, its enums and their constants, the classes declared in it."""
-    descriptor = MessageDescriptor(family.struct, family.schema)
-    found: dict[str, Any] = {f"{each.name.upper()}_FIELD_NUMBER": each.number for each in descriptor.fields}
-    for name in nested_names(family.struct.name, family.schema):
+    fields = [case for each in family.struct.fields for case in (each.type.cases if isinstance(each.type, Union) else (each,))]
+    found: dict[str, Any] = {f"{each.name.upper()}_FIELD_NUMBER": each.number or 0 for each in fields}
+    for name in sorted(each for each in family.schema.types if each.rpartition(".")[0] == family.struct.name):
         declared, own = family.schema.types[name], name.rpartition(".")[2]
         if isinstance(declared, Enum):
             found |= dict(declared.values)
-            found[own] = EnumClass(declared)
+            found[own] = introspection.EnumClass(declared)
         else:
             found[own] = _Nested(family, name)
     return (
         {name: value for name, value in found.items() if not name.startswith("__")}
         | methods_of(family.struct.name)
-        | {
-            "DESCRIPTOR": descriptor,
-            "requires_": requires(family.tree.root),
-        }
+        | {"DESCRIPTOR": _Descriptor(family), "requires_": requires(family.tree.root)}
     )
 
 
@@ -263,12 +273,12 @@ def methods(family: Family) -> dict[str, Kind]:
 PROTOBUF = Manners(
     ProtobufMessage,
     NumberArray,
-    repeated,
-    MapField,
+    "rosetta_jit.frameworks.protobuf.repeated:repeated",
+    "rosetta_jit.frameworks.protobuf.repeated:MapField",
     assigns_whole=False,
     members=members,
     serialising=("protobuf", "protobuf-partial"),
-    foreign=OBJECTS,
+    foreign="rosetta_jit.frameworks.protobuf.objects:OBJECTS",
     place="rosetta_jit.frameworks.protobuf.manners:PROTOBUF",
     methods=methods,
 )

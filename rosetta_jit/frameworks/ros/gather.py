@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.ros import diagnostics as say
@@ -17,7 +16,7 @@ from rosetta_jit.frameworks.ros.tree import Definition, Field, TypeName
 from rosetta_jit.model.limits import MAX_SLOTS
 from rosetta_jit.parsing.idl import Load
 from rosetta_jit.source import Source, Span
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 
 @dataclass(frozen=True, slots=True)

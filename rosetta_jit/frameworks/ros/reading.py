@@ -6,7 +6,6 @@ Field    = ["@optional"] TypeName Word [default]        Constant = TypeName Word
 from __future__ import annotations
 
 import re
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.diagnostics import Diagnostic
@@ -19,7 +18,7 @@ from rosetta_jit.frameworks.ros.values import array_values, scalar_value, wanted
 from rosetta_jit.model.types import Constant as Value
 from rosetta_jit.model.types import String
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.ros.dialect import Scalar

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import field
 
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.ros import diagnostics as say
 from rosetta_jit.frameworks.ros.dialect import Dialect
 from rosetta_jit.frameworks.ros.names import Declared, split
 from rosetta_jit.source import Source, Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 SEPARATOR = re.compile(r"^={3,}[ \t]*\r?(?:\n|\Z)", re.MULTILINE)
 HEADER = re.compile(r"([A-Z]+):[ \t]*(\S*)[ \t]*\r?(?:\n|\Z)")

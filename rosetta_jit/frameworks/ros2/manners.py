@@ -7,8 +7,6 @@ range or beyond a bound ValueError, also where Python runs with ``-O`` and rosid
 
 from __future__ import annotations
 
-import json
-import sys
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,8 +14,6 @@ import numpy as np
 from rosetta_jit.frameworks.ros2.empty import DUMMY
 from rosetta_jit.model.types import Array, Bytes, Field, Optional, Ref, String, Type, name_parts
 from rosetta_jit.runtime.holder import PLAIN, Family, Holder, Manners
-from rosetta_jit.runtime.holder.objects.foreign import Foreign
-from rosetta_jit.runtime.holder.record import Record
 from rosetta_jit.runtime.holder.serialising import Programs, encoded, programs_of
 
 SPELLED = {"float32": "float", "float64": "double", "bool": "boolean", "byte": "octet", "char": "uint8"}
@@ -112,7 +108,11 @@ def _is_initial(field: Field) -> bool:
 
 def _default(field: Field) -> Any:
     several = field.option("default")
-    return json.loads(several) if isinstance(several, str) else field.default
+    if not isinstance(several, str):
+        return field.default
+    import json  # few fields have defaults of several values
+
+    return json.loads(several)
 
 
 def spelled(type_: Type) -> str:
@@ -134,21 +134,6 @@ def spelled(type_: Type) -> str:
             return SPELLED.get(word, word)
 
 
-def attribute_names(record: Record, field: str) -> tuple[str, ...]:  # noqa: ARG001  of any record
-    """The attribute is called as the field is; the field that stands for none need not be there."""
-    return () if field == DUMMY else (field,)
-
-
-def class_of(owner: type, struct: str) -> type | None:  # noqa: ARG001  packages have one class for a message
-    """The class that rclpy has for a message: in the package that has its name, if somebody has imported that."""
-    package, _, name = "/".join(name_parts(struct)).rpartition("/")
-    return getattr(sys.modules.get(f"{package}.msg"), name, None)
-
-
-OBJECTS = Foreign(names=attribute_names, class_of=class_of, besides=frozenset([DUMMY]))
-"""Objects of rclpy's classes, and of those of rosbags and of Cyclone DDS."""
-
-
 RCLPY = Manners(
     Ros2Message,
     np.ndarray,
@@ -157,7 +142,7 @@ RCLPY = Manners(
     assigns_whole=True,
     members=members,
     serialising=("ros2", "cdr"),
-    foreign=OBJECTS,
+    foreign="rosetta_jit.frameworks.ros2.objects:OBJECTS",
     place="rosetta_jit.frameworks.ros2.manners:RCLPY",
 )
 """The manners of rosidl's classes."""

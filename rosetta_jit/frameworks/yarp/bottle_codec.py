@@ -10,18 +10,25 @@ list, and then such values. A union is an element whose code says which of its c
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
-from rosetta_jit.frameworks.yarp.computed import Scope
 from rosetta_jit.frameworks.yarp.forms import is_dict, is_packed, union_of
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, DICT, LIST, Dialect
 from rosetta_jit.model import expr
 from rosetta_jit.model.layout import map_entry
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.late import Late
 from rosetta_jit.wire.codec import Blob, Cases, Choice, Codec, Computed, Constant, Count, Number, Padding, Path, Repeat, Seq, Table
 from rosetta_jit.wire.size import fixed_size
+
+if TYPE_CHECKING:
+    from rosetta_jit.frameworks.yarp import computed
+    from rosetta_jit.frameworks.yarp.computed import Scope
+else:
+    computed = Late("rosetta_jit.frameworks.yarp.computed")
 
 BOOLEANS = ((49, 1), (0, 0))
 """True is the vocab '1', false is 0; YARP has no tag for them. (os/impl/BottleImpl.cpp, smartAdd)"""
@@ -61,7 +68,7 @@ class Bottles:
 
     def within(self, struct: Struct, path: Path) -> Bottles:
         """Codecs below a declaration: computed values of its fields name fields of it."""
-        return replace(self, scope=Scope(self.schema, struct, path))
+        return replace(self, scope=computed.Scope(self.schema, struct, path))
 
     # --- structs -----------------------------------------------------------------------------------------------------
 

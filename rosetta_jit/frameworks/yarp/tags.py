@@ -9,11 +9,10 @@ Scalars are known by one spelling each: int8 int16 int32 int64 float32 float64 v
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from types import MappingProxyType
 from typing import Literal
 
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 LIST = 256
 """Code of a list; a specialised one adds the code of its elements' type."""

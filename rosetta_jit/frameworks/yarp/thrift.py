@@ -6,7 +6,6 @@ A function of a service is several messages: ``Service.function.request``, a bot
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.diagnostics import Diagnostic
@@ -36,7 +35,7 @@ from rosetta_jit.model.types import (
     Type,
 )
 from rosetta_jit.source import Source
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.parsing.idl import Load

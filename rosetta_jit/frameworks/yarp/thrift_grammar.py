@@ -7,13 +7,12 @@ Type   = Named(name) | List(element) | Set(element) | Map(key, value)
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp import thrift_diagnostics as say
 from rosetta_jit.frameworks.yarp.limits import MAX_THRIFT_DIGITS, MAX_TYPE_DEPTH
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.yarp.thrift_lexer import Word

@@ -9,12 +9,11 @@ A `Lane` whose element is None has no fields that C knows: it is bytes.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from typing import Literal
 
 from rosetta_jit.generate.c.rows import Element, SpanType, Struct, path_to
 from rosetta_jit.generate.c.words import C_TYPES, RESERVED
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 OWN_WORDS = frozenset(
     {

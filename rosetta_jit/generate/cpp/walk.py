@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import field
 from string import Template
 from typing import TYPE_CHECKING, Literal
 
@@ -28,7 +27,7 @@ from rosetta_jit.generate.cpp.spots import Direct, Spot
 from rosetta_jit.generate.shares import WHOLE, Ways, within
 from rosetta_jit.model.layout import Member, Number, Row, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Enum, Field, Map, Optional, Ref, String, Struct, Type, Union
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes

@@ -10,7 +10,6 @@ Arithmetic that the proof knows to stay within its type is declared to do so, an
 from __future__ import annotations
 
 import math
-from dataclasses import field
 from typing import TYPE_CHECKING, Literal, assert_never
 
 import numpy as np
@@ -19,7 +18,7 @@ from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS, SIGNED, binary, to_bytes, unary
 from rosetta_jit.kernel.arithmetic import constant as of_type
 from rosetta_jit.kernel.terms import END, is_wider, type_of
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.lisp.lanes import Lanes

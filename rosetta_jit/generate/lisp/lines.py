@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
-from dataclasses import field
 from textwrap import wrap
 
 from rosetta_jit.generate.lisp.texts import WIDTH, broken, comment
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 MAX_LINE = 140
 

@@ -8,7 +8,6 @@ There are two such functions for each struct in the layout; in a row, ``row`` is
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.lisp.classes import ABSENT_BOOL, UNKNOWN, Classes
@@ -17,7 +16,7 @@ from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.shares import WHOLE, Ways, within
 from rosetta_jit.model.layout import Member, Number, Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bool, Bytes, Field, Map, Optional, Ref, String, Struct, Type, Union
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.lisp.lanes import Lanes

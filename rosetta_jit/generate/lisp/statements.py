@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import field
 from typing import assert_never
 
 from rosetta_jit.generate.lisp.expressions import Scope, access, expression, got, location, state_word, zero
@@ -15,7 +14,7 @@ from rosetta_jit.generate.origins import Origin, described, origin_of
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import END, add, type_of
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 
 @dataclass(frozen=True, slots=True)

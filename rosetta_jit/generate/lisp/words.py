@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import field
 from functools import cache
 from pathlib import Path
 
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 HERE = Path(__file__).parent
 API = HERE / "api.lisp"

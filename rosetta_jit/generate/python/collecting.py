@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -13,7 +12,7 @@ from rosetta_jit.generate.python.expressions import CODES, flat_name, within
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.model.layout import WIDTH, Number, Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, Struct, Type, Union
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes

@@ -11,7 +11,6 @@ Everything else goes through lanes as kernels say, and becomes objects in the en
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from dataclasses import field
 from typing import cast
 
 from rosetta_jit.generate.cleared import offsets_of, slots_of
@@ -22,7 +21,7 @@ from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
 from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 FEW = 16
 """Elements of an array of a fixed length that become locals: they are read together with the numbers around them."""

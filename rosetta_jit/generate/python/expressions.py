@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import field
 from itertools import groupby
 from typing import TYPE_CHECKING, assert_never
 
@@ -21,7 +20,7 @@ from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.terms import END, is_wider, type_of
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.cleared import slots_of
@@ -16,7 +15,7 @@ from rosetta_jit.kernel.nodes import WIDTH, Binary, Expr, Local, Place
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.model.layout import Member, Number, Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Map, Optional, String, Struct, Type, Union
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.python.statements import Function

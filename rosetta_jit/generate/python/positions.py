@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator
-from dataclasses import field
 from itertools import count
 
 from rosetta_jit.kernel.nodes import (
@@ -26,7 +25,7 @@ from rosetta_jit.kernel.nodes import (
 )
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.terms import index
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 
 class NotInParts(Exception):  # noqa: N818 - no error: such an encoder is printed otherwise

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.arithmetic import FLOATS, constant, to_bytes
-from rosetta_jit.kernel.passes.affine import Affine, Rounds, rounds_of
 from rosetta_jit.kernel.passes.fold import FALSE, TRUE, folded
 from rosetta_jit.kernel.rewrite import reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import index, mul, split, type_of
 from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.passes import affine
+    from rosetta_jit.kernel.passes.affine import Affine, Rounds
+else:
+    affine = Late("rosetta_jit.kernel.passes.affine")
 
 Move = nodes.Copy | nodes.Fill
 
@@ -79,7 +86,7 @@ def group(kernel: ir.Kernel) -> ir.Kernel:
 def _statement(stmt: nodes.Stmt, strides: tuple[int, ...]) -> nodes.Block:
     if not isinstance(stmt, nodes.For) or reads_memory(stmt.count):
         return (stmt,)
-    rounds = rounds_of(stmt)
+    rounds = affine.rounds_of(stmt)
     move = _only_move(tuple(each for each in stmt.body if not isinstance(each, nodes.Expect)), rounds)
     stretch = _stretch(move, rounds, strides) if move is not None else None
     if stretch is None:
@@ -178,7 +185,7 @@ def _origin(at: nodes.Expr, rounds: Rounds) -> tuple[Affine | None, int]:
     if found is None:
         return None, 0
     base, number = split(found.base)
-    return Affine(base, found.step), number
+    return affine.Affine(base, found.step), number
 
 
 def _assigned(target: nodes.Address, value: nodes.Expr, order: nodes.Order, rounds: Rounds) -> Move | None:

@@ -7,7 +7,6 @@ in the holder is nobody's business, so that checks between the statements do not
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import field
 
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import (
@@ -32,7 +31,7 @@ from rosetta_jit.kernel.nodes import (
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, may_return, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 _WIDEST = 8
 """The largest width of a scalar: what lies farther away in a row is another one."""

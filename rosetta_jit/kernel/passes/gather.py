@@ -8,14 +8,13 @@ stays as it was.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import field
 from itertools import pairwise
 
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Block, Compare, Const, Copy, Expect, Expr, Fill, If, Let, Load, Local, SetField, Stmt, Store, Unary
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import add
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 FEWEST = 3
 """Elements for which it pays to ask for the last one first."""

@@ -6,14 +6,22 @@ up across everything but a Return and what it reads.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from rosetta_jit.kernel.ir import Kernel, Part, Site
 from rosetta_jit.kernel.nodes import Block, Compare, Const, Expect, Expr, Failure, Fits, For, If, Local, Require, Stmt
-from rosetta_jit.kernel.passes.affine import Rounds, rounds_of
 from rosetta_jit.kernel.passes.fold import TRUE, folded
-from rosetta_jit.kernel.passes.widen import widened
 from rosetta_jit.kernel.rewrite import may_return, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.passes import affine, widen
+    from rosetta_jit.kernel.passes.affine import Rounds
+else:
+    widen = Late("rosetta_jit.kernel.passes.widen")
+    affine = Late("rosetta_jit.kernel.passes.affine")
 
 
 def hoist(kernel: Kernel) -> Kernel:
@@ -36,7 +44,7 @@ def _loop(loop: For, sites: list[Site]) -> Block:
     """A loop with its checks before it, where there is a first round."""
     if may_return(loop.body) or reads_memory(loop.count):
         return (loop,)
-    rounds = rounds_of(loop)
+    rounds = affine.rounds_of(loop)
     moved: list[Stmt] = []
     kept: list[Stmt] = []
     for stmt in loop.body:
@@ -54,7 +62,7 @@ def _before(stmt: Stmt, count: Expr, rounds: Rounds, sites: list[Site]) -> Block
     """What a loop can check before it in place of a statement in it; empty where the statement must stay."""
     match stmt:
         case Expect():
-            return widened(stmt, count, rounds)
+            return widen.widened(stmt, count, rounds)
         case Require(at, size, failure):
             place, extent = rounds.affine(at), rounds.fixed(size)
             if place is None or extent is None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 from itertools import count
 
 from rosetta_jit.kernel.ir import Kernel
@@ -36,7 +35,7 @@ from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.kernel.walk import blocks_of, bound_names, parts_of, statements
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 MESSAGE = -1
 """Stands for the message among the numbers of the lanes."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import field
 from itertools import repeat
 
 from rosetta_jit.kernel import ir, nodes
@@ -12,7 +11,7 @@ from rosetta_jit.kernel.passes.fold import FALSE, TRUE, folded
 from rosetta_jit.kernel.rewrite import ends, names_in, names_read, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, index, split, type_of
 from rosetta_jit.kernel.walk import statements, subexpressions
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,6 @@ operations stand for (`meanings`). Facts that the proof itself infers are premis
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import field
 from itertools import takewhile
 from typing import Literal
 
@@ -18,7 +17,7 @@ from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import Formula
 from rosetta_jit.kernel.proof.meanings import Terms, atoms_in
 from rosetta_jit.kernel.proof.record import Obligation, Premise, RecordedFacts, chain
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 Verdict = Literal["proved", "refuted", "unknown"]
 

@@ -10,13 +10,12 @@ Facts are gained along a path and given up at its end (`mark`, `rollback`), so t
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import field
 from typing import Literal, NamedTuple, assert_never
 
 from rosetta_jit.kernel.limits import MAX_CASES, MAX_PROPAGATED, MAX_TRIED
 from rosetta_jit.kernel.proof.formula import All, Any, Formula, equal, is_vague, negated, said
 from rosetta_jit.kernel.proof.linear import Linear, Terms, coefficient_of, contradict, minus, replaced, shifted, tightened, times
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 
 class Effort(NamedTuple):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.arithmetic import limits
@@ -11,7 +10,7 @@ from rosetta_jit.kernel.nodes import Scalar
 from rosetta_jit.kernel.proof.formula import All, Any
 from rosetta_jit.kernel.proof.linear import Linear, Terms, minus, plus, shifted, times
 from rosetta_jit.kernel.proof.prove import Facts
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.proof.record import Premise, Record

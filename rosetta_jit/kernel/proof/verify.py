@@ -7,7 +7,6 @@ survives where paths meet), `contracts` (routines), `shape` (the text). A failed
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, assert_never
 
@@ -23,7 +22,7 @@ from rosetta_jit.kernel.proof.obligations import UnprovenError, demand, oblige
 from rosetta_jit.kernel.proof.scope import Scope, Typed, entry
 from rosetta_jit.kernel.proof.symbolic import condition, evaluate, integer, linear
 from rosetta_jit.kernel.shape import shape_error
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.proof.record import Record

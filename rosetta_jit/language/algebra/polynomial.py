@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import field
 from typing import assert_never
 
 from rosetta_jit.language import typed
@@ -20,7 +19,7 @@ from rosetta_jit.language.limits import MAX_ATOM_DEPTH, MAX_ATOMS
 from rosetta_jit.language.places import shown_shape
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Bool, Int
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 
 class TooComplexError(Exception):

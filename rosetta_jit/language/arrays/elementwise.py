@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import count
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import fields
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.catalogue import texts as text_words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.arrays.counts import ONE, LayoutError, times
-from rosetta_jit.language.arrays.element_loops import Moves, Padding, element_of
-from rosetta_jit.language.arrays.filters import filter_of, is_filtered, joined
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, NUMBER_BYTES, PADDED, NumberType, View, number_type, view_of
 from rosetta_jit.language.arrays.orders import is_of_image
 from rosetta_jit.language.arrays.parts import has_each, is_many, open_parts, sources_in, substituted
@@ -28,11 +27,19 @@ from rosetta_jit.language.typed import INT64, Const, FieldStep, IndexStep, Local
 from rosetta_jit.language.units.unit_at import unit_at
 from rosetta_jit.model.expr import Binary, Call, Choice, Each, Expr, Index, Len, Literal, Member, Name, Path
 from rosetta_jit.model.mapping import Arranged, Assign, Assignment, For, Reject, Rule, SetLength, Via, When
-from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Type, Union
 from rosetta_jit.model.walk import every_rule, parts
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.late import Late, late
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.arrays import element_loops, filters
+    from rosetta_jit.language.arrays.element_loops import Padding
+    from rosetta_jit.model import printer
+else:
+    filters, element_loops = late("rosetta_jit.language.arrays", "filters", "element_loops")
+    printer = Late("rosetta_jit.model.printer")
 
 SINGLE = (Bool, Enum, Float, Int, Struct)
 """Types of one value."""
@@ -110,7 +117,7 @@ class _Expansion:
         try:
             views = {source: view_of(source) for source in dict.fromkeys(sources_in(rule.condition))}
             name = self.variable(level)
-            elements: dict[Expr, Expr] = {source: element_of(view, Name(name)) for source, view in views.items()}
+            elements: dict[Expr, Expr] = {source: element_loops.element_of(view, Name(name)) for source, view in views.items()}
             first, *others = (view.total for view in views.values())
         except LayoutError as error:
             self.scope.problems.append(error.problem)
@@ -148,7 +155,7 @@ class _Expansion:
             raise LayoutError(_many(rule))
         for array in (target.array, *(view.array for view in views.values())):
             if isinstance(self.type_of(array), String) and (array != target.array or has_each(rule.place)):
-                raise LayoutError(fields.not_indexable(array.span, "text", show_expr(array)))
+                raise LayoutError(fields.not_indexable(array.span, "text", printer.show_expr(array)))
         width = ONE if packed is None else packed.size
         counts = [times(padding[0], padding[2])] if padding else [times(view.total, width) for view in views.values()]
         refused = [each for view in views.values() for each in view.refused]
@@ -163,7 +170,7 @@ class _Expansion:
                 raise LayoutError(words.too_many_rules(rule.span, MAX_MADE))
             return self.block((element,), lengths, level)
 
-        moves = Moves(replace(rule, value=value), target, views, number, padding, level, self.variable, expanded, packed)
+        moves = element_loops.Moves(replace(rule, value=value), target, views, number, padding, level, self.variable, expanded, packed)
         return (*before, *moves.rules())
 
     def filtered(self, rule: Assignment, lengths: Lengths, level: int) -> tuple[Rule, ...]:
@@ -172,12 +179,12 @@ class _Expansion:
         is_one = isinstance(rule.value, Path) and not isinstance(self.type_of(rule.value), Array | Bytes | Map | None)
         if not any(map(is_many, opened)) and is_one:
             raise LayoutError(words.filter_without_elements(rule.span))
-        found = filter_of(rule, self.variable(level), self.variable(level, "kept"))
+        found = filters.filter_of(rule, self.variable(level), self.variable(level, "kept"))
         array = found.target.array
         if isinstance(self.type_of(array), SINGLE):
             raise LayoutError(_many(rule))
         known = lengths.get(array)
-        if self.fixed_length(array) is not None or not (known is None or is_filtered(known)):
+        if self.fixed_length(array) is not None or not (known is None or filters.is_filtered(known)):
             raise LayoutError(words.filter_length(rule.place.span))
         if known not in (None, found.length):
             raise LayoutError(words.other_filter(rule.place.span))
@@ -190,13 +197,13 @@ class _Expansion:
     def counted(self, rule: Assignment, target: View, counts: list[Expr], lengths: Lengths) -> tuple[Expr, list[Rule]]:
         """How many elements a rule sets, and what checks or sets that."""
         known = self.known_count(target, lengths)
-        if is_filtered(known):
+        if filters.is_filtered(known):
             raise LayoutError(words.other_filter(rule.place.span))
         is_open = _is_open(target)
         if known is not None:
             return known, [check for total in counts for check in _unless_equal(total, known, rule.span)]
         if not counts:
-            no_count = words.no_count(rule.place.span, show_expr(target.array), self.whole_array(rule), rule.span)
+            no_count = words.no_count(rule.place.span, printer.show_expr(target.array), self.whole_array(rule), rule.span)
             raise LayoutError(words.open_end(rule.place.span) if is_open else no_count)
         checks = [check for total in counts[1:] for check in _unless_equal(total, counts[0], rule.span)]
         if is_open:
@@ -207,7 +214,7 @@ class _Expansion:
     def whole_array(self, rule: Assignment) -> str:
         """An array that a rule for each element reads as a whole; empty where it reads none."""
         paths = (each for each in parts(rule.value) if isinstance(each, Path))
-        return next((show_expr(each) for each in paths if isinstance(self.type_of(each), Array)), "")
+        return next((printer.show_expr(each) for each in paths if isinstance(self.type_of(each), Array)), "")
 
     def known_count(self, target: View, lengths: Lengths) -> Expr | None:
         """What a slice, another rule or the type says of the number of elements that are set."""
@@ -308,7 +315,7 @@ def _is_open(target: View) -> bool:
 def _add(made: list[Rule], rule: Rule, variable: str) -> None:
     """One more rule; a loop of ours over the elements of an array joins the one that is there, behind the checks between them."""
     if isinstance(rule, For) and rule.kept is not None:
-        made.append(joined(made, rule))
+        made.append(filters.joined(made, rule))
         return
     checks = 0
     while checks < len(made) and isinstance(made[-1 - checks], When):
@@ -364,5 +371,5 @@ def _many(rule: Assignment) -> Diagnostic:
     """Why the elements that a rule names cannot be assigned to one value: perhaps what makes one of them is misspelt."""
     called = rule.value.function if isinstance(rule.value, Call) and rule.value.function not in functions() else ""
     reductions = [name for name, each in functions().items() if each.reduction is not None]
-    arrays = [show_expr(part).partition("[]")[0] for part in parts(rule.value) if isinstance(part, Path) and has_each(part)]
+    arrays = [printer.show_expr(part).partition("[]")[0] for part in parts(rule.value) if isinstance(part, Path) and has_each(part)]
     return words.one_value(rule.place.span, called, reductions, arrays[0] if arrays else "")

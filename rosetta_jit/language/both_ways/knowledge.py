@@ -7,14 +7,13 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.limits import MAX_PARTS
 from rosetta_jit.model.expr import Call, Coerced, Each, Expr, Index, Keyed, Len, Name, Path, Side
 from rosetta_jit.model.mapping import Relation
 from rosetta_jit.model.walk import Field, names_of, parts, path_of, rebuilt, renamed, with_indices
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf

@@ -9,7 +9,6 @@ them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -51,7 +50,7 @@ from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Float
 from rosetta_jit.model.walk import Field, fields_of, parts, path_of
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf

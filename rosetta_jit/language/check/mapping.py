@@ -23,7 +23,6 @@ from rosetta_jit.language.check.rounding import rounded
 from rosetta_jit.language.check.state import idle, set_again
 from rosetta_jit.language.check.unequal_lengths import other_lengths
 from rosetta_jit.language.check.unreachable import unreachable
-from rosetta_jit.language.check.wire_shares import wrong_wires
 from rosetta_jit.language.check.wires import message_of_wires
 from rosetta_jit.language.imports.declarations import Imported, Imports, merge, reached, read_imports
 from rosetta_jit.language.imports.mappings import read_usable
@@ -43,9 +42,13 @@ from rosetta_jit.model.types import Schema, name_parts
 from rosetta_jit.parsing.idl import FrontEnds
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
     from rosetta_jit.catalogue.check import Block
+    from rosetta_jit.language.check import wire_shares
+else:
+    wire_shares = Late("rosetta_jit.language.check.wire_shares")
 
 SIDES: tuple[Side, ...] = ("holder", "wire")
 
@@ -167,7 +170,7 @@ def _wrong(texts: _Texts, resolved: Resolved) -> list[Diagnostic]:
 def _of_wires(resolved: Resolved) -> list[Diagnostic]:
     """What is wrong with the rules of several wires."""
     blocks: tuple[tuple[Side, TypedRules | None], ...] = (("holder", resolved.unpack), ("wire", resolved.pack))
-    return [found for target, block in blocks if block for found in wrong_wires(block.rules, target, resolved.holder)]
+    return [found for target, block in blocks if block for found in wire_shares.wrong_wires(block.rules, target, resolved.holder)]
 
 
 def _error(problems: Sequence[Diagnostic]) -> MappingError:

@@ -12,12 +12,11 @@ Lengths and counts are never negative: a loop that ends below its start is an er
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import field
 from itertools import pairwise
 
 from rosetta_jit.language.algebra.polynomial import Polynomial, add, multiply, number
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 Dimension = tuple["Polynomial", "Polynomial"]
 """Stride and count."""

@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.catalogue import suggestions
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError, ReportError
 from rosetta_jit.language.imports.mappings import MAPPING_SUFFIX
 from rosetta_jit.language.imports.search import Reading, SearchPath, refusal
-from rosetta_jit.language.parse import unit_file
-from rosetta_jit.language.parse.unit_file import UnitFile
 from rosetta_jit.model.mapping import Import, Mapping
 from rosetta_jit.model.types import Array, Declaration, Enum, Map, NamedConstant, Optional, Ref, Schema, Struct, Type, Union
 from rosetta_jit.parsing.idl import FrontEnds
 from rosetta_jit.source import Source
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.parse import unit_file
+    from rosetta_jit.language.parse.unit_file import UnitFile
+else:
+    unit_file = Late("rosetta_jit.language.parse.unit_file")
+
+UNITS_SUFFIX = ".units"
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +55,7 @@ class Imports:
 
     def file(self, name: str) -> str:
         """The file that is imported by a name: its own, or that of a type which it declares."""
-        is_file = self.front_ends.find(name) is not None or name.endswith(unit_file.SUFFIX)
+        is_file = self.front_ends.find(name) is not None or name.endswith(UNITS_SUFFIX)
         if is_file or (not refusal(name) and self.search.find(name, self.importer) is not None):
             return name
         return self.home(name) or name
@@ -56,7 +65,7 @@ class Imports:
         if source is None:
             near = suggestions.closest(statement.path, self.search.alike(statement.path))
             return words.import_not_found(statement.span, statement.path, map(str, self.search.folders), near)
-        if source.name.endswith(unit_file.SUFFIX):
+        if source.name.endswith(UNITS_SUFFIX):
             problems: list[Diagnostic] = []
             units = unit_file.parse(source, problems)
             if problems:

@@ -11,7 +11,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import field
 from itertools import islice
 from pathlib import Path, PurePosixPath
 
@@ -21,7 +20,7 @@ from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.language.limits import MAX_FILE_BYTES, MAX_LISTED_FILES, MAX_TEXT_BYTES
 from rosetta_jit.parsing.idl import Load
 from rosetta_jit.source import Source, shipped_folders
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 from rosetta_jit.startup.sha import sha256
 
 ENVIRONMENT_VARIABLE = "ROSETTA_JIT_PATH"

@@ -7,7 +7,6 @@ known with the values leaves one of its blocks, and the other is not looked at.
 from __future__ import annotations
 
 from collections.abc import Mapping as Dictionary
-from dataclasses import field
 
 from rosetta_jit.catalogue import bind as words
 from rosetta_jit.catalogue import groups
@@ -22,7 +21,7 @@ from rosetta_jit.model.mapping import For, Mapping, Parameter, Rule, Several, Wh
 from rosetta_jit.model.types import Int
 from rosetta_jit.model.walk import parts, rebuilt, with_expressions
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 
 def bind(mapping: Mapping, arguments: Dictionary[str, object] | None, problems: list[Diagnostic]) -> Mapping:

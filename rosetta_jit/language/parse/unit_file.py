@@ -19,8 +19,6 @@ from rosetta_jit.language.limits import MAX_UNIT_FIELDS, MAX_UNIT_PROBLEMS, MAX_
 from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
 
-SUFFIX = ".units"
-
 TYPE = re.compile(r'("[^"\n]+"|[A-Za-z_](?:[\w.:/]*\w)?)[ \t]*:')
 STEP = re.compile(r'\.(?:([A-Za-z_]\w*)|"([^"\n]+)")|\[([0-9]{0,9})\]')
 UNIT = re.compile(r"[^,]*")

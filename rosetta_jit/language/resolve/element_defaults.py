@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import rest as words
@@ -30,10 +31,15 @@ from rosetta_jit.language.typed import (
 from rosetta_jit.language.untouched import Names
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.expr import Each, Index, Literal
-from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array, Struct
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.model import printer
+else:
+    printer = Late("rosetta_jit.model.printer")
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +93,7 @@ def named_elements(
         if elements is not None and elements.array in lengths_in(explicit):
             found.append((elements, rule.span))
         else:
-            scope.problems.append(words.no_elements(rule.span, show_expr(rule.place)))
+            scope.problems.append(words.no_elements(rule.span, printer.show_expr(rule.place)))
             broken.append(names)
     return found
 

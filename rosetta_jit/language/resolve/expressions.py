@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import reduce
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import fields
 from rosetta_jit.catalogue import resolve as words
@@ -17,17 +17,11 @@ from rosetta_jit.language.arrays.parts import is_reduction
 from rosetta_jit.language.constants import constant_of
 from rosetta_jit.language.conversions import FLOAT64, as_int64, as_single, convert, describe, in_single, is_single
 from rosetta_jit.language.functions.calls import type_call
-from rosetta_jit.language.functions.decisions import type_choice, type_comparison, type_logic, type_not
 from rosetta_jit.language.functions.texts import concatenation, is_textual
 from rosetta_jit.language.functions.user_functions import type_host_call
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.installed import written
-from rosetta_jit.language.resolve.coerced_values import type_coerced, type_nearest
 from rosetta_jit.language.resolve.defaults import length_there, text_there
-from rosetta_jit.language.resolve.groups import type_component
-from rosetta_jit.language.resolve.key_search import is_found, type_search
-from rosetta_jit.language.resolve.list_items import compared_text, type_listed
-from rosetta_jit.language.resolve.reductions import type_reduction
 from rosetta_jit.language.scope import Broken, Scope, Sought, members_of, resolve_path
 from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, Expr, FieldStep, Has, IndexStep, Local, Search, Unary
 from rosetta_jit.language.units.conversion import check_agree
@@ -36,6 +30,15 @@ from rosetta_jit.model.mapping import OF_WIRES
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, Optional, String, Union
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.startup.late import Late, late
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.functions import decisions
+    from rosetta_jit.language.resolve import coerced_values, groups, key_search, list_items, reductions
+else:
+    decisions = Late("rosetta_jit.language.functions.decisions")
+    coerced_values, groups = late("rosetta_jit.language.resolve", "coerced_values", "groups")
+    key_search, list_items, reductions = late("rosetta_jit.language.resolve", "key_search", "list_items", "reductions")
 
 CONSTANTS = {"pi": math.pi}
 SUMS = frozenset("+-%")
@@ -57,13 +60,13 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
         case model.Len():
             return _length(expr, scope)
         case model.Unary("not"):
-            return type_not(expr, scope, type_expr)
+            return decisions.type_not(expr, scope, type_expr)
         case model.Unary():
             return _negative(expr, scope)
         case model.Binary(operator) if operator in model.COMPARISONS:
-            return type_comparison(expr, scope, type_expr, compared_text)
+            return decisions.type_comparison(expr, scope, type_expr, list_items.compared_text)
         case model.Binary(operator) if operator in model.LOGIC:
-            return type_logic(expr, scope, type_expr)
+            return decisions.type_logic(expr, scope, type_expr)
         case model.Binary():
             return _binary(expr, scope)
         case model.Call(function) if function in scope.functions:
@@ -71,16 +74,16 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
         case model.Call("has" | "index" as function, (model.Path() as path,)):
             return _presence(path, expr.span, scope) if function == "has" else _number_of(path, expr.span, scope)
         case model.Call():
-            return type_reduction(expr, scope, type_expr) if is_reduction(expr) else type_call(expr, scope, type_expr)
+            return reductions.type_reduction(expr, scope, type_expr) if is_reduction(expr) else type_call(expr, scope, type_expr)
         case model.Choice():
-            return type_choice(expr, scope, type_expr)
+            return decisions.type_choice(expr, scope, type_expr)
         case model.List() | model.Item() | model.Given():
             return _listed(expr, scope)
         case model.Coerced() | model.Nearest():
             return (
-                type_coerced(expr, scope, type_expr, type_index)
+                coerced_values.type_coerced(expr, scope, type_expr, type_index)
                 if isinstance(expr, model.Coerced)
-                else type_nearest(expr, scope, type_expr)
+                else coerced_values.type_nearest(expr, scope, type_expr)
             )
         case _:
             assert_never(expr)
@@ -88,8 +91,8 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
 
 def _listed(expr: model.List | model.Item | model.Given, scope: Scope) -> Expr | None:
     if isinstance(expr, model.Item) and group_of(expr.items) is not None:
-        return type_component(expr, scope, type_expr, type_index)
-    return type_listed(expr, scope, type_expr)
+        return groups.type_component(expr, scope, type_expr, type_index)
+    return list_items.type_listed(expr, scope, type_expr)
 
 
 def type_integer(expr: model.Expr, scope: Scope, what: str) -> Expr | None:
@@ -106,7 +109,7 @@ def type_integer(expr: model.Expr, scope: Scope, what: str) -> Expr | None:
 def type_index(expr: model.Expr | Sought, scope: Scope) -> Expr | None:
     """The index of an element."""
     if isinstance(expr, Sought):
-        return type_search(expr, scope, type_expr)
+        return key_search.type_search(expr, scope, type_expr)
     return type_integer(expr, scope, "an index")
 
 
@@ -163,7 +166,7 @@ def _presence(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
     message = scope.messages[place.side]
     if place.side == "wire" and len(place.steps) == 1 and message.root.name.startswith(OF_WIRES):
         return Has(place, span=span)
-    schema, questions = message.schema, is_found(place, message)
+    schema, questions = message.schema, key_search.is_found(place, message)
     if any(isinstance(step, FieldStep) and isinstance(schema.resolve(step.field.type), Optional | Union) for step in place.steps):
         questions.append(Has(place, span=span))
     if questions:

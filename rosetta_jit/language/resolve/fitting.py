@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.catalogue import texts
 from rosetta_jit.diagnostics import Diagnostic
@@ -9,11 +11,16 @@ from rosetta_jit.language.conversions import convert, describe, other_way, same,
 from rosetta_jit.language.functions.texts import is_bytes, is_textual
 from rosetta_jit.language.installed import functions
 from rosetta_jit.language.limits import MAX_TEXT_CASES
-from rosetta_jit.language.resolve.list_items import adapted
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import Access, Binary, Call, Choice, Const, Convert, Expr, Listed, Place
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.resolve import list_items
+else:
+    list_items = Late("rosetta_jit.language.resolve.list_items")
 
 
 def fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
@@ -24,7 +31,7 @@ def fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     if isinstance(value, Choice):
         value = _adapted(value, target)
     if isinstance(value, Listed):
-        value = adapted(value, target)
+        value = list_items.adapted(value, target)
     if isinstance(value, Access) and _whole(value.type, target, scope):
         return value
     is_image = isinstance(value, Call) and functions()[value.function].operation == "image compression"

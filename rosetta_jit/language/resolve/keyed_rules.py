@@ -8,7 +8,6 @@ elements of the loop's numbers.
 
 from __future__ import annotations
 
-from dataclasses import field
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -18,13 +17,17 @@ from rosetta_jit.language.resolve.expressions import type_index
 from rosetta_jit.language.scope import Broken, Scope, resolve_path
 from rosetta_jit.model.expr import Expr, Given, Index, Item, Keyed, List, Literal, Member, Name, Path
 from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Rule, SetLength, When
-from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array
 from rosetta_jit.model.walk import parts
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
+    from rosetta_jit.model import printer
+
     Loop = For[Rule, Expr]
+else:
+    printer = Late("rosetta_jit.model.printer")
 
 Key = tuple[tuple[str, ...], "Expr"]
 """The field of an element, and what it has."""
@@ -168,7 +171,7 @@ def _is_item(value: Expr, loop: Loop) -> bool:
 
 def _repeated(value: Item) -> str | None:
     """The first item of a list that stands in it before."""
-    items = [show_expr(folded(each)) for each in value.items.items] if isinstance(value.items, List) else []
+    items = [printer.show_expr(folded(each)) for each in value.items.items] if isinstance(value.items, List) else []
     return next((each for number, each in enumerate(items) if each in items[:number]), None)
 
 

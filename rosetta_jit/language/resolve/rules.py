@@ -7,9 +7,8 @@ the checks that follow do not report the same mistake in other words.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from itertools import pairwise
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
@@ -19,24 +18,18 @@ from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language import typed
 from rosetta_jit.language.arrays.elementwise import elementwise
 from rosetta_jit.language.conversions import FLOAT64, describe, is_single, same
-from rosetta_jit.language.functions.decisions import type_condition
 from rosetta_jit.language.functions.texts import type_pieces
 from rosetta_jit.language.groups import Group, group_of
 from rosetta_jit.language.limits import MAX_DEFAULTS, MAX_PROBLEMS
 from rosetta_jit.language.places import field_names, places_in
-from rosetta_jit.language.resolve.coerced_values import fitted
 from rosetta_jit.language.resolve.defaults import ManyDefaultsError, default_rules, has_array
 from rosetta_jit.language.resolve.element_defaults import is_of_elements, named_elements, with_defaults
 from rosetta_jit.language.resolve.expressions import type_expr, type_index, type_integer
 from rosetta_jit.language.resolve.fitting import fit
-from rosetta_jit.language.resolve.groups import length_rules, paths_of, type_group
 from rosetta_jit.language.resolve.keyed_rules import numbered
 from rosetta_jit.language.resolve.lengths_first import lengths_first
 from rosetta_jit.language.resolve.messages import checked_message, scope_between
 from rosetta_jit.language.resolve.nested import nest
-from rosetta_jit.language.resolve.overriding import last_ones
-from rosetta_jit.language.resolve.rest import defaulted, elements_filled, ignored
-from rosetta_jit.language.resolve.same_names import OF_TYPES, rules_of, unlike
 from rosetta_jit.language.scope import Broken, Message, Scope, element_type, resolve_path
 from rosetta_jit.language.units.conversion import in_unit
 from rosetta_jit.language.units.wholes import change_within
@@ -47,7 +40,17 @@ from rosetta_jit.model.expr import Side
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Schema, String, Type
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
+from rosetta_jit.startup.late import Late, late
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.functions import decisions
+    from rosetta_jit.language.resolve import coerced_values, groups, overriding, same_names
+    from rosetta_jit.language.resolve import rest as rest_rules
+else:
+    decisions = Late("rosetta_jit.language.functions.decisions")
+    coerced_values, groups = late("rosetta_jit.language.resolve", "coerced_values", "groups")
+    overriding, rest_rules, same_names = late("rosetta_jit.language.resolve", "overriding", "rest", "same_names")
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +111,7 @@ class _Block:
         found = self.rules(elementwise(numbered(written, scope), scope, self.broken), scope)
         rests = [rule for rule in left if isinstance(rule, model.Rest)]
         if scope.is_old and rules:
-            found = elements_filled(last_ones(found, scope), scope)
+            found = rest_rules.elements_filled(overriding.last_ones(found, scope), scope)
             rests += [] if any(rest.word == "default" for rest in rests) else [model.Rest("default", rules[0].span, written=False)]
         found = with_defaults(found, named_elements(left, found, self.broken, scope), scope)
         for rest in rests:
@@ -118,9 +121,9 @@ class _Block:
     def rest(self, rule: model.Rest, explicit: tuple[typed.Rule, ...], scope: Scope) -> tuple[typed.Rule, ...]:
         """The rules, and what the fields that none of them reads, or sets, are said to be."""
         if rule.word == "ignore":
-            return (*explicit, *ignored(rule, explicit, scope))
-        explicit = elements_filled(explicit, scope)
-        fields, elements = defaulted(rule, explicit, self.broken, scope)
+            return (*explicit, *rest_rules.ignored(rule, explicit, scope))
+        explicit = rest_rules.elements_filled(explicit, scope)
+        fields, elements = rest_rules.defaulted(rule, explicit, self.broken, scope)
         made = [made for each in fields for made in self.made(each, scope) if made is not None]
         return (*with_defaults(explicit, elements, scope), *made)
 
@@ -146,7 +149,7 @@ class _Block:
         wanted = [field.name for field in aim.fields if field.name in names - taken and field.constant is None]
         if not wanted and not rule.renames:
             scope.problems.append(about_rest.no_same_names(rule.span, aim.name, origin.name))
-        return [each for made in rules_of(rule, wanted, scope) for each in self.same_name(made, rule, scope)]
+        return [each for made in same_names.rules_of(rule, wanted, scope) for each in self.same_name(made, rule, scope)]
 
     def same_name(self, rule: model.Assignment, names: model.SameNames, scope: Scope) -> list[typed.Rule]:
         """The rules for one field; what is wrong with them is said once, of the field."""
@@ -154,8 +157,8 @@ class _Block:
         tried = replace(scope, problems=problems)
         rules = elementwise((rule,), tried, self.broken)
         found = [made for each in rules for made in self.made(each, tried)]
-        if any(problem.code in OF_TYPES for problem in problems):
-            problem = unlike(rule, names, scope)
+        if any(problem.code in same_names.OF_TYPES for problem in problems):
+            problem = same_names.unlike(rule, names, scope)
             scope.problems.extend([] if problem is None else [problem])
             return []
         scope.problems.extend(problems)
@@ -225,7 +228,7 @@ class _Block:
         return typed.Default(place, rule.span)
 
     def when(self, rule: model.When[model.Rule, expr.Expr], scope: Scope) -> typed.Rule | None:
-        condition = type_condition(rule.condition, scope, type_expr)
+        condition = decisions.type_condition(rule.condition, scope, type_expr)
         then, otherwise = self.rules(rule.then, scope), self.rules(rule.otherwise, scope)
         if condition is None:
             self.broken.extend(field_names(place) for place in places_in((*then, *otherwise)))
@@ -235,12 +238,12 @@ class _Block:
     def group(self, rule: model.Assignment, group: Group, scope: Scope) -> list[typed.Rule | None]:
         """The rules of a group: one for each of its numbers."""
         place = self.place(rule, scope)
-        values = type_group(rule.value, scope, type_expr, type_index)
-        paths = None if place is None else paths_of(rule.place, place.type, group, scope)
+        values = groups.type_group(rule.value, scope, type_expr, type_index)
+        paths = None if place is None else groups.paths_of(rule.place, place.type, group, scope)
         if place is None or values is None or paths is None:
             self.broken.extend([] if place is None else [field_names(place)])
             return [None]
-        lengths = [self.rule(each, scope) for each in length_rules(rule, place.type, group, scope, type_index)]
+        lengths = [self.rule(each, scope) for each in groups.length_rules(rule, place.type, group, scope, type_index)]
         ends = [(self.place(replace(rule, place=path), scope), value) for path, value in zip(paths, values, strict=True)]
         return [*lengths, *(self.assigned(end, value, rule, scope) for end, value in ends if end is not None)]
 
@@ -254,7 +257,7 @@ class _Block:
         if value is not None:
             value = in_unit(value, place, scope, packs=rule.by == "checked")
         if value is not None and rule.by == "checked":
-            value = fitted(value, place.type)
+            value = coerced_values.fitted(value, place.type)
         elif value is not None:
             value = _rounded(value, place.type, scope)
         fitting = None if value is None else fit(value, place, scope)
@@ -313,7 +316,7 @@ class _Block:
         """A loop of which some rounds are kept, behind the lengths of the arrays that have an element for each of them."""
         inside = scope.inside(rule.variable, typed.Const(0, typed.INT64))
         stop = type_integer(rule.stop, scope, "where a loop ends")
-        condition = type_condition(kept.condition, inside, type_expr)
+        condition = decisions.type_condition(kept.condition, inside, type_expr)
         body = self.rules(rule.body, inside.inside(kept.variable))
         if stop is None or condition is None:
             self.broken.extend(field_names(place) for place in places_in(body))

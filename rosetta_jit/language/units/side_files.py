@@ -8,23 +8,23 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import unit_files as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.limits import MAX_UNIT_PROBLEMS
-from rosetta_jit.language.parse.unit_file import Named, Step, UnitFile, UnitsOf
 from rosetta_jit.language.scope import Message, members_of
 from rosetta_jit.language.units.dimensions import conversion, is_unit, known_units
 from rosetta_jit.model.limits import MAX_UNIT_PARTS
 from rosetta_jit.model.types import Array, Declaration, Field, Float, Int, PartUnit, Schema, Struct, Type, Union, name_parts
 from rosetta_jit.model.units import Context
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 if TYPE_CHECKING:
+    from rosetta_jit.language.parse.unit_file import Named, Step, UnitFile, UnitsOf
+
     Way = tuple[str | int | None, ...]
     Members = dict[str, tuple[Field, ...]]
 

@@ -6,8 +6,6 @@ the way give to what is within them.
 
 from __future__ import annotations
 
-from dataclasses import field
-
 from rosetta_jit.catalogue import units as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.conversions import describe
@@ -19,7 +17,7 @@ from rosetta_jit.language.units.dimensions import conversion
 from rosetta_jit.language.units.unit_at import contexts_at, unit_at
 from rosetta_jit.model.types import Array, Field, Float, Int, Map, Struct, Type, Union
 from rosetta_jit.model.units import Context
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 
 def change_within(value: Expr, place: Place, scope: Scope) -> Change | None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +21,7 @@ from rosetta_jit.logs.converting.rejected import Damaged, Rejected
 from rosetta_jit.logs.decoded_parts import CLOCKS, LARGE_BYTES, Collector, Part
 from rosetta_jit.logs.folder_names import folder_names
 from rosetta_jit.logs.tables import table_of
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.logs.channel import Channel

@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from pathlib import Path

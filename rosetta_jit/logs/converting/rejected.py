@@ -6,11 +6,10 @@ import json
 import os
 from base64 import b64encode
 from collections.abc import Mapping
-from dataclasses import field
 from typing import TYPE_CHECKING, Literal, TextIO, TypeAlias
 
 from rosetta_jit.errors import DecodeError
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -13,7 +12,7 @@ from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import LogError, ReportError
 from rosetta_jit.logs.base import Block, Connection
 from rosetta_jit.logs.decoded_parts import Refused
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.logs.channel import Channel

@@ -9,7 +9,6 @@ for these.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 
 from rosetta_jit.kernel.nodes import Binary, Block, Compare, Const, Expect, Expr, Get, If, Local, SetField, Switch, Used, While
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, joined, mul
@@ -20,7 +19,7 @@ from rosetta_jit.lowering.codec.xcdr2_members import store_size
 from rosetta_jit.lowering.limits import MAX_RECURSION, MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, block, integer
 from rosetta_jit.model.layout import LINK_WORDS
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 from rosetta_jit.wire.codec import Cases, Codec, Delimited, Maybe, Path, Recursion, Repeat, Seq
 from rosetta_jit.wire.recursion import MAX_OPEN_SIZES, open_sizes, recurses
 

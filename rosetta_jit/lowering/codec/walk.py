@@ -6,18 +6,22 @@ Direction is known to the leaves (`rosetta_jit.lowering.codec.leaves`), and here
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel.nodes import Assign, Binary, Block, Compare, Const, Convert, Expect, Expr, For, If, Local, Switch, While
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.codec import leaves
 from rosetta_jit.lowering.codec.fields import Elements, Fields, scalar_name
-from rosetta_jit.lowering.codec.xcdr1_members import parameter, parameters
-from rosetta_jit.lowering.codec.xcdr2_members import members, store_size
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, block, integer
+from rosetta_jit.startup.late import late
 from rosetta_jit.wire import codec as wire
 from rosetta_jit.wire.size import fixed_size, minimum_size
+
+if TYPE_CHECKING:
+    from rosetta_jit.lowering.codec import xcdr1_members, xcdr2_members
+else:
+    xcdr1_members, xcdr2_members = late("rosetta_jit.lowering.codec", "xcdr1_members", "xcdr2_members")
 
 EMPTY_ELEMENTS = 1 << 16
 """How many elements that take no bytes a message may have, whatever its own size."""
@@ -52,11 +56,11 @@ def walk(codec: wire.Codec, fields: Fields, writer: Writer) -> None:
         case wire.Delimited():
             _delimited(writer, fields, codec)
         case wire.Members():
-            members(codec, fields, writer, walk)
+            xcdr2_members.members(codec, fields, writer, walk)
         case wire.Parameter():
-            parameter(codec, fields, writer, walk)
+            xcdr1_members.parameter(codec, fields, writer, walk)
         case wire.Parameters():
-            parameters(codec, fields, writer, walk)
+            xcdr1_members.parameters(codec, fields, writer, walk)
         case wire.Tagged() | wire.Varint() | wire.Recursion():
             raise AssertionError(codec)  # `tagged`, `recursion` and `descent` read and write these
         case _:
@@ -295,7 +299,7 @@ def _delimited(writer: Writer, fields: Fields, delimited: wire.Delimited) -> Non
     writer.advance(4)
     inside = writer.let("inside", writer.position)
     walk(delimited.value, fields, writer)
-    store_size(writer, begin, inside, where, delimited.order)
+    xcdr2_members.store_size(writer, begin, inside, where, delimited.order)
 
 
 def _got(fields: Fields, path: tuple[str, ...]) -> Expr:

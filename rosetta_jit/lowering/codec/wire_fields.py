@@ -9,7 +9,6 @@ are bound in each, so they become variables.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import field
 from typing import Protocol
 
 from rosetta_jit.kernel.nodes import Const, Copy, Expr, Local, Place, Scalar, Wire
@@ -18,7 +17,7 @@ from rosetta_jit.lowering.codec.fields import Stored, scalar_name
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
 from rosetta_jit.model import expr
 from rosetta_jit.model.walk import names_of, parts
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 from rosetta_jit.wire.codec import Blob, Choice, Codec, Computed, Count, Number, Path, Repeat, Seq, Table
 from rosetta_jit.wire.size import fixed_size
 

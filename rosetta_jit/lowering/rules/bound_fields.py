@@ -7,7 +7,6 @@ time that rules run, and what is in the way of binding one.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import field
 from typing import assert_never
 
 from rosetta_jit.kernel.nodes import Direction
@@ -16,7 +15,7 @@ from rosetta_jit.lowering.codec.wire_fields import EACH, inner_leaves, leaves, n
 from rosetta_jit.lowering.rules.packed_values import rule_for
 from rosetta_jit.model import expr
 from rosetta_jit.model.walk import names_of, parts
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 from rosetta_jit.wire import codec as wire
 from rosetta_jit.wire.size import fixed_size
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
-from dataclasses import field
+from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.nodes import Address, Assign, Binary, Compare, Const, Expr, Get, If, Place, Select, SetField, Switch, Used
 from rosetta_jit.kernel.terms import add, index
@@ -20,13 +20,18 @@ from rosetta_jit.lowering.codec.fields import OTHER_CASE, negated, scalar_name
 from rosetta_jit.lowering.codec.holder_fields import HolderElements, HolderFields, has_gaps, member_of, presence_bit
 from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.rules.initial_values import initialise, initialise_each
-from rosetta_jit.lowering.rules.shares import keep_texts
 from rosetta_jit.lowering.writer import Writer, block, integer
 from rosetta_jit.model.initial_values import InitialValues, selected
 from rosetta_jit.model.layout import Member, Number, Row, Span, Variant
 from rosetta_jit.model.types import Array, Bytes, Constant, Field, Optional, String, Struct, Union
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
+from rosetta_jit.startup.late import Late
 from rosetta_jit.wire.codec import Path
+
+if TYPE_CHECKING:
+    from rosetta_jit.lowering.rules import shares
+else:
+    shares = Late("rosetta_jit.lowering.rules.shares")
 
 Key = tuple[object, ...]
 """A place by names and the expressions of its indices."""
@@ -262,7 +267,7 @@ class HolderSide:
         begins = Binary("and", Compare("ge", start, index(0)), Compare("ge", used, count))
         has_room = Binary("and", begins, Compare("le", start, Binary("sub", used, count)))
         self.writer.emit(If(negated(Binary("and", Compare("eq", size, count), has_room)), block(new)))
-        keep_texts(fields, path)
+        shares.keep_texts(fields, path)
 
     @property
     def borrows(self) -> bool:

@@ -9,6 +9,7 @@ message is then staged (`rosetta_jit.lowering.staging`).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.nodes import Direction
 from rosetta_jit.language import typed
@@ -17,12 +18,17 @@ from rosetta_jit.language.resolve.defaults import has_array
 from rosetta_jit.language.walk import expressions_of, operands
 from rosetta_jit.lowering.codec.wire_fields import EACH
 from rosetta_jit.lowering.rules.bound_fields import BoundFields, Obstacle
-from rosetta_jit.lowering.rules.filters import filtered_arrays
 from rosetta_jit.lowering.rules.rescaling import UINT16
 from rosetta_jit.lowering.rules.wire_side import wire_key
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Schema, String, Type
 from rosetta_jit.model.walk import every_rule
+from rosetta_jit.startup.late import Late
 from rosetta_jit.wire.codec import Codec, Encoding, Path
+
+if TYPE_CHECKING:
+    from rosetta_jit.lowering.rules import filters
+else:
+    filters = Late("rosetta_jit.lowering.rules.filters")
 
 NESTED = "an array within an element has no place that is known beforehand"
 UNKNOWN = "the walk over the message leaves no place or number for it"
@@ -126,7 +132,7 @@ def _of_writing(rules: tuple[typed.Rule, ...], bound: BoundFields) -> Iterator[O
                 yield from _of_setting(place, value, bound)
             case typed.For(body=body, kept=kept):
                 if kept is not None:
-                    for place in filtered_arrays(rule, kept):
+                    for place in filters.filtered_arrays(rule, kept):
                         yield from _of_count(place, bound)
                 yield from _of_writing(body, bound)
             case typed.When(_, then, otherwise):

@@ -6,15 +6,22 @@ without rounds, and a round that does not ask, fail as they would alone.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from rosetta_jit.kernel.nodes import Const
 from rosetta_jit.language import typed
 from rosetta_jit.language.walk import expressions_of, parts
 from rosetta_jit.lowering.evaluation import Awaited, Evaluation
-from rosetta_jit.lowering.rules.reductions import zero_of
 from rosetta_jit.model.expr import COMPARISONS, LOGIC
 from rosetta_jit.model.types import Float
 from rosetta_jit.model.walk import every_rule
 from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.lowering.rules import reductions
+else:
+    reductions = Late("rosetta_jit.lowering.rules.reductions")
 
 
 def look_ahead(rules: tuple[typed.Rule, ...], values: Evaluation) -> None:
@@ -33,7 +40,7 @@ def look_ahead_of(exprs: tuple[typed.Expr, ...], values: Evaluation) -> None:
             values.of(replace(each, required=False, refused=()))
         elif isinstance(each, typed.Reduce) and each not in values.awaited:
             known = values.writer.var("known", Const("bool", value=False))
-            values.awaited[each] = Awaited(known, values.writer.var("reduced", zero_of(each)), values.writer.block)
+            values.awaited[each] = Awaited(known, values.writer.var("reduced", reductions.zero_of(each)), values.writer.block)
 
 
 def _finds(search: typed.Search) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
 from typing import assert_never
 
 from rosetta_jit.kernel.nodes import Binary, Block, Compare, Const, Convert, Copy, Expr, For, Get, If, Local, Place, Scalar, Switch
@@ -19,7 +18,7 @@ from rosetta_jit.lowering.rules.scalars import NAMES, RANGES, scalar_type
 from rosetta_jit.lowering.rules.values import Values
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.layout import Layout, Member, Number, Row, Slot, Span, Variant
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 from rosetta_jit.wire.codec import Path
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from contextlib import contextmanager
-from typing import assert_never, cast
+from typing import TYPE_CHECKING, assert_never, cast
 
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.errors import MappingError
@@ -17,23 +17,27 @@ from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.evaluation import lowered
-from rosetta_jit.lowering.made_arrays import UINT8, MadeArray
-from rosetta_jit.lowering.rules.filters import filtered
 from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
 from rosetta_jit.lowering.rules.look_ahead import look_ahead
 from rosetta_jit.lowering.rules.packed_values import place_of, units_of
-from rosetta_jit.lowering.rules.putting import Putting, copy, is_endless
-from rosetta_jit.lowering.rules.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.rules.state import remember
 from rosetta_jit.lowering.rules.values import Values
 from rosetta_jit.lowering.rules.wire_side import WireSide, wire_key
-from rosetta_jit.lowering.texts.separated import count_of_parts, parts_of
-from rosetta_jit.lowering.texts.values import checked, text_of
-from rosetta_jit.lowering.texts.views import View, placed
 from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Array, Bytes, Map, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.late import Late, late
+
+if TYPE_CHECKING:
+    from rosetta_jit.lowering import made_arrays
+    from rosetta_jit.lowering.rules import filters, putting, rescaling
+    from rosetta_jit.lowering.texts import separated, views
+    from rosetta_jit.lowering.texts import values as text_values
+else:
+    made_arrays = Late("rosetta_jit.lowering.made_arrays")
+    filters, putting, rescaling = late("rosetta_jit.lowering.rules", "filters", "putting", "rescaling")
+    separated, text_values, views = late("rosetta_jit.lowering.texts", "separated", "values", "views")
 
 Side = HolderSide | WireSide
 
@@ -57,7 +61,7 @@ class Runner:
                 case typed.SetLength(place, value):
                     self.take(place, self.count(here.of(value)), here)
                 case typed.For(kept=Kept() as kept):
-                    filtered(self, rule, kept, here)
+                    filters.filtered(self, rule, kept, here)
                 case typed.For():
                     self.loop(rule, here)
                 case typed.When(condition, (typed.Reject(text, span, pieces),), ()):
@@ -195,9 +199,9 @@ class Runner:
     def assign_computed(self, place: typed.Place, value: typed.Call, values: Values) -> None:
         """A text that is made of others, an image, or its pixels. On the wire there is no place for it before it is made."""
         assert isinstance(self.target, HolderSide)
-        view = placed(self.writer, text_of(value, values))
+        view = views.placed(self.writer, text_values.text_of(value, values))
         if isinstance(place.type, String) and place.type.encoding == "utf-8":
-            view = checked(view, values)
+            view = text_values.checked(view, values)
         size = self.count(view.size)
         self.take(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), view.address, size))
@@ -205,12 +209,12 @@ class Runner:
     def assign_made(self, place: typed.Place, call: typed.Call, values: Values) -> None:
         """An array that a function makes of others. On the wire there is no place for it before it is known how long it is."""
         assert isinstance(self.target, HolderSide)
-        made = cast("MadeArray", lowered(call, values))
+        made = cast("made_arrays.MadeArray", lowered(call, values))
         self.take(place, self.count(made.count), values)
-        variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
-        type_ = place.type.element if isinstance(place.type, Array) else UINT8
+        variable = typed.Local(next(name for name in rescaling.names_of_elements() if name not in values.variables))
+        type_ = place.type.element if isinstance(place.type, Array) else made_arrays.UINT8
         element = typed.Place(place.side, (*place.steps, typed.IndexStep(variable)), type_)
-        put = Putting(self.target, element, variable, values)
+        put = putting.Putting(self.target, element, variable, values)
         with self.forgetting():
             made.fill(put)
             put.check(made.fill)
@@ -219,13 +223,13 @@ class Runner:
         """The parts of a text, each as an element. What is between separators is whole characters."""
         assert isinstance(self.target, HolderSide)
         assert isinstance(place.type, Array)
-        text, pattern = cast("tuple[View, bytes]", lowered(call, values))
-        view = checked(text, values) if isinstance(place.type.element, String) else text
-        count = self.count(count_of_parts(self.writer, view, pattern))
+        text, pattern = cast("tuple[views.View, bytes]", lowered(call, values))
+        view = text_values.checked(text, values) if isinstance(place.type.element, String) else text
+        count = self.count(separated.count_of_parts(self.writer, view, pattern))
         self.take(place, count, values)
-        variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
+        variable = typed.Local(next(name for name in rescaling.names_of_elements() if name not in values.variables))
         element = typed.Place(place.side, (*place.steps, typed.IndexStep(variable)), place.type.element)
-        with self.forgetting(), parts_of(self.writer, view, pattern, count) as (number, part):
+        with self.forgetting(), separated.parts_of(self.writer, view, pattern, count) as (number, part):
             inner = replace(values, variables={**values.variables, variable.name: number}, where=values.where.element(number))
             size = self.count(part.size)
             self.take(element, size, inner)
@@ -238,12 +242,12 @@ class Runner:
         chosen = self.target.case_of(place, values)
         source, path, _ = self.source.descend(origin, values)
         target, target_path, _ = self.target.descend(place, values)
-        if is_endless(source.layout, source.find(path).slot):
+        if putting.is_endless(source.layout, source.find(path).slot):
             raise MappingError((words.endless_copy(place.span),))
         if isinstance(place.type, Array | Map):
             self.bound(place, self.source.count(origin, values), values)
         with self.writer.nested() as there:
-            copy(source, path, target, target_path, change)
+            putting.copy(source, path, target, target_path, change)
         present = presence(source, path, outer=True)
         self.writer.emit(*there if present is None else (If(present, block(there)),))
         if chosen is not None:
@@ -253,6 +257,6 @@ class Runner:
         """An array as a whole, or a text in units of 16 bits: its length, then each element."""
         count = self.source.count(origin, values)
         self.take(place, count, values)
-        variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
-        rule = element_rule(place, origin, variable, change)
+        variable = typed.Local(next(name for name in rescaling.names_of_elements() if name not in values.variables))
+        rule = rescaling.element_rule(place, origin, variable, change)
         self.loop(typed.For(variable.name, typed.Const(0, typed.INT64), typed.LenOf(origin), (rule,)), values)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
 from pathlib import PurePath
-from typing import assert_never, cast
+from typing import TYPE_CHECKING, assert_never, cast
 
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import index, type_of
@@ -17,19 +16,25 @@ from rosetta_jit.language.walk import parts
 from rosetta_jit.lowering.arithmetic import COMPARISONS, binary, differ
 from rosetta_jit.lowering.codec.fields import converted
 from rosetta_jit.lowering.evaluation import Awaited, Source, lowered
-from rosetta_jit.lowering.rules.host_calls import called
 from rosetta_jit.lowering.rules.look_ahead import look_ahead_of
-from rosetta_jit.lowering.rules.nearest import nearest
-from rosetta_jit.lowering.rules.reductions import number_in, reduced
-from rosetta_jit.lowering.rules.rejections import reject_with
 from rosetta_jit.lowering.rules.scalars import NAMES, RANGES, constant, converted_constant, is_named, scalar_type
 from rosetta_jit.lowering.rules.state import remembered
-from rosetta_jit.lowering.texts.search import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.expr import Operator
 from rosetta_jit.model.types import Bool, Enum
 from rosetta_jit.source import Span
-from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.dataclass import dataclass, field, replace
+from rosetta_jit.startup.late import Late, late
+
+if TYPE_CHECKING:
+    from rosetta_jit.lowering.rules import host_calls, reductions, rejections
+    from rosetta_jit.lowering.rules import nearest as nearest_values
+    from rosetta_jit.lowering.texts import search
+else:
+    host_calls, nearest_values, reductions, rejections = late(
+        "rosetta_jit.lowering.rules", "host_calls", "nearest", "reductions", "rejections"
+    )
+    search = Late("rosetta_jit.lowering.texts.search")
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,13 +110,13 @@ class Values:
                     else self.convert(number, scalar_type(type_), rule)
                 )
             case typed.Nearest():
-                return nearest(value, self)
+                return nearest_values.nearest(value, self)
             case typed.Call():
                 return cast("nodes.Expr", lowered(value, self))
             case typed.HostCall():
-                return called(value, self)
+                return host_calls.called(value, self)
             case typed.IsText(place, text):
-                return is_text(self, place, text.encode())
+                return search.is_text(self, place, text.encode())
             case typed.Has() | typed.Search() | typed.Reduce():
                 return self.answer(value)
             case typed.StateVariable(_, number, _, type_):
@@ -127,9 +132,9 @@ class Values:
             case typed.Has(place):
                 return self.source.present(place, self)
             case typed.Search():
-                return number_in(value, self)
+                return reductions.number_in(value, self)
             case typed.Reduce():
-                return reduced(value, self)
+                return reductions.reduced(value, self)
             case _:
                 assert_never(value)
 
@@ -199,7 +204,7 @@ class Values:
     def reject(self, reason: str, pieces: tuple[typed.Expr, ...] = (), *, when: nodes.Expr | None = None) -> None:
         """Refuse the message, always or where something holds: with a reason, or with what its pieces say."""
         if pieces:
-            reject_with(pieces, reason, when, self)
+            rejections.reject_with(pieces, reason, when, self)
             return
         good = nodes.Const("bool", value=False) if when is None else nodes.Unary("not", when)
         self.writer.expect(good, "rejected", self.where, reason, line=self.line)

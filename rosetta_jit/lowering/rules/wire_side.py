@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from contextlib import AbstractContextManager, nullcontext
 from math import prod
+from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.nodes import WIDTH, Address, Binary, Compare, Const, Expr, Load, Require, Store, Wire
 from rosetta_jit.kernel.terms import add, index, mul
@@ -16,10 +17,15 @@ from rosetta_jit.lowering.arithmetic import inside
 from rosetta_jit.lowering.codec.fields import converted
 from rosetta_jit.lowering.codec.wire_fields import EACH, Fixed, Region, WireFields
 from rosetta_jit.lowering.evaluation import Evaluation
-from rosetta_jit.lowering.texts.views import between
 from rosetta_jit.lowering.writer import Where, Writer
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.late import Late
 from rosetta_jit.wire.codec import Path
+
+if TYPE_CHECKING:
+    from rosetta_jit.lowering.texts import views
+else:
+    views = Late("rosetta_jit.lowering.texts.views")
 
 
 @dataclass(slots=True)
@@ -73,7 +79,7 @@ class WireSide:
         region = self.root.found.regions[key]
         number, where, count = self.number_of_element(key, indices[0], values)
         if not isinstance(region.step, Const) and has_product(indices[0]):
-            number = self.writer.let("element", between(number, index(0), Binary("sub", count, index(1))))
+            number = self.writer.let("element", views.between(number, index(0), Binary("sub", count, index(1))))
         at = Binary("add", region.first, mul(number, region.step))
         if not isinstance(region.step, Const):  # written down, for it follows from a product
             self.writer.expect(Compare("ge", at, region.first), "index", where, "no such element", line=values.line)

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
-from dataclasses import field
 from importlib import import_module
 from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -16,7 +15,7 @@ from zipfile import ZIP_DEFLATED, ZipFile
 import numpy as np
 
 from rosetta_jit.runtime.arrow.tables import flat
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -11,7 +11,6 @@ Offsets have 64 bits, except in maps, for which Arrow has none of that width.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
 from typing import TYPE_CHECKING, Any, Literal, assert_never, cast, get_args
 
 import numpy as np
@@ -25,7 +24,7 @@ from rosetta_jit.runtime.arrow.times import Unit, time_array
 from rosetta_jit.runtime.holder.record import Blob, Cell, Child, Entry, Items, Node, Numbers, Pairs, Record, Scalar, ScalarType, Text
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, fixed_together, lent, offsets, picked, read, room_for, spans
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -9,7 +9,7 @@ from functools import cache, partial
 from typing import Any, cast
 
 from rosetta_jit.errors import warn
-from rosetta_jit.runtime.attributes.groups import BEGINNING, END, GROUPS, Group, group_of, part_of, symbols
+from rosetta_jit.runtime.attributes.groups import END, GROUPS, Group, group_of, part_of, symbols
 from rosetta_jit.runtime.cache.texts import kept, known
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.cells import SCALARS
@@ -27,9 +27,6 @@ FILES = (
     *("programs/methods.ll", "programs/handing.ll", "programs/filling.ll", "objects/taking.ll"),
 )
 """All but the templates."""
-
-FUNCTIONS = (*BEGINNING, "same", "extend_texts", "take", "take_anew", "fill_rows")
-"""What Python calls."""
 
 SYMBOLS = tuple(symbols())
 """What the library defines."""
@@ -78,25 +75,34 @@ CELLS = {"bool": "i8", "f32": "float", "f64": "double"}
 class Accessors:
     """The addresses of the accessors, which are good as long as the process lives.
 
-    What the cache has is loaded at once. All else has the address of a stub (`runtime.code.lazy`), whose first call compiles its group.
+    What the cache has is loaded when its address is first asked for. All else has that of a stub (`runtime.code.lazy`), whose first call
+    compiles its group.
     """
 
     def __init__(self) -> None:
         self._loaded: list[Library] = []
+        self._looked_for = set[Group]()
         self._direct: dict[str, int] = {}
         self._first_end = 0
         finders = {symbol: partial(self.make, group_of(symbol)) for symbol in SYMBOLS if symbol != END}
         stubs = kept("accessors", "stubs of accessors", lambda: assembled(stubs_text(tuple(finders)), ()))
         self._stubs = Stubs(stubs, finders, {name: -1 for name in finders if name.startswith("set_") or name == "length"})
-        for group in GROUPS:
-            image = known(_name(group))
-            if image is not None:
-                self._take(group, image)
 
     def __getitem__(self, symbol: str) -> int:
+        if symbol not in self._direct:
+            self._look_for(symbol)
         if symbol == END and not self._first_end:
             self.make(group_of(symbol))
         return self._direct.get(symbol) or (self._first_end if symbol == END else self._stubs[symbol])
+
+    def _look_for(self, symbol: str) -> None:
+        """Take the groups that have a symbol from the cache, which is asked once for each."""
+        for group in GROUPS:
+            if symbol in group.symbols and group not in self._looked_for:
+                image = known(_name(group))
+                if image is not None:
+                    self._take(group, image)
+                self._looked_for.add(group)
 
     def make(self, group: Group) -> None:
         """Compile a group. Threads may do so at once: the code of each of them is as good, and stays."""
@@ -152,12 +158,22 @@ def whole() -> Library:
     return native.load(kept("accessors", ALL, lambda: assembled(text(), SYMBOLS)), SYMBOLS)
 
 
+class _Functions(dict[str, Callable[..., Any]]):
+    """The functions of the library that Python calls, as built-in functions; each is made when it is first called."""
+
+    __slots__ = ()
+
+    def __missing__(self, name: str) -> Callable[..., Any]:
+        code = library()
+        assert code is not None, "there are accessors"
+        made = self[name] = function_of(name, code[name])
+        return made
+
+
 @cache
 def functions() -> Mapping[str, Callable[..., Any]]:
-    """The functions of the library that Python calls, as built-in functions."""
-    code = library()
-    assert code is not None, "there are accessors"
-    return {name: function_of(name, code[name]) for name in FUNCTIONS}
+    """What Python calls of the library, by name."""
+    return _Functions()
 
 
 def assembled(module: str, exported: Sequence[str], *, hurried: bool = False) -> bytes:

@@ -123,7 +123,12 @@ class FieldTable:
     __slots__ = ("_alive", "_words", "address")
 
     def __init__(
-        self, record: Record, read: Callable[[str], Getter], write: Callable[[str], Setter], kept: KeptFields, sequences: OfSequences
+        self,
+        record: Record,
+        read: Callable[[str], Getter],
+        write: Callable[[str], Setter],
+        kept: KeptFields,
+        sequences: Callable[[], OfSequences],
     ) -> None:
         entries = list(record.entries.values())
         memory = np.zeros(2 + WORDS * len(entries), np.int64)
@@ -137,9 +142,9 @@ class FieldTable:
             words[Place.GETTER], words[Place.SETTER] = self._borrow(read(entry.name)), self._borrow(write(entry.name))
             self._fill(words, record, entry)
             words[Place.KEPT] = kept.offsets.get(entry.name, 0)
-            words[Place.LENGTH], words[Place.ITEM], words[Place.ITERATOR] = map(
-                self._borrow, (sequences.length, sequences.item, sequences.iterator)
-            )
+            if isinstance(entry.node, Items):
+                of = sequences()
+                words[Place.LENGTH], words[Place.ITEM], words[Place.ITERATOR] = map(self._borrow, (of.length, of.item, of.iterator))
 
     def show(self, number: int, view_class: type, access: Any, table: int) -> None:
         """From now on, make views of a field, or of its elements, without asking Python."""

@@ -103,7 +103,7 @@ class Cache:
         return self._read(name + ENTRY)
 
     def put(self, name: str, header: Mapping[str, object], image: bytes) -> None:
-        """Keep a program; ``header`` holds what JSON holds."""
+        """Keep a program; ``header`` holds plain values."""
         self._write(name + ENTRY, header, image)
 
     def get_manifest(self, request: str) -> str | None:

@@ -6,7 +6,6 @@ the layout of CPython's objects, which the entry reads directly. A file of other
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from collections.abc import Mapping
@@ -28,8 +27,8 @@ def entry_name(kernel_text: str) -> str:
 
 
 def request_name(request: Mapping[str, object]) -> str:
-    """The name of the answer to a request: a mapping's path, the search path, options; whatever JSON holds."""
-    return _name("request", json.dumps(dict(request), sort_keys=True))
+    """The name of the answer to a request: a mapping's path, the search path, options, as plain values."""
+    return _name("request", repr(sorted(request.items())))
 
 
 @cache
@@ -45,7 +44,7 @@ def surroundings() -> str:
         "processor": processor(),
         "python": [sys.implementation.cache_tag, getattr(sys, "abiflags", ""), hasattr(sys, "gettotalrefcount")],
     }
-    return json.dumps(facts, sort_keys=True)
+    return repr(facts)
 
 
 def _name(kind: str, text: str) -> str:

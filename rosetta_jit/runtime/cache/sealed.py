@@ -1,15 +1,15 @@
 """A sealed file: bytes that prove, when read again, that they are whole and are what their name says.
 
     file    = magic, length of payload (u64), SHA-256 of name and payload, payload
-    payload = length of header (u32), header (JSON object), image
+    payload = length of header (u32), header (a dict of plain values, as `marshal` writes it), image
 
-All integers are little-endian. Nothing in a file is executed or unpickled to read it. The digest covers the name, so that a file
-copied over another one is as damaged as a cut one.
+All integers are little-endian. The digest covers the name, so that a file copied over another one is as damaged as a cut one; nothing is
+read of a file whose digest is another one. `marshal` makes plain values and runs nothing; JSON would have to be imported by each process.
 """
 
 from __future__ import annotations
 
-import json
+import marshal
 import struct
 from collections.abc import Mapping
 from typing import cast
@@ -17,8 +17,11 @@ from typing import cast
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
 
-MAGIC = b"rosetta\x01"
+MAGIC = b"rosetta\x02"
 """The last byte is the version of this format."""
+
+VALUES_ALONE = 2
+"""The version of `marshal` that writes no references: equal headers are the same bytes, whatever objects they share."""
 
 _PREFIX = struct.Struct("<8sQ32s")
 _HEADER_SIZE = struct.Struct("<I")
@@ -37,8 +40,8 @@ class Entry:
 
 
 def seal(name: str, header: Mapping[str, object], image: bytes) -> bytes:
-    """The bytes of a file; ``header`` holds what JSON holds, and keeps its order."""
-    text = json.dumps(dict(header), separators=(",", ":")).encode()
+    """The bytes of a file; ``header`` holds None, bools, numbers, texts, and lists, tuples and dicts of these, and keeps its order."""
+    text = marshal.dumps(dict(header), VALUES_ALONE)
     payload = _HEADER_SIZE.pack(len(text)) + text + image
     return _PREFIX.pack(MAGIC, len(payload), _digest(name, payload)) + payload
 
@@ -64,11 +67,11 @@ def _open(payload: bytes) -> Entry:
     (size,) = cast("tuple[int]", _HEADER_SIZE.unpack_from(payload))
     text, image = payload[_HEADER_SIZE.size :][:size], payload[_HEADER_SIZE.size + size :]
     try:
-        header = cast("object", json.loads(text))
-    except (ValueError, RecursionError) as error:
-        raise DamagedError("its header is not JSON") from error
+        header = cast("object", marshal.loads(text))  # noqa: S302 - its digest is the one that was written with it
+    except (EOFError, ValueError, TypeError) as error:
+        raise DamagedError("its header cannot be read") from error
     if not isinstance(header, dict):
-        raise DamagedError("its header is not a JSON object")
+        raise DamagedError("its header is no dict")
     return Entry(cast("dict[str, object]", header), image)
 
 

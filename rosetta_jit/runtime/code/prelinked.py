@@ -1,8 +1,9 @@
 """Prelinked code: it may lie anywhere, so to load it is to copy it, and to write down where it finds what is the process's.
 
-    prelinked = magic, length of table (u32), table (JSON object), code, data
-    table     = {"code": bytes, "data": bytes, "slots": offset, "wants": [name, …], "gives": {name: offset, …}}
+    prelinked = magic, head, offsets of what it gives, names of what it wants and of what it gives, code, data
+    head      = sizes of code and data, offset of the slots, how many it wants, how many it gives, size of the names
 
+Numbers are u32, little-endian; a zero byte stands between names.
 Its parts refer to one another by distance. What it takes from the process it finds in the slots: addresses of 8 bytes at the end of the
 code, in the order of ``wants``. In memory the data begin on the page behind the code; code is executed and never written, data are written
 and never executed. `runtime.code.prelink` makes it.
@@ -11,24 +12,25 @@ and never executed. `runtime.code.prelink` makes it.
 from __future__ import annotations
 
 import ctypes
-import json
-import mmap
 import os
 import struct
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
-from typing import Any, cast
+from typing import cast
 
 from rosetta_jit.runtime.code.allowed import ForeignCodeError, check_wanted
 from rosetta_jit.startup.dataclass import dataclass
 
-MAGIC = b"prelink\x01"
+MAGIC = b"prelink\x02"
 """The last byte is the version of this format."""
 
 PAGE = 4096
 """Of the processors for which there is such code."""
 
-_SIZE = struct.Struct("<I")
+READ, WRITE, EXECUTE, OWN_AND_EMPTY = 1, 2, 4, 0x22
+"""Of Linux on x86-64 (sys/mman.h), which alone has such code: to import `mmap` for them takes half as long as to load it."""
+
+_HEAD = struct.Struct("<6I")
 _FAILED = 2**64 - 1
 
 
@@ -45,25 +47,26 @@ class Prelinked:
 
 def to_bytes(prelinked: Prelinked) -> bytes:
     """The code as it is kept."""
-    code, data = prelinked.code, prelinked.data
-    table = {"code": len(code), "data": len(data), "slots": prelinked.slots, "wants": prelinked.wants, "gives": prelinked.gives}
-    text = json.dumps(table, separators=(",", ":")).encode()
-    return MAGIC + _SIZE.pack(len(text)) + text + code + data
+    code, data, wants, gives = prelinked.code, prelinked.data, prelinked.wants, prelinked.gives
+    names = "\0".join((*wants, *gives)).encode()
+    head = _HEAD.pack(len(code), len(data), prelinked.slots, len(wants), len(gives), len(names))
+    return b"".join((MAGIC, head, struct.pack(f"<{len(gives)}I", *gives.values()), names, code, data))
 
 
 def from_bytes(image: bytes) -> Prelinked:
     """The code that was kept, or ForeignCodeError."""
     try:
-        (size,) = _SIZE.unpack_from(image, len(MAGIC))
-        begin = len(MAGIC) + _SIZE.size + size
-        table: dict[str, Any] = json.loads(image[begin - size : begin])
-        end = begin + table["code"]
-        prelinked = Prelinked(image[begin:end], image[end:], table["slots"], tuple(table["wants"]), dict(table["gives"]))
-        whole = len(prelinked.data) == table["data"] and 0 <= prelinked.slots == table["code"] - 8 * len(prelinked.wants)
-        inside = all(0 <= offset < data_offset(prelinked.code) + len(prelinked.data) for offset in prelinked.gives.values())
-    except (struct.error, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        sizes: tuple[int, ...] = _HEAD.unpack_from(image, len(MAGIC))
+        code_size, data_size, slots, wants, gives, names_size = sizes
+        names_at = len(MAGIC) + _HEAD.size + 4 * gives
+        offsets: tuple[int, ...] = struct.unpack(f"<{gives}I", image[names_at - 4 * gives : names_at])
+        begin = names_at + names_size
+        names, end = image[names_at:begin].decode().split("\0"), begin + code_size
+        prelinked = Prelinked(image[begin:end], image[end:], slots, tuple(names[:wants]), dict(zip(names[wants:], offsets, strict=True)))
+    except (struct.error, ValueError) as error:
         raise ForeignCodeError("damaged code") from error
-    if not whole or not inside:
+    whole = len(prelinked.data) == data_size and slots == code_size - 8 * wants
+    if not whole or any(offset >= data_offset(prelinked.code) + data_size for offset in offsets):
         raise ForeignCodeError("damaged code")
     return prelinked
 
@@ -107,14 +110,14 @@ def _address_of(name: str) -> int:
 
 def _writable(size: int) -> int:
     """Memory of our own. No object gives it up when Python ends: others may still call what is in it."""
-    address = _system().mmap(None, size, mmap.PROT_READ | mmap.PROT_WRITE, mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS, -1, 0)
+    address = _system().mmap(None, size, READ | WRITE, OWN_AND_EMPTY, -1, 0)
     if address == _FAILED:
         raise MemoryError(f"{size} bytes for code")
     return address
 
 
 def _make_executable(address: int, size: int) -> None:
-    if _system().mprotect(address, size, mmap.PROT_READ | mmap.PROT_EXEC):
+    if _system().mprotect(address, size, READ | EXECUTE):
         why = os.strerror(ctypes.get_errno())
         _system().munmap(address, size)
         raise ForeignCodeError(f'this system lets no memory be executed ({why}); backend="python" needs none')

@@ -10,7 +10,6 @@ import builtins
 import dis
 import enum
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
 from itertools import takewhile
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, Literal, cast
@@ -21,7 +20,7 @@ from rosetta_jit.catalogue import uncertain as words
 from rosetta_jit.runtime.functions import kinds
 from rosetta_jit.runtime.functions.known import has_known_attributes, is_known, is_known_dispatcher
 from rosetta_jit.runtime.limits import MAX_FUNCTION_DEPTH, MAX_FUNCTION_VALUES, MAX_FUNCTIONS
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 from rosetta_jit.startup.sha import sha256
 
 _ABSENT = object()

@@ -28,11 +28,13 @@ def getter(entry: Entry, family: Family) -> Getter:
     node = entry.node
     match node:
         case Items() if not node.shape:
-            return lambda message: family.sequence(view_of(message), entry)
+            sequence = family.sequence
+            return lambda message: sequence(view_of(message), entry)
         case Scalar() | Text() | Blob() | Numbers() | Items():
             return _consistent(_or_default(_leaf(entry, node, family), entry))
         case Pairs():
-            return lambda message: family.mapping(view_of(message), entry)
+            mapping = family.mapping
+            return lambda message: mapping(view_of(message), entry)
         case Record():
             return lambda message: _beside(message, node, family)
         case Child():

@@ -14,7 +14,6 @@ from rosetta_jit.runtime.attributes.code import functions
 from rosetta_jit.runtime.attributes.makers import call_as_any, class_of_holder_classes, let_call
 from rosetta_jit.runtime.attributes.names import take_names
 from rosetta_jit.runtime.holder.message import Access, Family, Message, View, in_row, place
-from rosetta_jit.runtime.holder.objects.foreign import Foreign, Wholes
 from rosetta_jit.runtime.holder.record import Blob, Entry, Items, Numbers, Record, Text
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.memory_plan import Plan
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.holder import access, arena, grid, paths, values
+    from rosetta_jit.runtime.holder.objects.foreign import Foreign, Wholes
 else:
     access, arena, grid, paths, values = late("rosetta_jit.runtime.holder", "access", "arena", "grid", "paths", "values")
 

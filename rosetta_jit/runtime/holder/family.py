@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
+import marshal
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakValueDictionary
@@ -13,7 +13,7 @@ import numpy as np
 
 from rosetta_jit.kernel.state import VALID, WASTED
 from rosetta_jit.model.layout import layout
-from rosetta_jit.model.serial import from_plain, to_plain
+from rosetta_jit.model.serial import Plain, from_plain, to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct, Type
 from rosetta_jit.runtime.attributes import descriptors
 from rosetta_jit.runtime.attributes.code import functions, library
@@ -23,9 +23,7 @@ from rosetta_jit.runtime.attributes.methods import put
 from rosetta_jit.runtime.holder.classes import Holder, HolderClass, HolderFamily
 from rosetta_jit.runtime.holder.manners import PLAIN, Manners, manners_at
 from rosetta_jit.runtime.holder.message import OWN_NAMES, Access, View, in_row, read_field, recipe, write_field
-from rosetta_jit.runtime.holder.objects.foreign import Foreign, Wholes
-from rosetta_jit.runtime.holder.record import Record
-from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES
+from rosetta_jit.runtime.holder.record import Entry, Record
 from rosetta_jit.runtime.holder.serialising import building_method, serialising_methods
 from rosetta_jit.runtime.holder.tree import Tree, written_within
 from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes
@@ -35,12 +33,14 @@ from rosetta_jit.runtime.looks.described import Constructor, Described
 from rosetta_jit.runtime.memory_plan import Plan, plan
 from rosetta_jit.runtime.row_counts import begun_as, initialised, roomier
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.garbage import object_at
 from rosetta_jit.startup.late import Late
 from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.attributes.sameness import Sameness
     from rosetta_jit.runtime.holder import access
+    from rosetta_jit.runtime.holder.objects.foreign import Foreign, Wholes
     from rosetta_jit.runtime.holder.objects.giving import Givers
     from rosetta_jit.runtime.holder.objects.taking import Takers
 else:
@@ -54,15 +54,15 @@ _ONE_AT_A_TIME = shared_lock()
 class Family:
     """What the objects and views of one holder class share."""
 
-    def __init__(self, text: str, manners: Manners) -> None:
-        self.text = text
+    def __init__(self, plain: Plain, key: bytes, manners: Manners) -> None:
+        self._plain, self._key = plain, key
         self.manners = manners
-        self.type, self.schema = from_plain(json.loads(text))
+        self.type, self.schema = from_plain(plain)
         self.layout = layout(self.type, self.schema)
         self.tree = Tree(self.type, self.schema, self.layout)
         self.plan = initialised(plan(self.layout, initial=self.tree.initial))
         self.cell = [self.plan]
-        self.array_type, self.sequence, self.mapping = manners.array_type, manners.sequence, manners.mapping
+        self.array_type = manners.array_type
         self.assigns_whole = manners.assigns_whole
         self._accesses: dict[int, Access] = {}
         self._views: dict[str, type[View]] = {}
@@ -77,6 +77,13 @@ class Family:
         self._holder: type[Holder] | None = None
         self._kept: KeptFields | None = None
         self.programs: Any = None  # what serialises the holders, when somebody has asked for it: it ends with them
+
+    @cached_property
+    def text(self) -> str:
+        """The type as text, by which other processes know it."""
+        import json  # most processes ask for none
+
+        return json.dumps(self._plain, sort_keys=True)
 
     @property
     def holder(self) -> type[Holder]:
@@ -121,12 +128,14 @@ class Family:
     @property
     def sequences(self) -> OfSequences:
         """The functions that compiled code calls for sequences."""
+        from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES
+
         return OF_SEQUENCES
 
     @property
     def _mark(self) -> str:
         """The name of a slot that no other type's holders have: Python lets ``__class__`` be exchanged among classes of the same slots."""
-        return f"_of_{sha256(self.text.encode()).hexdigest()[:16]}"
+        return f"_of_{sha256(self._key).hexdigest()[:16]}"
 
     def of_struct(self, struct: str) -> type[Holder]:
         """The holder class of another struct of the schema, with the same manners."""
@@ -196,13 +205,25 @@ class Family:
         return Sameness()
 
     @property
+    def sequence(self) -> Callable[[View, Entry], Any]:
+        """What shows arrays of anything but numbers."""
+        return object_at(self.manners.sequence)
+
+    @property
+    def mapping(self) -> Callable[[View, Entry], Any]:
+        """What shows maps."""
+        return object_at(self.manners.mapping)
+
+    @cached_property
     def foreign(self) -> Foreign:
         """The peculiarities of objects of the framework's own package."""
-        return self.manners.foreign
+        return object_at(self.manners.foreign)
 
     @cached_property
     def wholes(self) -> Wholes:
         """How objects of other classes are handed over at once."""
+        from rosetta_jit.runtime.holder.objects.foreign import Wholes
+
         return Wholes(self.foreign, self)
 
     @cached_property
@@ -317,21 +338,32 @@ def holder_class(type_: Type, schema: Schema, manners: Manners = PLAIN) -> type[
     return holder_class_of(to_plain(type_, schema), manners)
 
 
-def holder_class_of(plain: Mapping[str, Any], manners: Manners = PLAIN) -> type[Holder]:
+def holder_class_of(plain: Plain, manners: Manners = PLAIN) -> type[Holder]:
     """The holder class of a type as `rosetta_jit.model.serial` writes it."""
-    return family_of(json.dumps(plain, sort_keys=True), manners).holder
+    return _family_of(plain, manners).holder
 
 
 def family_of(text: str, manners: Manners) -> Family:
-    """The family of a type as text: one for the same text as long as any of its holders or programs lives, whatever threads ask at once."""
+    """The family of a type as `Family.text` has it."""
+    import json  # of pickles alone
+
+    return _family_of(json.loads(text), manners)
+
+
+def _family_of(plain: Plain, manners: Manners) -> Family:
+    """The family of a type: one for the same type as long as any of its holders or programs lives, whatever threads ask at once."""
+    key = marshal.dumps(plain, VALUES_ALONE)
     with _ONE_AT_A_TIME:
-        family = _FAMILIES.get((text, manners))
+        family = _FAMILIES.get((key, manners))
         if family is None:
-            family = _FAMILIES[text, manners] = Family(text, manners)
+            family = _FAMILIES[key, manners] = Family(plain, key, manners)
         return family
 
 
-_FAMILIES: WeakValueDictionary[tuple[str, Manners], Family] = WeakValueDictionary()
+VALUES_ALONE = 2
+"""The version of `marshal` that writes no references: what is equal is the same bytes, whatever objects it shares."""
+
+_FAMILIES: WeakValueDictionary[tuple[bytes, Manners], Family] = WeakValueDictionary()
 
 
 _MARKED: WeakValueDictionary[str, Family] = WeakValueDictionary()

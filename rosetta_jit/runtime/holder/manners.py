@@ -9,11 +9,6 @@ import numpy as np
 
 from rosetta_jit.runtime.attributes.methods import Kind
 from rosetta_jit.runtime.holder.classes import Holder
-from rosetta_jit.runtime.holder.dictionary import Dictionary
-from rosetta_jit.runtime.holder.message import View
-from rosetta_jit.runtime.holder.objects.foreign import ORDINARY, Foreign
-from rosetta_jit.runtime.holder.record import Entry
-from rosetta_jit.runtime.holder.sequence import Sequence
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import object_at
 
@@ -33,8 +28,8 @@ class Manners:
         What holder classes inherit from: a subclass of `Holder` without slots of its own.
     array_type : type
         What arrays of numbers are shown as: numpy's class, or a subclass with a slot ``owner_`` for message and field.
-    sequence, mapping : callable
-        What shows arrays of anything else, and maps.
+    sequence, mapping : str
+        What shows arrays of anything else, and maps, given a view and one of its fields, as ``module:name``.
     assigns_whole : bool
         Whether arrays, maps and messages can be assigned to.
     members : callable
@@ -42,8 +37,9 @@ class Manners:
     serialising : tuple of str
         Framework and encoding of the base's methods that serialise; with it, ``programs_`` of every holder is what
         `rosetta_jit.runtime.holder.serialising.Programs` says.
-    foreign : Foreign
-        What is particular about the objects of the framework's own package.
+    foreign : str
+        What is particular about the objects of the framework's own package, as ``module:name`` of a
+        `rosetta_jit.runtime.holder.objects.foreign.Foreign`: few processes meet any.
     methods : callable
         Which of the base's methods do nothing but serialise, and how, given the family: compiled code does so where it can.
     place : str
@@ -52,12 +48,12 @@ class Manners:
 
     base: type[Holder]
     array_type: type[np.ndarray[Any, Any]]
-    sequence: Callable[[View, Entry], Any]
-    mapping: Callable[[View, Entry], Any]
+    sequence: str
+    mapping: str
     assigns_whole: bool
     members: Callable[[Any], dict[str, Any]]
     serialising: tuple[str, str] | None = None
-    foreign: Foreign = ORDINARY
+    foreign: str = "rosetta_jit.runtime.holder.objects.foreign:ORDINARY"
     methods: Callable[[Any], Mapping[str, Kind]] = no_methods
     place: str = ""
 
@@ -73,10 +69,16 @@ def no_members(family: Any) -> dict[str, Any]:  # noqa: ARG001  a plain class ha
 
 
 PLAIN = Manners(
-    Holder, np.ndarray, Sequence, Dictionary, assigns_whole=True, members=no_members, place="rosetta_jit.runtime.holder.manners:PLAIN"
+    Holder,
+    np.ndarray,
+    "rosetta_jit.runtime.holder.sequence:Sequence",
+    "rosetta_jit.runtime.holder.dictionary:Dictionary",
+    assigns_whole=True,
+    members=no_members,
+    place="rosetta_jit.runtime.holder.manners:PLAIN",
 )
 
 
 def manners_at(place: str) -> Manners:
-    """The manners at a place."""
-    return object_at(place)
+    """The manners at a place, plain ones for none."""
+    return object_at(place) if place else PLAIN

@@ -132,7 +132,7 @@ class Access:
         self.getters = _Made(lambda name: ways.getter(record.entries[name], family))
         self.setters = _Made(lambda name: ways.setter(record.entries[name], family))
         kept = family.kept_of(record.struct)
-        self._places = None if kept is None else FieldTable(record, self._read, write_field, kept, family.sequences)
+        self._places = None if kept is None else FieldTable(record, self._read, write_field, kept, lambda: family.sequences)
         self._numbers = {name: number for number, name in enumerate(record.entries)}
         for name in kept.members if kept is not None else ():
             self._show(name)

@@ -12,14 +12,13 @@ Nodes are never changed, and not frozen only because every process pays for the 
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import ClassVar, assert_never
 
 from rosetta_jit.model import layout as slots
 from rosetta_jit.model.initial_values import InitialValue, selected
 from rosetta_jit.model.types import Bool, Constant, Enum, Field, Float, Int, String, Type, Union
 from rosetta_jit.runtime.cells import SCALARS
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field
 
 ScalarType = Bool | Int | Float | Enum
 SIZE = dict(zip(SCALARS, (1, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8), strict=True))

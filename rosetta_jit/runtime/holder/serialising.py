@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from copy import deepcopy
 from inspect import getattr_static
-from typing import Any, Protocol
+from typing import Any, Protocol, cast
 
 from rosetta_jit.errors import RosettaError
 from rosetta_jit.runtime.attributes.methods import Kind, method, put
@@ -54,7 +53,7 @@ def encoded(message: Any) -> bytes:
     EncodeError
         If it cannot be written.
     """
-    return programs_of(message).encode(deepcopy(message) if isinstance(message, View) else message)
+    return programs_of(message).encode(cast("Any", message).__deepcopy__({}) if isinstance(message, View) else message)
 
 
 class Serialised(Protocol):
