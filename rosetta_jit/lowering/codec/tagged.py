@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from rosetta_jit.kernel import nodes
-from rosetta_jit.kernel.terms import BEGIN, add, index
+from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.codec.field_order import NONE, Case, read_cases
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields, span_of
@@ -55,7 +55,8 @@ def read_message(
     """
     presence = presence_words(writer, fields, fresh=fresh)
     message = Message(writer, fields, tagged, stop, presence, array_starts(writer, fields, tagged, fresh=fresh), depth, strange)
-    at = writer.var("at", writer.position)
+    begin = writer.position
+    at = writer.var("at", begin)
     ended = writer.var("ended", nodes.Const("bool", value=False)) if tagged.group is not None else None
     with writer.nested() as body:
         writer.position = at
@@ -65,7 +66,9 @@ def read_message(
     goes_on: nodes.Expr = nodes.Compare("lt", at, stop)
     if ended is not None:
         goes_on = nodes.Binary("and", goes_on, nodes.Compare("eq", ended, nodes.Const("bool", value=False)))
-    invariant = [nodes.Compare("ge", at, BEGIN), nodes.Compare("le", at, stop)]
+    invariant = [nodes.Compare("ge", at, begin), nodes.Compare("le", at, stop)]
+    if stop != END:  # else the proof must go through all messages around this one
+        invariant.append(nodes.Compare("le", stop, END))
     for path, start in message.starts.items():
         invariant += [nodes.Compare("ge", start, index(0)), nodes.Compare("le", start, nodes.Used(lane_of(fields, path)))]
     writer.emit(nodes.While(goes_on, block(body), tuple(invariant), at))
