@@ -29,7 +29,7 @@ from rosetta_jit.lowering.codec.tagged_message import (
     set_number,
 )
 from rosetta_jit.lowering.codec.unknown_fields import skip_unknown
-from rosetta_jit.lowering.codec.varint import from_varint, read_element, read_length, read_tag, read_varint
+from rosetta_jit.lowering.codec.varint import from_varint, read_element, read_length, read_packed, read_tag, read_varint
 from rosetta_jit.lowering.codec.varint_write import varint_bytes
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import Number as NumberSlot
@@ -343,7 +343,7 @@ def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: i
 
     def read_one() -> None:
         writer.position = at
-        value = _varint_value(message, varint, fields.layout.lanes[lane].element, where, read_element)
+        value = _varint_value(message, varint, fields.layout.lanes[lane].element, where, read_packed)
         with writer.nested() as known:
             _append(message, lane, value)
         _if_allowed(message, entry, value, known, at)

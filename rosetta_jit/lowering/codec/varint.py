@@ -32,8 +32,14 @@ def read_varint(writer: Writer, where: Where) -> Local:
 
 
 def read_element(writer: Writer, where: Where) -> Local:
-    """The same of many, one behind the other: two bytes are as common as one there, and never cost a call."""
+    """The same of many behind tags of their own: two bytes are as common as one there, and never cost a call."""
     value, writer.position = writer.call("read_element", _read_element, (writer.position,), where)
+    return value
+
+
+def read_packed(writer: Writer, where: Where) -> Local:
+    """The same of many, one behind the other."""
+    value, writer.position = writer.call("read_packed", _read_element, (writer.position,), where)
     return value
 
 
@@ -122,10 +128,20 @@ def _two_bytes(writer: Writer, further: Callable[[Local], tuple[Local, ...]]) ->
 
 
 def _read_element(writer: Writer) -> Contract:
+    """Of very many numbers each comparison costs: where a second byte is not there, this says so itself."""
     at = writer.parameter("at", "i64")
     writer.position = at
-    made = _in_place(writer, at, writer.load("u8", MESSAGE), lambda: writer.call("read_long_varint", _read_long, (at,), MESSAGE))
-    return replace(made, requires=writer.within(at))
+    first = writer.let("byte", writer.load("u8", MESSAGE))
+    value, after = _first_byte(writer, at, first)
+
+    def second() -> None:
+        byte = writer.let("byte", writer.load("u8", MESSAGE))
+        longer = writer.var("varint", _of_two(first, byte)), writer.var("next", writer.position)
+        _if_more(writer, byte, lambda: _become(writer, writer.call("read_long_varint", _read_long, (at,), MESSAGE), *longer))
+        _become(writer, longer, value, after)
+
+    _if_more(writer, first, second)
+    return Contract((at,), (value, after), writer.within(at), writer.behind(at, after))
 
 
 def _read_tag(writer: Writer) -> Contract:
@@ -159,9 +175,14 @@ def _second(writer: Writer, first: Local, at: Local, further: Callable[[], tuple
         writer.assign(byte, Load("u8", add(at, 1)))
         writer.assign(after, add(at, 2))
     writer.emit(If(Compare("ge", Binary("sub", END, at), index(2)), block(there)))
-    low = Binary("and", Convert("u64", first), SEVEN_BITS)
-    writer.assign(value, Binary("or", low, Binary("shl", Convert("u64", byte), Const("u64", 7))))
+    writer.assign(value, _of_two(first, byte))
     _if_more(writer, byte, lambda: _become(writer, further(), value, after))
+
+
+def _of_two(first: Local, second: Local) -> Expr:
+    """What two bytes stand for, if the second one is the last."""
+    low = Binary("and", Convert("u64", first), SEVEN_BITS)
+    return Binary("or", low, Binary("shl", Convert("u64", second), Const("u64", 7)))
 
 
 def _become(writer: Writer, results: tuple[Local, ...], value: Local, after: Local) -> None:
