@@ -52,6 +52,9 @@ MANY_STATEMENTS = 512
 UNUSUAL = -1 << 63
 """What a kernel's first body gives where the next one is to be asked: no place in a message, and the number of no failure."""
 
+OFTEN = 16
+"""Calls from which on a tiny routine stays a function if it begins with a call: that is made anyway."""
+
 TINY, SHORT = 8, 24
 """Statements up to which a routine is part of its callers: if it does not loop, and if its callers are not many."""
 
@@ -133,6 +136,8 @@ def _calls(kernel: Kernel) -> Counter[str]:
 def _is_in_place(routine: Routine, calls: int) -> bool:
     """Whether a routine is printed where it is called. LLVM could do that, but would have results and failures to take apart again."""
     parts = list(statements(routine.body))
+    if calls >= OFTEN and isinstance(routine.body[0], Call):
+        return False
     is_tiny = len(parts) <= TINY and not any(isinstance(each, For | While) for each in parts)
     return is_tiny or (len(parts) <= SHORT and calls < _many(routine))
 

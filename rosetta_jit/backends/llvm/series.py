@@ -11,11 +11,11 @@ from llvmlite import ir
 from rosetta_jit.backends.llvm.alike import NOTHING, Number, Series
 from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.frame import I64, LLVM_TYPES, Frame, Stretch, constant, forgotten, state_word
+from rosetta_jit.backends.llvm.tables import signed, table
 from rosetta_jit.kernel.nodes import Block, Direction, Local, Switch
 from rosetta_jit.kernel.state import LANE_WORDS, USED, lane_word
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
     Printer = Callable[[Frame, Block], None]
@@ -37,7 +37,9 @@ class Row:
             return builder.add(builder.mul(self.index, _constant(step)), _constant(column[0] + number.further))
         start = builder.mul(self.index, constant(len(self.series.rows[0])))
         place = builder.add(start, constant(number.column))
-        value = builder.load(state_word(builder, _table(self.module, self.series), place), typ=I64, align=8)
+        value = builder.load(
+            state_word(builder, table(self.module, [each for row in self.series.rows for each in row]), place), typ=I64, align=8
+        )
         return builder.add(value, constant(number.further)) if number.further else value
 
 
@@ -109,25 +111,8 @@ def _stretch(frame: Frame, series: Series, index: ir.Value, block: Printer) -> N
     frame.alike, frame.stretch = around, None
 
 
-def _table(module: ir.Module, series: Series) -> ir.Value:
-    """The table of a series as a constant of the module; equal ones are one."""
-    name = f"rosetta_series_{sha256(repr(series.rows).encode()).hexdigest()[:16]}"
-    table = module.globals.get(name)
-    if table is None:
-        numbers = [_signed(each) for row in series.rows for each in row]
-        array = ir.ArrayType(I64, len(numbers))
-        table = ir.GlobalVariable(module, array, name)
-        table.linkage, table.global_constant, table.initializer = "internal", True, ir.Constant(array, numbers)
-    return table
-
-
 def _constant(number: int) -> ir.Constant:
-    return constant(_signed(number))
-
-
-def _signed(number: int) -> int:
-    """An integer of 64 bits, with or without a sign, as one with a sign."""
-    return (number + 2**63) % 2**64 - 2**63
+    return constant(signed(number))
 
 
 # --- used lengths --------------------------------------------------------------------------------------------------------

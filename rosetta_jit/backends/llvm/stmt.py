@@ -7,7 +7,6 @@ takes failures; so the hot path holds compares and branches alone.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
 from llvmlite import ir
@@ -24,12 +23,13 @@ from rosetta_jit.backends.llvm.expr import (
     store,
     wire_pointer,
 )
-from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Frame, StoredExit, Variable, constant, forgotten, state_word
+from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Frame, StoredExit, Variable, constant, forgotten
+from rosetta_jit.backends.llvm.growth import reserve
 from rosetta_jit.backends.llvm.series import print_cases, print_series
+from rosetta_jit.backends.llvm.sites import site_of
 from rosetta_jit.kernel import ir as kernel
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
-from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
 from rosetta_jit.kernel.traits import looks_closer
 from rosetta_jit.startup.dataclass import replace
@@ -89,7 +89,7 @@ def _statement(frame: Frame, statement: nodes.Stmt) -> None:
             alignment = place_alignment(frame, place, type_of(value))
             store(frame, place_pointer(frame, place), expression(frame, value), type_of(value), alignment=alignment)
         case nodes.Reserve(lane, count):
-            _reserve(frame, lane, expression(frame, count))
+            reserve(frame, lane, expression(frame, count))
         case nodes.Advance(lane, count):
             slot = frame.used_slot(lane)
             rows = frame.builder.add(frame.builder.load(slot, typ=I64), expression(frame, count), flags=("nsw",))
@@ -212,7 +212,7 @@ def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Val
     while frame.caller is not None:
         frame, call = frame.caller
         sites, indices = tuple(call.sites[each - 1] for each in sites), call.indices
-    found = [_site(frame, number, sites), offset]
+    found = [site_of(frame, number, sites), offset]
     if indices and isinstance(frame.failed, StoredExit) and (told := _told(frame, ANY_SITE, *indices)) is not None:
         frame.failed.enter(frame.builder, found, _stores_indices(frame, frame.failed, indices, told))
     else:
@@ -265,43 +265,11 @@ def _host_call(frame: Frame, call: nodes.HostCall) -> None:
     frame.locals[call.result.name] = load(frame, result, call.result.type, alignment=1)
 
 
-def _site(frame: Frame, number: ir.Value, sites: tuple[int, ...]) -> ir.Value:
-    """The caller's site for a routine's failure: mostly they follow one another as the routine's own do."""
-    builder = frame.builder
-    first = constant(0) if not sites else constant(sites[0]) if frame.stretch is None else frame.stretch.site(builder, sites[0])
-    if len(sites) < 2:
-        return first
-    runs = [(own, site - own - sites[0]) for own, site in enumerate(sites, 1)]
-    runs = [runs[0], *(run for before, run in pairwise(runs) if run[1] != before[1])]
-    further: ir.Value = constant(runs[0][1])
-    for own, distance in runs[1:]:
-        further = builder.select(builder.icmp_signed(">=", number, constant(own)), constant(distance), further)
-    return builder.add(first, builder.add(number, further))
-
-
 def _assign(frame: Frame, name: str, value: nodes.Expr) -> None:
     variable = frame.locals[name]
     if not isinstance(variable, Variable):
         raise AssertionError(f"{name} is no Var")  # noqa: TRY004 - our bug, not a caller's
     frame.builder.store(expression(frame, value), variable.slot)
-
-
-def _reserve(frame: Frame, lane: int, count: ir.Value) -> None:
-    """Return GROW unless the rows are free; a negative count, seen as unsigned, never is."""
-    builder = frame.builder
-    used = builder.load(frame.used_slot(lane), typ=I64)
-    free = builder.sub(frame.capacity(lane), used, flags=("nsw",))
-    enough, small = frame.block("enough"), frame.block("small")
-    builder.cbranch(builder.icmp_unsigned("<=", count, free), enough, small).set_weights(COLD)
-    builder.position_at_end(small)
-    state = frame.parameters.state
-    builder.store(frame.lane_number(lane), state_word(builder, state, GROW_LANE), align=8)
-    missing = builder.sub(count, free)
-    if frame.is_hidden(lane):
-        missing = builder.mul(missing, constant(frame.strides[lane]))
-    builder.store(missing, state_word(builder, state, GROW_ROWS), align=8)
-    builder.ret(constant(GROW))
-    builder.position_at_end(enough)
 
 
 def _for(frame: Frame, variable: str, count: ir.Value, body: nodes.Block) -> None:

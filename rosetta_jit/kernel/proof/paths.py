@@ -81,14 +81,14 @@ def _is_number(value: Typed) -> bool:
 def _distances(scope: Scope, value: Linear, marks: list[Linear]) -> list[tuple[int, int]]:
     """For each anchor the least of ``value - anchor`` and of ``anchor - value``.
 
-    Worth a proof is only that the value is in the message, and no less than before.
+    Worth a proof is only that the value is in the message, and no less than before, or greater where that is quickly found.
     """
     begin, end, old, zero = marks
     lower = scope.facts.lower
     return [
         (_least(scope, minus(value, begin)), lower(minus(begin, value))),
         (lower(minus(value, end)), _least(scope, minus(end, value))),
-        (_least(scope, minus(value, old)), lower(minus(old, value))),
+        (_growth(scope, minus(value, old)), lower(minus(old, value))),
         (lower(minus(value, zero)), lower(minus(zero, value))),
     ]
 
@@ -96,6 +96,11 @@ def _distances(scope: Scope, value: Linear, marks: list[Linear]) -> list[tuple[i
 def _least(scope: Scope, distance: Linear) -> int:
     low = scope.facts.lower(distance)
     return 0 if low < 0 and coefficient_of(distance, BEGIN_ATOM) == 0 and scope.facts.proves(distance) else low
+
+
+def _growth(scope: Scope, distance: Linear) -> int:
+    low = _least(scope, distance)
+    return 1 if low == 0 and scope.facts.adds_up(shifted(distance, -1)) else low
 
 
 def _meet(scope: Scope, before: dict[str, Typed], arrivals: list[Arrival]) -> None:

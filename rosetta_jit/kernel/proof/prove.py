@@ -26,7 +26,7 @@ class Effort(NamedTuple):
     combinations: int
 
 
-GLANCE, SUMS, QUICK, THOROUGH = Effort(0, 0, 0), Effort(2, 0, 0), Effort(2, 32, 300), Effort(2, 96, 4000)
+GLANCE, SUMS, QUICK, THOROUGH = Effort(0, 0, 0), Effort(2, 0, 0), Effort(2, 32, 300), Effort(4, 96, 4000)
 """For what stands in the table, for what takes no elimination, for a question, and for an obligation."""
 
 Procedure = Literal["constants", "unreachable", "bounds", "sums", "elimination", "cases", "operations", "paths"]
@@ -241,6 +241,10 @@ class Facts:
     def shows(self, formula: Formula) -> bool:
         """Whether a formula stands in the table: to assume it would add nothing."""
         return self.impossible or self._proves(formula, 0, GLANCE)
+
+    def adds_up(self, formula: Formula) -> bool:
+        """Whether a formula is a sum of one or two facts: of what a look at the table does not show, most is, and that is quickly found."""
+        return self.impossible or self._proves(formula, 0, SUMS)
 
     def proves(self, formula: Formula) -> bool:
         """Whether a formula follows from what is known, as far as a short look shows."""

@@ -34,13 +34,14 @@ class VerificationError(AssertionError):
 
 @dataclass(slots=True)
 class _Walk:
-    """One body's walk: where it is, and what it has found out about loops and checks, by the ids of their statements."""
+    """One body's walk: where it is, in how many loops of each kind, and what it has found out about loops and checks, by their ids."""
 
     scope: Scope
     routines: Mapping[str, ir.Routine]
     notes: bool = False
     tries_all: bool = False
-    loops: int = 0
+    fors: int = 0
+    whiles: int = 0
     variables: set[str] = field(default_factory=set[str])
     dropped: dict[int, set[Guess]] = field(default_factory=dict[int, "set[Guess]"])
     seen: dict[int, nodes.Stmt] = field(default_factory=dict[int, "nodes.Stmt"])
@@ -218,13 +219,15 @@ def _check(walk: _Walk, stmt: nodes.Require | nodes.Expect, formula: Formula) ->
 def _note(walk: _Walk, stmt: nodes.Require | nodes.Expect | nodes.If, formula: Formula) -> None:
     """Note whether a condition is known before it is asked.
 
-    Only in a loop is that worth a proof. Elsewhere a check costs little, and what it says saves proofs of what follows from it.
+    Only in a loop is that worth a proof, and in one that goes through a message a short one. Elsewhere a check costs little, and what it
+    says saves proofs of what follows from it.
     """
     if not walk.notes:
         return
     key, facts = id(stmt), walk.scope.facts
     walk.seen[key] = stmt
-    if key not in walk.needed and not (facts.proves(formula) if walk.loops else facts.shows(formula)):
+    knows = facts.proves if walk.fors else facts.adds_up if walk.whiles else facts.shows
+    if key not in walk.needed and not knows(formula):
         walk.needed.add(key)
 
 
@@ -292,9 +295,9 @@ def _for(walk: _Walk, loop: nodes.For) -> None:
         scope.facts.assume(shifted(minus(count, index), -1))
         scope.bind(loop.variable, ("i64", index))
 
-    walk.loops += 1
+    walk.fors += 1
     _rounds(walk, loop, enter, lambda: None, count)
-    walk.loops -= 1
+    walk.fors -= 1
 
 
 def _while(walk: _Walk, loop: nodes.While) -> None:
@@ -315,7 +318,9 @@ def _while(walk: _Walk, loop: nodes.While) -> None:
 
     for expr in loop.invariant:
         oblige(scope, condition(scope, expr), claims.INVARIANT_FIRST)
+    walk.whiles += 1
     _rounds(walk, loop, enter, leave)
+    walk.whiles -= 1
     _assume_invariant(scope, loop)
     scope.facts.assume(negated(condition(scope, loop.condition)))
 

@@ -49,7 +49,8 @@ class Case:
 
 def read_cases(writer: Writer, tag: Local, cases: Sequence[Case], unknown: Callable[[], None], where: Where, stop: Expr) -> None:
     """Read what is behind a tag, and on as long as guesses are right; ``unknown`` reads it if no case does."""
-    after = writer.var("next", writer.position)
+    start = writer.position
+    after = writer.var("next", start)
     if len(writer.around) >= NESTED or all(case.guess == NONE for case in cases):
         known = tuple((case.tag, _body(writer, case.read, after)) for case in cases)
         writer.emit(Switch(tag, known, _body(writer, unknown, after)))
@@ -63,9 +64,9 @@ def read_cases(writer: Writer, tag: Local, cases: Sequence[Case], unknown: Calla
         known = tuple((each.tag, _guessing(writer, each, after, guess, number, where)) for number, each in enumerate(cases, 1))
         writer.emit(Switch(case, known, _further(writer, unknown, after, where)))
         _go_on(writer, guess, after, case, goes_on, stop)
-    writer.emit(While(goes_on, block(body), (Compare("ge", after, BEGIN), Compare("le", after, END)), after))
-    start, writer.position = writer.position, after
-    _expect_further(writer, start, where)  # said for the proof, too
+    invariant = Compare("ge", after, BEGIN), Compare("ge", after, start), Compare("le", after, END)
+    writer.emit(While(goes_on, block(body), invariant, after))
+    writer.position = after
 
 
 def _guessing(writer: Writer, case: Case, after: Local, guess: Local, number: int, where: Where) -> Block:

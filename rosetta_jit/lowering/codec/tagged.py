@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from rosetta_jit.kernel import nodes
-from rosetta_jit.kernel.terms import BEGIN, add, index
+from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.codec.field_order import NONE, Case, read_cases
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields, span_of
@@ -30,7 +30,7 @@ from rosetta_jit.lowering.codec.tagged_message import (
     set_number,
 )
 from rosetta_jit.lowering.codec.unknown_fields import skip_unknown
-from rosetta_jit.lowering.codec.varint import from_varint, read_element, read_length, read_tag, read_varint
+from rosetta_jit.lowering.codec.varint import from_varint, read_element, read_length, read_packed, read_tag, read_varint
 from rosetta_jit.lowering.codec.varint_write import varint_bytes
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import Number as NumberSlot
@@ -56,7 +56,8 @@ def read_message(
     """
     presence = presence_words(writer, fields, fresh=fresh)
     message = Message(writer, fields, tagged, stop, presence, array_starts(writer, fields, tagged, fresh=fresh), depth, strange)
-    at = writer.var("at", writer.position)
+    begin = writer.position
+    at = writer.var("at", begin)
     ended = writer.var("ended", nodes.Const("bool", value=False)) if tagged.group is not None else None
     with writer.nested() as body:
         writer.position = at
@@ -66,7 +67,9 @@ def read_message(
     goes_on: nodes.Expr = nodes.Compare("lt", at, stop)
     if ended is not None:
         goes_on = nodes.Binary("and", goes_on, nodes.Compare("eq", ended, nodes.Const("bool", value=False)))
-    invariant = [nodes.Compare("ge", at, BEGIN), nodes.Compare("le", at, stop)]
+    invariant = [nodes.Compare("ge", at, begin), nodes.Compare("le", at, stop)]
+    if stop != END:  # else the proof must go through all messages around this one
+        invariant.append(nodes.Compare("le", stop, END))
     for path, start in message.starts.items():
         invariant += [nodes.Compare("ge", start, index(0)), nodes.Compare("le", start, nodes.Used(lane_of(fields, path)))]
     writer.emit(nodes.While(goes_on, block(body), tuple(invariant), at))
@@ -343,7 +346,7 @@ def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: i
 
     def read_one() -> None:
         writer.position = at
-        value = _varint_value(message, varint, fields.layout.lanes[lane].element, where, read_element)
+        value = _varint_value(message, varint, fields.layout.lanes[lane].element, where, read_packed)
         with writer.nested() as known:
             _append(message, lane, value)
         _if_allowed(message, entry, value, known, at)

@@ -92,13 +92,18 @@ def _skip(writer: Writer, scratch: int) -> Contract:
     )
     writer.emit(nodes.While(nodes.Binary("and", goes_on, nodes.Compare("lt", rounds, limit)), block(body), invariant, rounds))
     writer.position = at
-    writer.expect(nodes.Compare("eq", depth, index(0)), "truncated", where, "the group has no end")
-    has_stack = (
-        nodes.Compare("ge", base, index(0)),
-        nodes.Compare("le", base, nodes.Binary("sub", nodes.Capacity(scratch), index(MAX_GROUPS))),
+    is_read = nodes.Binary("and", nodes.Compare("eq", depth, index(0)), nodes.Compare("gt", at, start))  # the latter for the proof
+    writer.expect(is_read, "truncated", where, "the group has no end")
+    ensured = *writer.behind(start, at), *writer.within(last_tag)
+    return Contract(
+        (start, tag, stop, base), (at, last_tag), (*writer.within(start), *writer.within(stop), *_has_stack(scratch, base)), ensured
     )
-    ensured = *writer.within(at), nodes.Compare("ge", at, start), *writer.within(last_tag)
-    return Contract((start, tag, stop, base), (at, last_tag), (*writer.within(start), *writer.within(stop), *has_stack), ensured)
+
+
+def _has_stack(scratch: int, base: nodes.Local) -> tuple[nodes.Expr, ...]:
+    """The claim that the scratch lane has room for the numbers of all groups."""
+    room = nodes.Binary("sub", nodes.Capacity(scratch), index(MAX_GROUPS))
+    return nodes.Compare("ge", base, index(0)), nodes.Compare("le", base, room)
 
 
 def _next_tag(writer: Writer, at: nodes.Local, last_tag: nodes.Local, current: nodes.Local, where: Where) -> nodes.Block:

@@ -8,12 +8,15 @@ from rosetta_jit.errors import Kind
 from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expr, If, Load, Local, Select, While
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.writer import MESSAGE, Contract, Where, Writer, block
+from rosetta_jit.startup.dataclass import replace
 from rosetta_jit.wire.codec import Varint
 
 SEVEN_BITS = Const("u64", 0x7F)
 ONE, ZERO = Const("u64", 1), Const("u64", 0)
 ONE_BYTE, TWO_BYTES = Const("u64", 1 << 7), Const("u64", 1 << 14)
 """What varints of one byte, and of two, stay below."""
+MORE = Const("u8", 1 << 7)
+"""What a byte is at least that is not the last one."""
 VARINT_BYTES = 10
 """Of a varint."""
 GUESSED = 5
@@ -29,13 +32,20 @@ def read_varint(writer: Writer, where: Where) -> Local:
 
 
 def read_element(writer: Writer, where: Where) -> Local:
-    """The same of many, one behind the other: two bytes are as common as one there, and never cost a call."""
+    """The same of many behind tags of their own: two bytes are as common as one there, and never cost a call."""
     value, writer.position = writer.call("read_element", _read_element, (writer.position,), where)
+    return value
+
+
+def read_packed(writer: Writer, where: Where) -> Local:
+    """The same of many, one behind the other."""
+    value, writer.position = writer.call("read_packed", _read_element, (writer.position,), where)
     return value
 
 
 def read_tag(writer: Writer, where: Where) -> Local:
     """The same for what has two bytes as often as one: fields have numbers from 16 on, too."""
+    writer.require(1, where)
     value, writer.position = writer.call("read_tag", _read_tag, (writer.position,), where)
     return value
 
@@ -49,8 +59,7 @@ def read_size(writer: Writer, where: Where) -> Local:
 def read_length(writer: Writer, where: Where, stop: Expr) -> Local:
     """A length of bytes that follow, and are there."""
     size = writer.let("length", Convert("i64", read_size(writer, where)))
-    here = writer.position
-    fits = Binary("and", Compare("ge", size, index(0)), Compare("le", size, Binary("sub", stop, here)))
+    fits = Compare("le", size, Binary("sub", stop, writer.position))
     writer.expect(fits, "truncated", where, "longer than what is left of the message")
     writer.require(size, where)
     return size
@@ -58,11 +67,13 @@ def read_length(writer: Writer, where: Where, stop: Expr) -> Local:
 
 def _read_size(writer: Writer) -> Contract:
     """As of any varint: lengths of two bytes are common, too."""
-    return _first_byte(writer, lambda _, at: writer.call("read_size_of_two_bytes", _read_size_of_two, (at,), MESSAGE))
+    made = _first_of_two(writer, lambda at: writer.call("read_size_of_two_bytes", _read_size_of_two, (at,), MESSAGE))
+    return _at_most(LARGEST_LENGTH, made)
 
 
 def _read_size_of_two(writer: Writer) -> Contract:
-    return _two_bytes(writer, lambda at: writer.call("read_long_size", _read_long_size, (at,), MESSAGE))
+    made = _two_bytes(writer, lambda at: writer.call("read_long_size", _read_long_size, (at,), MESSAGE))
+    return _at_most(LARGEST_LENGTH, made)
 
 
 def _read_long_size(writer: Writer) -> Contract:
@@ -79,67 +90,111 @@ def _short(writer: Writer, most: int, what: str, too_large: Kind, too_long: Kind
     value, after = writer.call("read_long_varint", _read_long, (at,), MESSAGE)
     writer.expect(Compare("le", value, Const("u64", most)), too_large, MESSAGE, f"{what} of more than {most}", at=at)
     writer.expect(Compare("le", Binary("sub", after, at), index(GUESSED)), too_long, MESSAGE, f"{what} of more than five bytes", at=at)
-    return Contract((at,), (value, after), writer.within(at), writer.behind(at, after))
+    return _at_most(most, Contract((at,), (value, after), writer.within(at), (*writer.within(after), _is_long(at, after))))
+
+
+def _at_most(most: int, contract: Contract) -> Contract:
+    """What gives a number that is not larger than another one."""
+    value, _ = contract.results
+    return replace(contract, ensures=(*contract.ensures, Compare("le", value, Const("u64", most))))
 
 
 def _read(writer: Writer) -> Contract:
     """One byte is the common case, which costs no call; nor do two, unless very many varints are read: each length has a routine."""
-    return _first_byte(writer, lambda _, at: writer.call("read_two_bytes", _read_two, (at,), MESSAGE))
+    return _first_of_two(writer, lambda at: writer.call("read_two_bytes", _read_two, (at,), MESSAGE))
 
 
 def _read_two(writer: Writer) -> Contract:
     return _two_bytes(writer, lambda at: writer.call("read_long_varint", _read_long, (at,), MESSAGE))
 
 
-def _two_bytes(writer: Writer, further: Callable[[Local], tuple[Local, ...]]) -> Contract:
-    """Two bytes, or what begins at a place."""
+def _first_of_two(writer: Writer, further: Callable[[Local], tuple[Local, ...]]) -> Contract:
+    """A byte alone, or what a routine reads from its place on."""
     at = writer.parameter("at", "i64")
     writer.position = at
-    first = writer.let("byte", writer.load("u8", MESSAGE))
-    value, after = _second(writer, first, lambda: further(at))
+    byte = writer.let("byte", writer.load("u8", MESSAGE))
+    value, after = _first_byte(writer, at, byte)
+    _if_more(writer, byte, lambda: _become(writer, further(at), value, after))
     return Contract((at,), (value, after), writer.within(at), writer.behind(at, after))
+
+
+def _two_bytes(writer: Writer, further: Callable[[Local], tuple[Local, ...]]) -> Contract:
+    """Two bytes, or what begins at a place, of which the first is there."""
+    at = writer.parameter("at", "i64")
+    first = writer.let("byte", Load("u8", at))
+    value, after = _first_byte(writer, at, first)
+    _second(writer, first, at, lambda: further(at), value, after)
+    return Contract((at,), (value, after), _is_there(at), writer.behind(at, after))
 
 
 def _read_element(writer: Writer) -> Contract:
-    return _in_place(writer, lambda at: writer.call("read_long_varint", _read_long, (at,), MESSAGE))
-
-
-def _read_tag(writer: Writer) -> Contract:
-    return _in_place(writer, lambda at: writer.call("read_long_tag", _read_long_tag, (at,), MESSAGE))
-
-
-def _in_place(writer: Writer, further: Callable[[Local], tuple[Local, ...]]) -> Contract:
-    """A byte alone or two of them, without a call, or what begins at a place."""
-    return _first_byte(writer, lambda first, at: _second(writer, first, lambda: further(at)))
-
-
-def _second(writer: Writer, first: Local, further: Callable[[], tuple[Local, ...]]) -> tuple[Local, Local]:
-    """The next byte behind a first one, or what is longer: the value, and the place behind it."""
-    byte = writer.let("byte", writer.load("u8", MESSAGE))
-    low = Binary("and", Convert("u64", first), SEVEN_BITS)
-    value = writer.var("varint", Binary("or", low, Binary("shl", Convert("u64", byte), Const("u64", 7))))
-    after = writer.var("next", writer.position)
-    _if_more(writer, byte, further, value, after)
-    return value, after
-
-
-def _first_byte(writer: Writer, further: Callable[[Local, Local], tuple[Local, ...]]) -> Contract:
-    """A byte alone, or, behind the byte and the place where it stands, what it begins."""
+    """Of very many numbers each comparison costs: where a second byte is not there, this says so itself."""
     at = writer.parameter("at", "i64")
     writer.position = at
-    byte = writer.let("byte", writer.load("u8", MESSAGE))
-    value, after = writer.var("varint", Convert("u64", byte)), writer.var("next", writer.position)
-    _if_more(writer, byte, lambda: further(byte, at), value, after)
+    first = writer.let("byte", writer.load("u8", MESSAGE))
+    value, after = _first_byte(writer, at, first)
+
+    def second() -> None:
+        byte = writer.let("byte", writer.load("u8", MESSAGE))
+        longer = writer.var("varint", _of_two(first, byte)), writer.var("next", writer.position)
+        _if_more(writer, byte, lambda: _become(writer, writer.call("read_long_varint", _read_long, (at,), MESSAGE), *longer))
+        _become(writer, longer, value, after)
+
+    _if_more(writer, first, second)
     return Contract((at,), (value, after), writer.within(at), writer.behind(at, after))
 
 
-def _if_more(writer: Writer, byte: Local, further: Callable[[], tuple[Local, ...]], value: Local, after: Local) -> None:
-    """If the byte is not the last one, the value and the place behind it are others."""
+def _read_tag(writer: Writer) -> Contract:
+    """There is a byte: a message that goes on has one."""
+    at = writer.parameter("at", "i64")
+    return _in_place(writer, at, Load("u8", at), lambda: writer.call("read_long_tag", _read_long_tag, (at,), MESSAGE))
+
+
+def _in_place(writer: Writer, at: Local, first: Expr, further: Callable[[], tuple[Local, ...]]) -> Contract:
+    """A byte alone or two of them, without a call, or what begins at a place."""
+    byte = writer.let("byte", first)
+    value, after = _first_byte(writer, at, byte)
+    _if_more(writer, byte, lambda: _second(writer, byte, at, further, value, after))
+    return Contract((at,), (value, after), _is_there(at), writer.behind(at, after))
+
+
+def _is_there(at: Local) -> tuple[Expr, ...]:
+    """The claim that the byte at a place is there."""
+    return Compare("ge", at, BEGIN), Compare("ge", Binary("sub", END, at), index(1))
+
+
+def _first_byte(writer: Writer, at: Local, byte: Local) -> tuple[Local, Local]:
+    """The value and the place behind it, as they are if the byte is the last one."""
+    return writer.var("varint", Convert("u64", byte)), writer.var("next", add(at, 1))
+
+
+def _second(writer: Writer, first: Local, at: Local, further: Callable[[], tuple[Local, ...]], value: Local, after: Local) -> None:
+    """The same if the next byte is the last one, or there are more. Where the message ends, ``further`` fails there."""
+    byte = writer.var("byte", MORE)
+    with writer.nested() as there:
+        writer.assign(byte, Load("u8", add(at, 1)))
+        writer.assign(after, add(at, 2))
+    writer.emit(If(Compare("ge", Binary("sub", END, at), index(2)), block(there)))
+    writer.assign(value, _of_two(first, byte))
+    _if_more(writer, byte, lambda: _become(writer, further(), value, after))
+
+
+def _of_two(first: Local, second: Local) -> Expr:
+    """What two bytes stand for, if the second one is the last."""
+    low = Binary("and", Convert("u64", first), SEVEN_BITS)
+    return Binary("or", low, Binary("shl", Convert("u64", second), Const("u64", 7)))
+
+
+def _become(writer: Writer, results: tuple[Local, ...], value: Local, after: Local) -> None:
+    for variable, result in zip((value, after), results, strict=True):
+        writer.assign(variable, result)
+
+
+def _if_more(writer: Writer, byte: Local, further: Callable[[], None]) -> None:
+    """If the byte is not the last one, what is further done."""
     with writer.nested() as more:
-        longer, behind = further()
-        writer.assign(value, longer)
-        writer.assign(after, behind)
-    writer.emit(If(Compare("ge", byte, Const("u8", 128)), block(more)))
+        further()
+    writer.emit(If(Compare("ge", byte, MORE), block(more)))
 
 
 def _read_long(writer: Writer) -> Contract:
@@ -160,15 +215,23 @@ def _read_long(writer: Writer) -> Contract:
         bits = Binary("shl", Binary("and", Convert("u64", byte), SEVEN_BITS), Convert("u64", shift))
         writer.assign(value, Binary("or", value, bits))
         writer.assign(shift, add(shift, 7))
-    unfinished = Compare("ge", byte, Const("u8", 128))
+    unfinished = Compare("ge", byte, MORE)
     invariant = (
         *writer.behind(at, after),
         Compare("ge", shift, index(7)),
         Compare("le", shift, index(70)),
     )
     writer.emit(While(Binary("and", unfinished, Compare("lt", shift, index(64))), block(body), invariant, shift))
-    writer.expect(Compare("lt", byte, Const("u8", 128)), "varint", where, "an integer of more than ten bytes")
-    return Contract((at,), (value, after), writer.within(at), writer.behind(at, after))
+    writer.expect(Compare("lt", byte, MORE), "varint", where, "an integer of more than ten bytes")
+    writer.expect(
+        _is_long(at, after), "truncated", where, "the message ends here"
+    )  # said for the proof: the first byte is not the last one
+    return Contract((at,), (value, after), writer.within(at), (*writer.within(after), _is_long(at, after)))
+
+
+def _is_long(at: Local, after: Local) -> Compare:
+    """The claim that there are two bytes or more."""
+    return Compare("ge", after, add(at, 2))
 
 
 def _read_at_once(writer: Writer, at: Local, value: Local, after: Local, byte: Local) -> None:
