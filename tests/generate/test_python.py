@@ -10,6 +10,7 @@ import sys
 import types
 from itertools import permutations
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -450,3 +451,18 @@ def test_short_integers_are_read_without_a_call(module):
     good = [bytes(programs[1](programs[1].holder_type.from_dict({"v": each, "n": -1}))) for each in values]
     answers_as_the_library(unit, programs, harmed([*good, b"\x0a", b"\x10", b"\x10\x80", b"\x8a\x00\x01a"], 12, "short"))
     assert [unit.decode(each).v for each in good] == values
+
+
+def protobuf(body: str) -> dict[str, Any]:
+    """Options for types of a schema."""
+    return {"encoding": "protobuf", "schema": {"t.proto": f'syntax = "proto3"; package t; {body}'}}
+
+
+def test_bools_behind_tags_are_one_of_two_texts(module):
+    """Those of which each has its own tag, of one byte and of two."""
+    given = protobuf("message M { repeated bool v = 1 [packed = false]; repeated bool far = 40 [packed = false]; int32 n = 2; }")
+    request = type_request("decode", "t.M", given)
+    assert r"[b'\xc0\x02\x01' if each else b'\xc0\x02\x00' for each in far" in generated(request, "python", BOTH, "unit")["unit.py"]
+    unit, encode = module(request), rj.Encoder.of("t.M", **given)
+    for values in ({"v": [True, False, True], "far": [False, True], "n": 3}, {"v": [], "far": [True]}, {}):
+        assert unit.encode(unit.M(**values)) == bytes(encode(encode.holder_type.from_dict(values)))

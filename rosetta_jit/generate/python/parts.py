@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.expressions import expression
+from rosetta_jit.generate.python.flags import Flags, flags_of
 from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.joined_parts import Written
 from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope
@@ -239,6 +240,9 @@ class Parts(Written):
             self.flush()
         if len(lines) == before + 1:
             lines.pop()  # the loop does nothing
+        elif (flags := flags_of(loop)) is not None and (sequence := self._sequence_of_flags(loop, flags)) is not None:
+            del lines[before:]
+            self.line(f"{self.list_name} += [{flags.true!r} if each else {flags.false!r} for each in {sequence.local}]")
         self.exact, self.scope.objects = exact, objects
         self._end(holds, begin, width)
         if holds is None:
@@ -260,6 +264,11 @@ class Parts(Written):
         if len(rows) > 1 or (rows and not self._is_count_of(rows[0].lane, loop.count)):
             raise NotInParts
         return rows[0] if rows else None
+
+    def _sequence_of_flags(self, loop: nodes.For, flags: Flags) -> Listed | None:
+        """The bools that a loop writes, if those are all of a sequence."""
+        is_round = self.scope.behind(flags.place) == nodes.Local("i64", loop.variable)
+        return self.scope.sequences.get(flags.place.lane) if is_round and self._is_count_of(flags.place.lane, loop.count) else None
 
     def _is_count_of(self, lane: int, count: nodes.Expr) -> bool:
         """Whether a number is that of all elements of a sequence."""
