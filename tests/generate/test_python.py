@@ -466,3 +466,27 @@ def test_bools_behind_tags_are_one_of_two_texts(module):
     unit, encode = module(request), rj.Encoder.of("t.M", **given)
     for values in ({"v": [True, False, True], "far": [False, True], "n": 3}, {"v": [], "far": [True]}, {}):
         assert unit.encode(unit.M(**values)) == bytes(encode(encode.holder_type.from_dict(values)))
+
+
+def test_messages_that_contain_their_own_type_are_written_by_functions(module):
+    """As one, as a list, in a oneof, in a map, in a message between, in a group of their own, and with fields of other lengths."""
+    schema = """
+        message M { string name = 1; sint32 n = 2; repeated M many = 3; M one = 4; oneof which { M first = 5; bool second = 6; }
+            map<string, M> named = 7; repeated Between between = 300; repeated double numbers = 9; Other other = 10; }
+        message Between { fixed32 id = 1; M inner = 2; repeated int32 ids = 3; }
+        message Other { repeated Other others = 1; M back = 2; repeated bool flags = 3 [packed = false]; }
+        message Root { M tree = 1; Other other = 2; int32 n = 3; }
+    """
+    leaf = {"name": "é" * 100, "n": -5, "numbers": [1.5] * 3}
+    between = [{"id": 1, "inner": leaf, "ids": [300, -1]}, {"id": 2}]
+    other = {"others": [{"flags": [True, False]}, {"back": {"n": 7}}], "back": leaf}
+    tree = {"many": [leaf, {"one": leaf}, {"many": [leaf] * 9}], "one": {"one": {}}, "first": leaf, "between": between}
+    values = [{**tree, "other": other, "named": {"a": leaf, "b": {"second": True}}}, leaf, {}]
+    for type_, cases in (("M", values), ("Root", [{"tree": each, "other": other, "n": 4} for each in values])):
+        request = type_request("decode", f"t.{type_}", protobuf(schema))
+        text = generated(request, "python", BOTH, "unit")["unit.py"]
+        assert "_encoded_" in text
+        assert "_size_1" not in text
+        programs = rj.Decoder.of(f"t.{type_}", **protobuf(schema)), rj.Encoder.of(f"t.{type_}", **protobuf(schema))
+        messages = [bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in cases]
+        answers_as_the_library(module(request), programs, harmed(messages, 12, type_))

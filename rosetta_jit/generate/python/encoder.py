@@ -10,13 +10,14 @@ from rosetta_jit.generate.python.functions import words_of
 from rosetta_jit.generate.python.object_rows import ObjectScope
 from rosetta_jit.generate.python.parts import Parts
 from rosetta_jit.generate.python.positions import NotInParts, Sum, without_places, without_positions
-from rosetta_jit.generate.python.presence import without_lengths
+from rosetta_jit.generate.python.presence import is_behind_message, without_lengths
+from rosetta_jit.generate.python.recursive_rows import RowBody, row_function, without_work_list
 from rosetta_jit.generate.python.statements import Function, Objects
 from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.ir import Kernel, Routine
-from rosetta_jit.kernel.nodes import Block, Expect
+from rosetta_jit.kernel.nodes import Block, Expect, Return
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.types import Ref
@@ -55,18 +56,27 @@ def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str,
         written[routine.name] = f"_encode_{routine.name}"
     scope = _scope(kernel, lanes, paths, loads)
     scope.numpy = unit.numpy
-    body = undamaged(reached(kernel.bodies[0]), kernel.sites)
+    body, rows = without_work_list(undamaged(reached(kernel.bodies[0]), kernel.sites), unit.layout)
     parts = _parts(unit, kernel, scope, body, written, depth=2)
     parts.binder.bind(0, index(0), "target", Ref(unit.type), unit.layout.root)
     parts.block(parts.body)
-    called, pending = set[str](), set(parts.called)
+    called, pending, inner = set[str](), set(parts.called), dict[int, str]()
+    for lane, struct in unit.layout.recursive:
+        if lane in rows:
+            of_row, inner[lane] = _row(unit, kernel, _scope(kernel, lanes, paths, loads), (lane, struct, rows[lane]), written)
+            pending |= of_row.called
+            parts.rows_called |= of_row.rows_called
+    if not parts.rows_called <= {*inner}:
+        raise NotInParts
     while pending:
         name = pending.pop()
         called.add(name)
         pending |= {each for each, function in written.items() if any(f"{function}(" in line for line in texts.get(name, ())[1:])} - called
     lines = [*(["        parts = []"] if parts.begun else []), *parts.function.writer.lines]
     routines = tuple("\n".join(texts[name]) for name in written if name in called and name in texts)
-    return InParts(routines, tuple(lines), frozenset(loads), frozenset(scope.from_call))
+    return InParts(
+        (*routines, *(inner[lane] for lane in sorted(parts.rows_called))), tuple(lines), frozenset(loads), frozenset(scope.from_call)
+    )
 
 
 def _scope(kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], loads: set[str]) -> ObjectScope:
@@ -95,3 +105,18 @@ def _routine(unit: Unit, kernel: Kernel, routine: Routine, scope: ObjectScope, w
     parts.end("")
     begun = ["    parts = []"] if parts.begun else []
     return [f"def _encode_{routine.name}({parameters}):", *begun, *parts.function.writer.lines]
+
+
+def _row(unit: Unit, kernel: Kernel, scope: ObjectScope, of: tuple[int, str, RowBody], written: dict[str, str]) -> tuple[Parts, str]:
+    """The function for messages of a lane, of a type that contains itself."""
+    lane, struct, row = of
+    scope.numpy = unit.numpy
+    parts = _parts(unit, kernel, scope, (*row.block, Return(row.end)), written, depth=1)
+    if any(isinstance(stmt, Expect) and not is_behind_message(stmt) for stmt, _ in statements(parts.body)):
+        raise NotInParts
+    parts.positions.at = parts.positions.values[row.begin] = Sum(0, frozenset({(row.begin, 1)}))
+    element = parts.binder.local("element")
+    parts.binder.bind(lane, row.row, element, Ref(struct), unit.layout.lanes[lane].element)
+    parts.block(parts.body)
+    begun = ["    parts = []"] if parts.begun else []
+    return parts, "\n".join([f"def {row_function(scope.lanes, lane)}({element}):", *begun, *parts.function.writer.lines])

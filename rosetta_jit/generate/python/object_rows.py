@@ -55,7 +55,8 @@ class ObjectScope(Scope):
     the rows of a sequence start and how many there are, with the lane of the sequence. ``numbers`` are the expressions whose values a
     program has set, and that may be no numbers of their type; ``float_fields`` has the types of the fields that are floats, by lane, row
     and offset: the cases of a union share a local. ``maybe`` has what is there under a condition, by the field that says so and the bit
-    or number of it.
+    or number of it. ``messages`` are the locals that hold messages of types that contain themselves, by lane and row, ``linked`` those
+    which are fields, by lane.
     """
 
     objects: dict[tuple[int, Expr], dict[int, str]] = field(default_factory=dict[tuple[int, "Expr"], dict[int, str]])
@@ -65,6 +66,8 @@ class ObjectScope(Scope):
     numbers: set[str] = field(default_factory=set[str])
     float_fields: dict[tuple[int, Expr, int], str] = field(default_factory=dict[tuple[int, Expr, int], str])
     maybe: dict[tuple[Place, int], Maybe] = field(default_factory=dict[tuple[Place, int], Maybe])
+    messages: dict[tuple[int, Expr], str] = field(default_factory=dict[tuple[int, "Expr"], str])
+    linked: dict[int, str] = field(default_factory=dict[int, str])
 
     def place(self, place: Place, scalar: str) -> str:
         """A scalar of a row of an object."""
@@ -101,6 +104,13 @@ class ObjectScope(Scope):
 
     def view(self, lane: int, code: str) -> str:  # noqa: ARG002 - of a scope
         raise NotInParts
+
+    def message(self, place: Place) -> str:
+        """The local that holds the message, of a type that contains itself, of a row."""
+        linked = self.linked.get(place.lane) if self.behind(place) == index(0) else None
+        if (found := self.messages.get((place.lane, place.row), linked)) is None:
+            raise NotInParts
+        return found
 
     def start(self, place: Place, behind: int = 0) -> int | None:
         """The lane of the sequence whose start is the field ``behind`` bytes before a place."""
@@ -177,13 +187,14 @@ class Binder:
                 self._map(at, map_entry(key, value), slot, found)
             case Union(), Variant():
                 self._union(lane, at, resolved, slot, found)
+            case Struct(), Span():
+                self.scope.linked[slot.lane] = at
+                found[slot.offset], found[slot.offset + 8] = f"{START}{slot.lane}", "1"
             case _:
                 raise NotInParts
 
     def _map(self, at: str, entry: Struct, slot: Span, found: dict[int, str]) -> None:
         lane = self.unit.layout.lanes[slot.lane]
-        if lane.links is not None:
-            raise NotInParts
         own = self.local(lane.name.rpartition(".")[2] or "entries")
         self.function.line(f"{own} = {at}.items()")
         self.scope.sequences[slot.lane] = Listed(own, slot.lane, entry, lane.element, is_map=True)
@@ -235,7 +246,7 @@ class Binder:
 
     def _sequence(self, at: str, type_: String | Bytes | Array, slot: Span, found: dict[int, str]) -> None:
         lane = self.unit.layout.lanes[slot.lane]
-        if lane.links is not None or (isinstance(type_, String) and type_.encoding == "utf-16"):
+        if isinstance(type_, String) and type_.encoding == "utf-16":
             raise NotInParts
         own = self.local((at if at.replace(".", "").isidentifier() and "." in at else lane.name).rpartition(".")[2] or "value")
         self.function.line(f'{own} = {at}.encode("utf-8", "surrogateescape")' if isinstance(type_, String) else f"{own} = {at}")

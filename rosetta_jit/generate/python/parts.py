@@ -19,6 +19,7 @@ from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope
 from rosetta_jit.generate.python.packed import Part
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
 from rosetta_jit.generate.python.presence import bit_tested, case_tested, named_in_rounds, places_read
+from rosetta_jit.generate.python.recursive_rows import is_hidden, row_function
 from rosetta_jit.generate.python.statements import Function, fail, print_statement
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel import nodes
@@ -32,16 +33,19 @@ class Parts(Written):
     """Prints a body.
 
     ``routines`` are the functions that give the bytes which routines write, ``called`` those of them that are. ``lengths`` are the locals
-    of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has.
+    of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has. Messages of types that
+    contain themselves are made by functions, of the lanes ``rows_called``: ``bodies`` are the locals that have them by those for their
+    ``sizes``, which have names by the rows of the messages.
     """
 
     def __init__(self, unit: Unit, function: Function, scope: ObjectScope, body: nodes.Block, routines: Mapping[str, str]) -> None:
         exprs = (expr for stmt, _ in statements(body) for expr in expressions_of(stmt))
         needed = {(place.lane, place.offset) for expr in exprs for place in places_read(expr)}
         super().__init__(unit, function, scope, needed)
-        self.body, self.routines, self.called = body, routines, set[str]()
+        self.body, self.routines, self.called, self.depth = body, routines, set[str](), function.writer.depth
         self.lengths, self.words = set[str](), dict[str, nodes.Place]()
         self.counted = named_in_rounds(body)
+        self.bodies, self.sizes, self.rows_called = dict[str, str](), dict[nodes.Expr, str](), set[int]()
 
     # --- statements ------------------------------------------------------------------------------------------------------------------
 
@@ -70,6 +74,10 @@ class Parts(Written):
                 self.positions.written(at, self.positions.sum(size))
             case nodes.Call():
                 self._call(stmt)
+            case nodes.SetField(place, at) if is_hidden(place, self.unit.layout):
+                size = self.sizes[place.row]
+                self.pending.append(Part("", "", (self.bodies[size],)))
+                self.positions.written(at, self.positions.values[size])
             case nodes.HostCall(inputs=(), target=None):
                 print_statement(self.function, stmt)
             case nodes.Return(position, registers):
@@ -110,6 +118,9 @@ class Parts(Written):
         if isinstance(stmt.value, nodes.Get) and stmt.value.type in ("u64", "i64"):
             self.words[stmt.name] = stmt.value.place
         match stmt.value:
+            case nodes.Get(_, place) if is_hidden(place, self.unit.layout):
+                self._message(stmt.name, place)
+                return
             case nodes.Get(_, place) if (lane := self.scope.start(place)) is not None:
                 self.scope.starts[stmt.name] = lane
                 return
@@ -120,6 +131,14 @@ class Parts(Written):
         self.positions.constant(stmt.name, stmt.value)
         if stmt.name in self.function.read:
             print_statement(self.function, stmt)
+
+    def _message(self, size: str, place: nodes.Place) -> None:
+        """A message of a type that contains itself, whose size is a local of the kernel."""
+        body = self.binder.local("body")
+        self.line(f"{body} = {row_function(self.scope.lanes, place.lane)}({self.scope.message(place)})")
+        self.bodies[size], self.sizes[place.row] = body, size
+        self.rows_called.add(place.lane)
+        self.positions.values[size] = self.positions.new()
 
     def _note(self, condition: nodes.Expr) -> None:
         """How many elements an array has, where that is checked."""
@@ -157,13 +176,15 @@ class Parts(Written):
     def _argument(self, value: nodes.Expr) -> str:
         """A number that a routine gets; the length of a sequence is no negative one."""
         match value:
+            case nodes.Convert("u64", nodes.Local(_, name)) if name in self.bodies:
+                return f"len({self.bodies[name]})"
             case nodes.Convert("u64", nodes.Local(_, name) as count) if name in self.scope.counts:
                 return self.function.text(count)
             case _:
                 return self.function.text(value)
 
     def _return(self, stmt: nodes.Return, position: nodes.Expr, registers: Sequence[tuple[int, nodes.Expr]]) -> None:
-        if self.positions.sum(position) != self.positions.at or self.function.writer.depth != 2:
+        if self.positions.sum(position) != self.positions.at or self.function.writer.depth != self.depth:
             raise NotInParts
         if not registers:
             self.end("")
@@ -303,7 +324,9 @@ class Parts(Written):
         start = next(name for name, lane in self.scope.starts.items() if lane == sequence.lane)
         row = nodes.Binary("add", nodes.Local("i64", start), nodes.Local("i64", loop.variable))
         names = self._row_names(loop, sequence)
-        if sequence.is_map:
+        if not sequence.is_map and self.unit.layout.lanes[sequence.lane].links is not None:
+            self.scope.messages[sequence.lane, row] = names[0]
+        elif sequence.is_map:
             self.binder.bind_entry(sequence, row, names)
         else:
             self.binder.bind(sequence.lane, row, names[0], sequence.element, sequence.slot)

@@ -18,6 +18,7 @@ from rosetta_jit.kernel.nodes import (
     Local,
     Require,
     Return,
+    SetField,
     Stmt,
     Store,
     While,
@@ -154,6 +155,8 @@ def without_places(block: Block) -> Block:
                 found.append(Fill(Wire(index(0)), size, byte))
             case Return(_, registers):
                 found.append(Return(index(0), registers))
+            case SetField(place, _):
+                found.append(SetField(place, index(0)))  # where a message of a type that contains itself begins
             case Call():
                 found.append(replace(stmt, arguments=(index(0), *stmt.arguments[1:])))
             case While(condition, inner, _, _):

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 from rosetta_jit.kernel.ir import Site
-from rosetta_jit.kernel.nodes import Assign, Binary, Block, Call, Compare, Const, Expect, Expr, Get, Let, Local, Place, Stmt, Var
+from rosetta_jit.kernel.nodes import Assign, Binary, Block, Call, Compare, Const, Expect, Expr, Get, Let, Local, Place, SetField, Stmt, Var
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 
@@ -71,7 +71,16 @@ def without_lengths(block: Block, sites: Sequence[Site], hidden: int) -> Block:
     measured = {each.name: each.value.place.row for each in lets if isinstance(each.value, Get) and each.value.place.lane >= hidden}
     numbers = {name for row in measured.values() for name in locals_in(row)}
     numbers |= {name for each in lets if each.name in numbers for name in locals_in(each.value)}
-    return _without(block, sites, frozenset(measured), frozenset(numbers)) if measured else block
+    return _without(block, sites, frozenset(measured), frozenset(numbers))
+
+
+def is_behind_message(stmt: Expect) -> bool:
+    """Whether a statement says no more than that a message within another is complete."""
+    match stmt.condition:
+        case Compare("eq", Local(_, name), Local(_, same)):
+            return name == same
+        case _:
+            return False
 
 
 def _without(block: Block, sites: Sequence[Site], measured: frozenset[str], numbers: frozenset[str]) -> Block:
@@ -93,6 +102,8 @@ def named_in_rounds(block: Block) -> frozenset[str]:
     """The locals that anything needs but the rows of elements: of variables of loops, whose elements have to be counted."""
     found = set[str]()
     for stmt, _ in statements(block):
+        if isinstance(stmt, SetField):
+            continue  # of the row of a message alone
         for expr in stmt.arguments if isinstance(stmt, Call) else expressions_of(stmt):
             rows = Counter(name for part in subexpressions(expr) for place in _read(part) for name in _names(place.row))
             found |= {name for name, count in Counter(_names(expr)).items() if count > rows[name]}
