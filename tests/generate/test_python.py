@@ -490,3 +490,23 @@ def test_messages_that_contain_their_own_type_are_written_by_functions(module):
         programs = rj.Decoder.of(f"t.{type_}", **protobuf(schema)), rj.Encoder.of(f"t.{type_}", **protobuf(schema))
         messages = [bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in cases]
         answers_as_the_library(module(request), programs, harmed(messages, 12, type_))
+
+
+@pytest.mark.parametrize("type_", ["sint32", "sint64", "int32", "int64", "uint64"])
+def test_integers_of_several_bytes(type_, module):
+    """Packed and behind tags, of one byte to ten, cut off anywhere, and of more than ten."""
+    given = protobuf(f"message M {{ repeated {type_} v = 1; repeated {type_} apart = 2 [packed = false]; {type_} one = 3; }}")
+    request = type_request("decode", "t.M", given)
+    assert "_several_bytes(" in generated(request, "python", BOTH, "unit")["unit.py"]
+    unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    most = 31 if type_.endswith("32") else 63
+    numbers = [sign * (1 << bit) - less for bit in range(most) for sign in (1, -1) for less in (0, 1)]
+    numbers = [each for each in numbers if each >= 0 or type_[0] != "u"]
+    good = [
+        bytes(programs[1](programs[1].holder_type.from_dict({"v": numbers, "apart": numbers[::-1], "one": each}))) for each in numbers[-3:]
+    ]
+    bad = [tag + b"\x80" * count + last for tag in (b"\x10", b"\x18") for count in range(11) for last in (b"", b"\x01", b"\x7f")]
+    packed = [b"\x0a" + bytes([len(each) - 1]) + each[1:] for each in bad]
+    beyond = [b"\x0a\x02\x80\x80\x01\x10\x01", b"\x0a\x03\x01\x80\x80\x01"]
+    answers_as_the_library(unit, programs, harmed(good, 40, type_) + bad + packed + beyond)
+    assert unit.decode(good[0]).v == numbers

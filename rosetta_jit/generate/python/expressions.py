@@ -17,6 +17,7 @@ from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import NUMPY
 from rosetta_jit.generate.python.direct import Direct
+from rosetta_jit.generate.python.groups import zigzag_of
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.terms import END, is_wider, type_of
@@ -171,8 +172,8 @@ def expression(scope: Scope, expr: nodes.Expr) -> str:
             return f"({expression(scope, left)} {COMPARISONS[op]} {expression(scope, right)})"
         case nodes.Fits(op, left, right):
             return f"({-(2**63)} <= {expression(scope, left)} {OPERATORS[op]} {expression(scope, right)} <= {2**63 - 1})"
-        case nodes.Convert(type_, operand):
-            return _convert(type_, type_of(operand), expression(scope, operand))
+        case nodes.Convert():
+            return _converted(scope, expr)
         case nodes.Bits(type_, operand):
             return _bits(type_, type_of(operand), expression(scope, operand))
         case nodes.Select(condition, then, otherwise):
@@ -185,6 +186,13 @@ def expression(scope: Scope, expr: nodes.Expr) -> str:
             return f"{values!r}[{bare(expression(scope, index))}]"
         case _:
             assert_never(expr)
+
+
+def _converted(scope: Scope, convert: nodes.Convert) -> str:
+    if (zigzag := zigzag_of(convert)) is not None:
+        text = expression(scope, zigzag)
+        return f"({text} >> 1 ^ -({text} & 1))"
+    return _convert(convert.type, type_of(convert.operand), expression(scope, convert.operand))
 
 
 def _decimal(scope: Scope, expr: nodes.Nearest | nodes.Digits | nodes.Scale) -> str:

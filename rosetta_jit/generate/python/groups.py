@@ -167,3 +167,17 @@ def _without(expr: nodes.Expr, variable: str, times: int) -> nodes.Expr | None:
             return None
         case _:
             return None
+
+
+def zigzag_of(convert: nodes.Convert) -> nodes.Expr | None:
+    """The integer, of 64 bits and no sign, whose lowest bit is the sign of a number with the others: if it is 1 all others are inverted."""
+    match convert:
+        case nodes.Convert(type_, nodes.Binary("xor", nodes.Binary("shr", value, nodes.Const("u64", 1)), nodes.Select() as sign)):
+            lowest = nodes.Binary("and", value, nodes.Const("u64", 1))
+            inverted = nodes.Select(
+                nodes.Compare("ne", lowest, nodes.Const("u64", 0)), nodes.Const("u64", 2**64 - 1), nodes.Const("u64", 0)
+            )
+            fits = isinstance(value, nodes.Binary) and value.op == "and" and value.right == nodes.Const("u64", 2**32 - 1)
+            return value if sign == inverted and (type_ == "i64" or (type_ == "i32" and fits)) else None
+        case _:
+            return None

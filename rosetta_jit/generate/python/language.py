@@ -33,6 +33,7 @@ REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 RUNTIME = Path(__file__).with_name("runtime.py")
 DECIMALS = Path(__file__).with_name("decimals.py")
 VARINTS = Path(__file__).with_name("varints.py")
+LONG_VARINTS = Path(__file__).with_name("long_varints.py")
 ARRAYS = Path(__file__).with_name("arrays.py")
 OF_DECIMALS = ("_nearest(", "_shortest(", "_fixed_digits(")
 NO_MEMORY = "the message asks for more memory than its size allows"
@@ -69,6 +70,9 @@ class _Module:
         if any("_varint(" in part for part in parts):
             varints = VARINTS.read_text("utf-8")
             runtime += f"\n\n\n{varints[varints.index('_SHORT') :].rstrip()}".replace("  # pyright: ignore[reportUnusedFunction]", "")
+        if any("_several_bytes(" in part for part in parts):
+            varints = LONG_VARINTS.read_text("utf-8")
+            runtime += f"\n\n\n{varints[varints.index('def ') :].rstrip()}".replace("  # pyright: ignore[reportUnusedFunction]", "")
         if self.unit.numpy:
             arrays = ARRAYS.read_text("utf-8")
             runtime = runtime.replace(

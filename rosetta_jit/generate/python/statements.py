@@ -18,6 +18,9 @@ from rosetta_jit.kernel.terms import mul, type_of
 from rosetta_jit.model.layout import Layout
 from rosetta_jit.startup.dataclass import dataclass, field
 
+OF_ANY_SIZE = ("read_varint", "read_element")
+"""Routines for integers of protobuf that often have several bytes: one call reads those that end."""
+
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
@@ -350,6 +353,9 @@ def _call(function: Function, call: nodes.Call) -> None:
         function.line(f"{value} = data[{bare(at)}] if {least}{at} < end else 128")
         function.line(f"{after} = {at} + 1")
         function.line(f"if {value} >= 128:")
+        if call.routine in OF_ANY_SIZE:
+            function.line(f"    {value}, {after} = _several_bytes(data, {bare(at)})")
+            function.line(f"if not {after}:")
         bound = f"    {bound}"
     function.line(f"{bound}{routine.name}({arguments})")
 
