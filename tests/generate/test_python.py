@@ -510,3 +510,25 @@ def test_integers_of_several_bytes(type_, module):
     beyond = [b"\x0a\x02\x80\x80\x01\x10\x01", b"\x0a\x03\x01\x80\x80\x01"]
     answers_as_the_library(unit, programs, harmed(good, 40, type_) + bad + packed + beyond)
     assert unit.decode(good[0]).v == numbers
+
+
+def test_texts_that_come_one_by_one_are_read_where_they_are_checked(module):
+    """Of the message, of messages within it, listed and merged, and of those that contain their own type; apart from each other, too."""
+    schema = """
+        message M { repeated string v = 1; repeated S many = 2; S one = 3; map<string, S> named = 4; repeated string w = 20; M inner = 5;
+            string last = 8; }
+        message S { repeated string texts = 1; int32 start = 2; }
+    """
+    given = protobuf(schema)
+    request = type_request("decode", "t.M", given)
+    assert "v.append(v_text)" in generated(request, "python", BOTH, "unit")["unit.py"]
+    unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    texts = ["", "a", "é" * 70, "b" * 200]
+    inner = {"texts": texts, "start": 1}
+    value = {"v": texts, "many": [inner, {"texts": ["c"]}, inner], "one": inner, "w": texts}
+    given_values = ({**value, "inner": {**value, "inner": {"v": texts}}}, {**value, "named": {"d": inner, "e": {"texts": ["f"]}}})
+    one, mapped = (bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in given_values)
+    broken = [one + b"\x0a\x02\xc3", one + b"\x0a\x01\xc3", b"\x0a\x01x\x1a\x03\x0a\x01\xff", b"\x12\x03\x0a\x01\xff"]
+    answers_as_the_library(unit, programs, harmed([one, mapped, one + one, b"\x1a\x03\x0a\x01x" + one], 60, "texts") + broken)
+    assert unit.decode(one + one).v == texts + texts
+    assert unit.decode(one + one).one.texts == texts + texts

@@ -4,6 +4,7 @@
     by name     an array of few elements, each set once: the list of so many locals
     one by one  a loop fills row after row: it appends to a list instead
     texts       a text is decoded where it is checked: that is the check
+    gathered    an array whose texts come one by one, wherever they are in the message: each is appended to a list where it is checked
 
 Everything else goes through lanes as kernels say, and becomes objects in the end.
 """
@@ -33,7 +34,8 @@ class Direct:
 
     ``whole`` are lanes that are read by one call, ``appended`` those whose rows are appended to a list, ``loops`` the variables of the
     loops that do so; ``elements`` are the places of rows that are locals, by lane; ``texts`` are the spans of texts that are decoded where
-    they are checked, by lane and offset, with the place and size of the check.
+    they are checked, by lane and offset, with the place and size of the check. ``gathered`` are lanes of texts, each of which is appended
+    where a statement sets where it starts.
     """
 
     whole: set[int] = field(default_factory=set[int])
@@ -43,6 +45,8 @@ class Direct:
     texts: dict[tuple[int, int], tuple[nodes.Expr, nodes.Expr]] = field(
         default_factory=dict[tuple[int, int], "tuple[nodes.Expr, nodes.Expr]"]
     )
+
+    gathered: set[int] = field(default_factory=set[int])
 
     def text_at(self, at: nodes.Expr, size: nodes.Expr) -> tuple[int, int] | None:
         """The span of the text that is checked there."""
@@ -56,6 +60,8 @@ def direct(block: nodes.Block, kernel: ir.Kernel, layout: Layout, arrays: Collec
     """
     found = _Search(counted(block), kernel, layout, arrays, few)
     found.arrays(found.block, nodes.Place(0, index(0)))
+    for inner in _blocks(found.block):
+        found.texts(inner)
     return found.rewritten(found.block), found.direct
 
 
@@ -159,6 +165,41 @@ class _Search:
 
     # --- its arrays ------------------------------------------------------------------------------------------------------------------
 
+    def texts(self, block: nodes.Block) -> None:
+        """The texts of an array of which a block adds one."""
+        for lane in {*self.lists} - self.direct.appended:
+            element = self.layout.lanes[lane].element
+            if isinstance(element, Span) and any(isinstance(each, nodes.Reserve) and each.lane == lane for each in block):
+                self._gather(block, lane, element.lane)
+
+    def _gather(self, block: nodes.Block, lane: int, text_lane: int) -> None:
+        own = [each for each in block if _changes(each, lane) or _changes(each, text_lane)]
+        match own:
+            case (
+                nodes.Reserve(_, size),
+                nodes.Let(start, nodes.Used(used)),
+                nodes.Advance(_, size_2),
+                nodes.Copy(nodes.Place(into, nodes.Local(_, begin), 0), nodes.Wire(at), size_3) as copy,
+                nodes.Reserve(_, nodes.Const(_, 1)),
+                nodes.Let(row, nodes.Used(rows)),
+                nodes.Advance(_, nodes.Const(_, 1)) as advance,
+                nodes.SetField(nodes.Place(_, nodes.Local(_, row_2), 0), nodes.Local(_, set_to)) as first,
+                nodes.SetField(nodes.Place(_, nodes.Local(_, row_3), 8), size_4) as second,
+            ) if (used, into, rows, advance.lane) == (text_lane, text_lane, lane, lane):
+                same = size == size_2 == size_3 == size_4 and start == begin == set_to and row == row_2 == row_3
+                elsewhere = [each for each in (*self.mentions[lane], *self.mentions[text_lane]) if id(each) not in {*map(id, own)}]
+                alone = not any(
+                    _changes(each, text_lane) or (_changes(each, lane) and not isinstance(each, nodes.Let)) for each in elsewhere
+                )
+                alone = alone and not any(place.lane in (lane, text_lane) for each in elsewhere for place in _places(each))
+                read = {id(each) for each, _ in statements(self.block) if _reads(each, {start, row})} == {id(copy), id(first), id(second)}
+                if same and alone and read and self.checks.get((at, size)) == 1 and any(_checks(each, at, size) for each in block):
+                    self.direct.gathered.add(lane)
+                    self.direct.texts[lane, 0] = at, size
+                    self.instead |= {id(each): () for each in own if each is not advance and each is not first}
+            case _:
+                pass
+
     def _at_once(self, block: nodes.Block, lane: int, start: nodes.Local, count: nodes.Expr, fills: list[nodes.Stmt]) -> bool:
         if len(fills) != 1:
             return False
@@ -244,6 +285,38 @@ def _places(stmt: nodes.Stmt) -> Iterator[nodes.Place]:
                     yield place
                 case _:
                     pass
+
+
+def _changes(stmt: nodes.Stmt, lane: int) -> bool:
+    """Whether a statement takes rows of a lane, or sets them."""
+    match stmt:
+        case nodes.Reserve(of) | nodes.Advance(of) | nodes.Let(_, nodes.Used(of)):
+            return of == lane
+        case nodes.SetField(nodes.Place(of)) | nodes.Copy(nodes.Place(of)) | nodes.Fill(nodes.Place(of)):
+            return of == lane
+        case _:
+            return False
+
+
+def _reads(stmt: nodes.Stmt, names: set[str]) -> bool:
+    return any(names & locals_in(expr) for expr in expressions_of(stmt))
+
+
+def _checks(stmt: nodes.Stmt, at: nodes.Expr, size: nodes.Expr) -> bool:
+    return isinstance(stmt, nodes.Expect) and stmt.condition == nodes.IsText(nodes.Wire(at), size)
+
+
+def _blocks(block: nodes.Block) -> list[nodes.Block]:
+    """A block and all within it."""
+    found = [block]
+
+    def note(inner: nodes.Block) -> nodes.Block:
+        found.extend(_blocks(inner))
+        return inner
+
+    for stmt in block:
+        with_blocks(stmt, note)
+    return found
 
 
 def _counted(stmt: nodes.Stmt) -> set[int]:

@@ -186,7 +186,7 @@ def _begin(function: Function, role: Role) -> list[str]:
             lines += [f"{name}_room = len({name}) // {scope.lanes.stride(lane)}"] if lane in scope.rooms else []
             lines += [f'{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
         else:
-            lines.append(f"{name} = bytearray()")
+            lines.append(f"{name} = {'[]' if lane in scope.direct.gathered else 'bytearray()'}")
             lines += [f"{name}_room = 0"] if lane in scope.rooms else []
             lines += [f"{name}_{code} = _EMPTY_{code}" for code in codes]
             scope.loads.update(f"_EMPTY_{code}" for code in codes)

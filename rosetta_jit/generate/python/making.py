@@ -85,6 +85,8 @@ class Make:
             return known
         start, count = self._start(slot, lane, row), self._count(slot, lane, row)
         element = self.unit.layout.lanes[slot.lane].element
+        if slot.lane in self.scope.direct.gathered:
+            return f"{self.scope.lanes.rows(slot.lane)}[{start} : {start} + {count}]"
         match type_:
             case String("utf-16"):
                 return f"_text16({self.scope.view(slot.lane, '')}, {start}, {count})"

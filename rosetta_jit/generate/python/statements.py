@@ -213,6 +213,8 @@ def _effect(function: Function, stmt: nodes.Effect) -> None:
                 function.line(
                     f"{scope.struct('<' if nodes.WIDTH[type_] == 1 else order, CODES[type_], 'store')}(data, {where}, {text}){origin}"
                 )
+        case nodes.SetField(nodes.Place(lane), _) if lane in scope.direct.gathered:
+            function.line(f"{scope.lanes.rows(lane)}.append({scope.text(lane, 0)}){origin}")
         case nodes.SetField(place, value):
             target = _target(function, place, value)
             text = function.text(value)
