@@ -13,6 +13,7 @@ from bench.figures import Spread
 from bench.peers import generated_python, python_peers
 from bench.report import words
 from bench.subjects import SUBJECTS, Subject
+from bench.tagged import TAGGED
 
 CHAPTER = "Generated Python"
 WHO = generated_python.WHO
@@ -25,7 +26,8 @@ TIMED = """
 import json, os, sys, time
 from bench.peers import generated_python, protobuf
 from bench.subjects import SCENE, SUBJECTS
-subject = {**SUBJECTS, "Scene": SCENE}[sys.argv[1]]
+from bench.tagged import TAGGED
+subject = {**SUBJECTS, "Scene": SCENE, **TAGGED}[sys.argv[1]]
 (ours,), theirs = generated_python.peers(subject), protobuf.message_class(subject)
 from google.protobuf.internal import api_implementation
 assert api_implementation.Type() == "python"
@@ -95,7 +97,7 @@ def test_against_what_frameworks_generate(name, job, effort, compare, record):
     record(f"{name}, generated Python, {job}d", outcome.ratio(WHO, peer.who), AT_MOST, f"x {against}", took)
 
 
-@pytest.mark.parametrize("name", ["RST JointAngles, packed", "RST JointAngles, unpacked", "RST Image 320x240", "Scene"])
+@pytest.mark.parametrize("name", ["RST JointAngles, packed", "RST JointAngles, unpacked", "RST Image 320x240", "Scene", *TAGGED])
 def test_against_pure_protobuf(name, effort, record):
     rounds = str(max(5, effort.rounds))
     said = processes.run("-c", TIMED, name, rounds, PROTOCOL_BUFFERS_PYTHON_IMPLEMENTATION="python")

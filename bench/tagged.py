@@ -1,0 +1,46 @@
+"""Messages of protobuf of one kind of field each, for what is generated against what protobuf's pure Python makes of the same types."""
+
+from __future__ import annotations
+
+from bench.subjects import Subject
+
+
+def _varint(number: int) -> bytes:
+    written = bytearray()
+    while number > 127:
+        written.append(number & 127 | 128)
+        number >>= 7
+    return bytes([*written, number])
+
+
+def _sized(tag: int, body: bytes) -> bytes:
+    return bytes([tag]) + _varint(len(body)) + body
+
+
+def _tree(depth: int, width: int) -> bytes:
+    children = b"".join(_sized(26, _tree(depth - 1, width)) for _ in range(width if depth else 0))
+    return _sized(10, b"node%d" % depth) + b"\x10" + _varint(depth + 1) + children
+
+
+def _chain(length: int) -> bytes:
+    message = b""
+    for number in range(1, length + 1):
+        message = b"\x08" + _varint(number) + (_sized(18, message) if message else b"")
+    return message
+
+
+def _subject(body: str, message: bytes) -> Subject:
+    return Subject("t.M", "protobuf", message, {"schema": {"t.proto": f'syntax = "proto3"; package t; message M {{ {body} }}'}})
+
+
+_INTEGERS = [number * 2654435761 % (1 << 1 + number % 30) for number in range(300)]
+TAGGED = {
+    "100 short texts": _subject("repeated string v = 1;", b"".join(_sized(10, b"joint_%d" % number) for number in range(100))),
+    "100 texts of 140 bytes": _subject(
+        "repeated string v = 1;", b"".join(_sized(10, b"joint_%d" % (number % 10) * 20) for number in range(100))
+    ),
+    "300 packed sint32": _subject("repeated sint32 v = 1;", _sized(10, b"".join(map(_varint, _INTEGERS)))),
+    "200 unpacked bools": _subject("repeated bool v = 1 [packed = false];", b"\x08\x01\x08\x00" * 100),
+    "a tree of 121 messages": _subject("string name = 1; int32 n = 2; repeated M children = 3;", _tree(4, 3)),
+    "a chain of 30 messages": _subject("int32 n = 1; M next = 2;", _chain(30)),
+}
