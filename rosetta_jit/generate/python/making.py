@@ -80,13 +80,11 @@ class Make:
         return f"{function}({self.scope.view(slot.lane, '')}, data, {self._start(slot, lane, row)}, {self._count(slot, lane, row)})"
 
     def sequence(self, type_: String | Bytes | Array | Map, slot: Span, lane: int, row: str) -> str:
-        known = self._direct(slot, lane)
+        known = self._direct(slot, lane, row)
         if known is not None:
             return known
         start, count = self._start(slot, lane, row), self._count(slot, lane, row)
         element = self.unit.layout.lanes[slot.lane].element
-        if slot.lane in self.scope.direct.gathered:
-            return f"{self.scope.lanes.rows(slot.lane)}[{start} : {start} + {count}]"
         match type_:
             case String("utf-16"):
                 return f"_text16({self.scope.view(slot.lane, '')}, {start}, {count})"
@@ -133,12 +131,15 @@ class Make:
         """An array of a list, or of a view of memory."""
         return f"np.array({numbers}, np.{NUMPY[scalar][0]})" if self.unit.numpy else numbers
 
-    def _direct(self, slot: Span, lane: int) -> str | None:
+    def _direct(self, slot: Span, lane: int, row: str) -> str | None:
         """What is a list or a string already."""
         known = self.scope.direct
         element = self.unit.layout.lanes[slot.lane].element
         if slot.lane in known.whole:
             return self.scope.lanes.rows(slot.lane)
+        if slot.lane in known.gathered:
+            start = self._start(slot, lane, row)
+            return f"{self.scope.lanes.rows(slot.lane)}[{start} : {start} + {self._count(slot, lane, row)}]"
         if slot.lane in known.appended:
             rows = self.scope.lanes.rows(slot.lane)
             return self._numbers(rows, element.scalar) if isinstance(element, Number) else rows
