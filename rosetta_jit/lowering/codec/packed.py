@@ -8,7 +8,7 @@ from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
 from rosetta_jit.lowering.codec.holder_fields import HolderFields
-from rosetta_jit.lowering.codec.varint import SEVEN_BITS, from_varint
+from rosetta_jit.lowering.codec.varint import SEVEN_BITS, ends_within, from_varint, read_short
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import Number as NumberSlot
 from rosetta_jit.wire.codec import Entry, Tagged, Varint
@@ -52,7 +52,7 @@ def reads_several(entry: Entry, tagged: Tagged) -> bool:
 def read_varints(
     writer: Writer, fields: HolderFields, varint: Varint, lane: int, stop: nodes.Expr, at: nodes.Local, read_one: Callable[[], None]
 ) -> None:
-    """One round of a loop over varints up to ``stop``: several of a word if none takes more than two bytes, or what ``read_one`` reads.
+    """One round of a loop over varints up to ``stop``: several of a word if none takes more than two bytes, or one of any size.
 
     ``at`` is the place of the next varint, and afterwards that behind what was read. Which of several take two bytes is computed: where it
     changes from one to the next, a processor would guess it wrongly. Where all are alike, LLVM makes vectors of them.
@@ -76,8 +76,13 @@ def read_varints(
         alike = nodes.If(nodes.Compare("eq", bits, nodes.Const("u64", TWOS)), block(twos), block(mixed))
         writer.emit(nodes.If(nodes.Compare("eq", bits, nodes.Const("u64", 0)), block(ones), (alike,)))
     with writer.nested() as one:
+        value, after = read_short(writer, at, word)
+        _append(writer, varint, lane, scalar, [value])
+        writer.assign(at, after)
+    with writer.nested() as other:
         read_one()
-    writer.emit(nodes.If(nodes.Compare("eq", longer, nodes.Const("u64", 0)), block(short), block(one)))
+    long = nodes.If(ends_within(word), block(one), block(other))
+    writer.emit(nodes.If(nodes.Compare("eq", longer, nodes.Const("u64", 0)), block(short), (long,)))
 
 
 def _append_mixed(writer: Writer, varint: Varint, lane: int, scalar: str, word: nodes.Local, at: nodes.Local) -> None:

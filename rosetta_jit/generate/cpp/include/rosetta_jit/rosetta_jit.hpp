@@ -437,6 +437,12 @@ template <class Container> std::int64_t enlarged(const Container &target)
     }
 }
 
+/* Whether more elements will follow those that a container lacks: protobuf's packed integers come by up to eight. */
+template <class Container> bool comes_in_parts(std::int64_t missing)
+{
+    return missing == 1 || (is_repeated<Container>::value && missing <= 8);
+}
+
 /* An element for writing; of protobuf's containers they are pointers. */
 template <class Container> decltype(auto) element(Container &target, std::int64_t index)
 {
@@ -710,7 +716,7 @@ template <class Row, class Container> struct container_lane {
             return false;
         }
         const std::int64_t wanted = capacity + missing;
-        resize_to(*container, missing == 1 && sizeof(Row) > 1 ? std::min(most, enlarged(*container)) : wanted);
+        resize_to(*container, comes_in_parts<Container>(missing) && sizeof(Row) > 1 ? std::max(wanted, std::min(most, enlarged(*container))) : wanted);
         look();
         return capacity >= wanted; /* one of a fixed length has the room that it has */
     }
