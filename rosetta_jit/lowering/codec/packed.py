@@ -65,10 +65,10 @@ def read_varints(
     bits = writer.let("goes_on", _and(word, CONTINUES))
     longer = nodes.Binary("and", bits, nodes.Binary("shl", bits, nodes.Const("u64", 8)))
     with writer.nested() as ones:
-        _append(writer, varint, lane, scalar, [_and(_behind(word, number), 0xFF) for number in range(WORD)])
+        append_varints(writer, varint, lane, scalar, [_and(_behind(word, number), 0xFF) for number in range(WORD)])
         writer.assign(at, add(at, WORD))
     with writer.nested() as twos:
-        _append(writer, varint, lane, scalar, [_of_two(_behind(word, 2 * number)) for number in range(WORD // 2)])
+        append_varints(writer, varint, lane, scalar, [of_two(_behind(word, 2 * number)) for number in range(WORD // 2)])
         writer.assign(at, add(at, WORD))
     with writer.nested() as mixed:
         _append_mixed(writer, varint, lane, scalar, word, at)
@@ -77,7 +77,7 @@ def read_varints(
         writer.emit(nodes.If(nodes.Compare("eq", bits, nodes.Const("u64", 0)), block(ones), (alike,)))
     with writer.nested() as one:
         value, after = read_short(writer, at, word)
-        _append(writer, varint, lane, scalar, [value])
+        append_varints(writer, varint, lane, scalar, [value])
         writer.assign(at, after)
     with writer.nested() as other:
         read_one()
@@ -99,12 +99,12 @@ def _append_mixed(writer: Writer, varint: Varint, lane: int, scalar: str, word: 
         rest = writer.let("rest", nodes.Binary("shr", rest, bits))
         after = nodes.Binary("add", after, nodes.Convert("i64", more))
     behind = writer.let("behind", after)
-    _append(writer, varint, lane, scalar, values)
+    append_varints(writer, varint, lane, scalar, values)
     writer.assign(at, behind)
 
 
-def _append(writer: Writer, varint: Varint, lane: int, scalar: str, values: list[nodes.Expr]) -> None:
-    """Put numbers at the end of a lane."""
+def append_varints(writer: Writer, varint: Varint, lane: int, scalar: str, values: list[nodes.Expr]) -> None:
+    """Put the numbers that varints stand for at the end of a lane."""
     writer.emit(nodes.Reserve(lane, index(len(values))))
     for number, value in enumerate(values):
         whole = from_varint(varint, writer.let("varint", value), scalar)
@@ -117,7 +117,7 @@ def _behind(word: nodes.Local, size: int) -> nodes.Expr:
     return nodes.Binary("shr", word, nodes.Const("u64", 8 * size)) if size else word
 
 
-def _of_two(word: nodes.Expr) -> nodes.Expr:
+def of_two(word: nodes.Expr) -> nodes.Expr:
     """The varint that the first two bytes of a word are."""
     return nodes.Binary("or", nodes.Binary("and", word, SEVEN_BITS), _and(nodes.Binary("shr", word, nodes.Const("u64", 1)), SECOND))
 

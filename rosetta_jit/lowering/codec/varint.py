@@ -248,7 +248,7 @@ def _read_at_once(writer: Writer, at: Local, value: Local, after: Local, byte: L
     writer.emit(If(ends_within(word), block(few), block(many)))
 
 
-def ends_within(word: Local) -> Expr:
+def ends_within(word: Expr) -> Expr:
     """Whether the varint that eight bytes begin with is short enough to be read byte by byte."""
     goes_on = Const("u64", int.from_bytes(b"\x80" * GUESSED, "little"))
     return Compare("ne", Binary("and", word, goes_on), goes_on)
