@@ -120,6 +120,18 @@ MIXED_VARINTS = {
 """Messages that come in turn."""
 
 
+SEVERAL = 200
+_SIZES: list[int] = NUMBERS_OF_BYTES.integers(1, 6, SEVERAL).tolist()
+_UP_TO_FIVE = [int(NUMBERS_OF_BYTES.integers(1 << 7 * size - 7, 1 << 7 * size)) for size in _SIZES]
+_ZIGZAG: list[int] = NUMBERS_OF_BYTES.integers(0, 1 << 21, SEVERAL).tolist()
+SEVERAL_VARINTS = {
+    f"{SEVERAL} integers of one to five bytes, packed": _integers("rj.PackedIntegers", _UP_TO_FIVE),
+    f"{SEVERAL} integers of one to five bytes, behind tags": _integers("rj.Integers", _UP_TO_FIVE),
+    f"{SEVERAL} sint32 of mostly three bytes, packed": _integers("rj.PackedSignedIntegers", _ZIGZAG),
+}
+"""What control boards and encoders of motors send."""
+
+
 def _thing(number: int) -> bytes:
     position = b"".join(bytes([each << 3 | 1]) + struct.pack("<d", number + each) for each in (1, 2, 3))
     color, confidence = struct.pack("<4f", 0.25, 0.5, 0.75, 1), b"\x29" + struct.pack("<d", 0.5)

@@ -8,7 +8,7 @@ from bench.contest import Contender, Outcome, comparison
 from bench.peers import generated_classes as peers
 from bench.peers.generated_classes import Messages
 from bench.report import words
-from bench.subjects import ROS_2, SCENE, SUBJECTS
+from bench.subjects import ROS_2, SCENE, SEVERAL_VARINTS, SUBJECTS
 from rosetta_jit.api.options import type_request
 
 CHAPTER = "Generated C++ in frameworks' classes"
@@ -26,6 +26,7 @@ PROTOBUF = {
     "RST JointAngles, unpacked": "angles.proto",
     "RST Image 320x240": "rst/vision/Image.proto",
     "Scene": "scene.proto",
+    **dict.fromkeys(SEVERAL_VARINTS, "angles.proto"),
 }
 
 
@@ -67,6 +68,6 @@ def test_structs_of_rclcpp(name, against):
 @pytest.mark.skipif(not peers.installed("protobuf"), reason="protoc and its library are not installed")
 @pytest.mark.parametrize("name", PROTOBUF)
 def test_classes_of_protoc(name, against):
-    subject = {**SUBJECTS, "Scene": SCENE}[name]
+    subject = {**SUBJECTS, **SEVERAL_VARINTS, "Scene": SCENE}[name]
     request = type_request("decode", subject.type, {"encoding": "protobuf", **subject.options})
     against(name, request, "protobuf", Messages(subject.message, subject.message), proto=PROTOBUF[name])

@@ -157,6 +157,25 @@ def test_vectors_with_a_bound_as_rosidl_has_them(tmp_path):
     same(answers(cpp.program(tmp_path, name, options=THOROUGH), messages), decode, encode, messages)
 
 
+TEXTS = f"{LIBRARY}namespace rj {{ struct Texts {{ std::vector<std::string> texts; std::string name; }}; namespace msg = ::rj; }}\n"
+
+
+@cpp.needs_cpp
+@pytest.mark.parametrize("encoding", ["ros1", "cdr"])
+def test_lists_of_texts_that_grow_and_shrink(encoding, tmp_path):
+    """Those that an object has are set, and those that it lacks are made."""
+    (tmp_path / "texts.h").write_text(TEXTS)
+    options = {"encoding": encoding, "schema": "string[] texts\nstring name\n"}
+    request = type_request("decode", "rj/Texts", options)
+    name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "unit", Wishes(holder="ros1", include="texts.h")))
+    assert "assign_texts(target.texts" in (tmp_path / "unit.cpp").read_text()
+    decode, encode = (of("rj/Texts", **options) for of in (rj.Decoder.of, rj.Encoder.of))
+    texts = ["abcdefghijklmnopqrstuvwxyz"[: 3 * each % 27] for each in range(40)]
+    good = [bytes(encode({"texts": texts[:count], "name": "n"})) for count in (0, 3, 1, 40, 2, 2, 7, 0, 12)]
+    messages = [*good, *harmed(good, 12, encoding), *good]
+    same(answers(cpp.program(tmp_path, name, options=THOROUGH), messages), decode, encode, messages)
+
+
 FEW = """
 #include <rosetta_jit/rosetta_jit.hpp>
 int main() {

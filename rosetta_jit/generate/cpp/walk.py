@@ -199,19 +199,24 @@ class Walk:
         self.elements(type_, slot, row, spot)
 
     def elements(self, type_: Array, slot: Span, row: str, spot: Spot) -> None:
-        """The elements of a list, one by one."""
+        """The elements of a list, one by one. One of a fixed length may have fewer than a damaged row says."""
         lane, self.takes = self.lanes.rows(slot.lane), True
-        self.lines("list", spot, row=row, lane=lane, take=self._take)
+        if (texts := self._texts(type_, slot)) and self.direction == "decode":
+            self.lines("texts", spot, row=row, lane=lane, texts=texts)
+            return
+        self.lines("list", spot, row=row, lane=lane, take="take" if self.unit.layout.recursive else "take_empty")
         self.depth += 1
         index = self.local("i")
-        with self.writer.indented(f"for (std::int64_t {index} = 0; {index} < {self._count(row, spot)}; {index}++) {{"):
+        count = f"std::min({row}.count, rosetta_jit::detail::count_of({spot.at}))" if self.direction == "decode" else f"{row}.count"
+        with self.writer.indented(f"for (std::int64_t {index} = 0; {index} < {count}; {index}++) {{"):
             self.row(type_.element, slot.lane, f"{row}.start + {index}", Spot(self.text("element", spot, index=index)))
         self.writer.line("}")
         self.depth -= 1
 
-    def _count(self, row: str, spot: Spot) -> str:
-        """How many elements there are: an array of a fixed length may have fewer than a damaged row says."""
-        return f"std::min({row}.count, rosetta_jit::detail::count_of({spot.at}))" if self.direction == "decode" else f"{row}.count"
+    def _texts(self, type_: Array, slot: Span) -> str:
+        """The lane of the texts that a list has, if they are its elements."""
+        element, is_text = self.unit.layout.lanes[slot.lane].element, isinstance(self.unit.schema.resolve(type_.element), String)
+        return self.lanes.rows(element.lane) if is_text and isinstance(element, Span) else ""
 
     def row(self, type_: Type, lane: int, index: str, spot: Spot) -> None:
         """One row of a lane, and the element that belongs to it."""
@@ -238,11 +243,6 @@ class Walk:
         if self.direction == "encode":
             self._end_row(lane, inner, index)
         self.in_rows -= 1
-
-    @property
-    def _take(self) -> str:
-        """The function that takes rows, empty where they are then set in place."""
-        return "take" if self.unit.layout.recursive else "take_empty"
 
     def _begin_row(self, lane: int, row: str, index: str) -> None:
         """A row to be set. Where types contain themselves, what a row contains may move the rows: it is set beside them."""
@@ -300,7 +300,7 @@ class Walk:
                         self.writer.line(f"auto &{self.local('mapped')} = {self.text('map entry', spot, key=self.local('key'))};")
                     self._plain(type_, member, own.type, f"{inner}.{own.identifier}", self.local(what))
         else:
-            self.lines("list", spot, row=row, lane=lane, take=self._take)
+            self.lines("list", spot, row=row, lane=lane, take="take" if self.unit.layout.recursive else "take_empty")
             self.writer.line(f"std::int64_t {index} = {row}.start;")
             with self.writer.indented(f"for (const auto &each_{self.depth} : {spot.at}) {{"):
                 self._begin_row(slot.lane, inner, f"{index}++")

@@ -8,7 +8,7 @@ from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
 from rosetta_jit.lowering.codec.holder_fields import HolderFields
-from rosetta_jit.lowering.codec.varint import SEVEN_BITS, from_varint
+from rosetta_jit.lowering.codec.varint import SEVEN_BITS, ends_within, from_varint, read_short
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import Number as NumberSlot
 from rosetta_jit.wire.codec import Entry, Tagged, Varint
@@ -52,7 +52,7 @@ def reads_several(entry: Entry, tagged: Tagged) -> bool:
 def read_varints(
     writer: Writer, fields: HolderFields, varint: Varint, lane: int, stop: nodes.Expr, at: nodes.Local, read_one: Callable[[], None]
 ) -> None:
-    """One round of a loop over varints up to ``stop``: several of a word if none takes more than two bytes, or what ``read_one`` reads.
+    """One round of a loop over varints up to ``stop``: several of a word if none takes more than two bytes, or one of any size.
 
     ``at`` is the place of the next varint, and afterwards that behind what was read. Which of several take two bytes is computed: where it
     changes from one to the next, a processor would guess it wrongly. Where all are alike, LLVM makes vectors of them.
@@ -65,10 +65,10 @@ def read_varints(
     bits = writer.let("goes_on", _and(word, CONTINUES))
     longer = nodes.Binary("and", bits, nodes.Binary("shl", bits, nodes.Const("u64", 8)))
     with writer.nested() as ones:
-        _append(writer, varint, lane, scalar, [_and(_behind(word, number), 0xFF) for number in range(WORD)])
+        append_varints(writer, varint, lane, scalar, [_and(_behind(word, number), 0xFF) for number in range(WORD)])
         writer.assign(at, add(at, WORD))
     with writer.nested() as twos:
-        _append(writer, varint, lane, scalar, [_of_two(_behind(word, 2 * number)) for number in range(WORD // 2)])
+        append_varints(writer, varint, lane, scalar, [of_two(_behind(word, 2 * number)) for number in range(WORD // 2)])
         writer.assign(at, add(at, WORD))
     with writer.nested() as mixed:
         _append_mixed(writer, varint, lane, scalar, word, at)
@@ -76,8 +76,13 @@ def read_varints(
         alike = nodes.If(nodes.Compare("eq", bits, nodes.Const("u64", TWOS)), block(twos), block(mixed))
         writer.emit(nodes.If(nodes.Compare("eq", bits, nodes.Const("u64", 0)), block(ones), (alike,)))
     with writer.nested() as one:
+        value, after = read_short(writer, at, word)
+        append_varints(writer, varint, lane, scalar, [value])
+        writer.assign(at, after)
+    with writer.nested() as other:
         read_one()
-    writer.emit(nodes.If(nodes.Compare("eq", longer, nodes.Const("u64", 0)), block(short), block(one)))
+    long = nodes.If(ends_within(word), block(one), block(other))
+    writer.emit(nodes.If(nodes.Compare("eq", longer, nodes.Const("u64", 0)), block(short), (long,)))
 
 
 def _append_mixed(writer: Writer, varint: Varint, lane: int, scalar: str, word: nodes.Local, at: nodes.Local) -> None:
@@ -94,12 +99,12 @@ def _append_mixed(writer: Writer, varint: Varint, lane: int, scalar: str, word: 
         rest = writer.let("rest", nodes.Binary("shr", rest, bits))
         after = nodes.Binary("add", after, nodes.Convert("i64", more))
     behind = writer.let("behind", after)
-    _append(writer, varint, lane, scalar, values)
+    append_varints(writer, varint, lane, scalar, values)
     writer.assign(at, behind)
 
 
-def _append(writer: Writer, varint: Varint, lane: int, scalar: str, values: list[nodes.Expr]) -> None:
-    """Put numbers at the end of a lane."""
+def append_varints(writer: Writer, varint: Varint, lane: int, scalar: str, values: list[nodes.Expr]) -> None:
+    """Put the numbers that varints stand for at the end of a lane."""
     writer.emit(nodes.Reserve(lane, index(len(values))))
     for number, value in enumerate(values):
         whole = from_varint(varint, writer.let("varint", value), scalar)
@@ -112,7 +117,7 @@ def _behind(word: nodes.Local, size: int) -> nodes.Expr:
     return nodes.Binary("shr", word, nodes.Const("u64", 8 * size)) if size else word
 
 
-def _of_two(word: nodes.Expr) -> nodes.Expr:
+def of_two(word: nodes.Expr) -> nodes.Expr:
     """The varint that the first two bytes of a word are."""
     return nodes.Binary("or", nodes.Binary("and", word, SEVEN_BITS), _and(nodes.Binary("shr", word, nodes.Const("u64", 1)), SECOND))
 

@@ -18,7 +18,7 @@ from rosetta_jit.lowering.codec.field_order import NONE, Case, read_cases
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields, span_of
 from rosetta_jit.lowering.codec.packed import read_fixed, read_varints, reads_several
-from rosetta_jit.lowering.codec.runs import has_runs, read_run
+from rosetta_jit.lowering.codec.runs import has_runs, has_runs_of_varints, read_run, read_run_of_varints
 from rosetta_jit.lowering.codec.tagged_message import (
     Message,
     array_starts,
@@ -273,6 +273,8 @@ def _read_element(message: Message, entry: Entry) -> None:
             with writer.nested() as known:
                 _append(message, lane, value)
             _if_allowed(message, entry, value, known, begin)
+            if has_runs_of_varints(entry, message.tagged):
+                read_run_of_varints(writer, fields, lane, varint, entry.number << 3, begin, message.stop)
         case Blob(_, _, text, _):
             span = fields.layout.lanes[lane].element
             assert isinstance(span, Span)

@@ -237,7 +237,6 @@ def _is_long(at: Local, after: Local) -> Compare:
 def _read_at_once(writer: Writer, at: Local, value: Local, after: Local, byte: Local) -> None:
     """Processors guess which of a few bytes is the last, and go on behind it before they have read it; of many, they compute it."""
     word = writer.let("word", Load("u64", at))
-    goes_on = Const("u64", int.from_bytes(b"\x80" * GUESSED, "little"))
     with writer.nested() as many:
         joined, behind, stops = writer.call("read_eight", _read_eight, (at, word), MESSAGE)
         writer.assign(value, joined)
@@ -246,7 +245,29 @@ def _read_at_once(writer: Writer, at: Local, value: Local, after: Local, byte: L
     with writer.nested() as few:
         writer.assign(byte, Const("u8", 0))
         _read_guessed(writer, at, word, value, after)
-    writer.emit(If(Compare("eq", Binary("and", word, goes_on), goes_on), block(many), block(few)))
+    writer.emit(If(ends_within(word), block(few), block(many)))
+
+
+def ends_within(word: Expr) -> Expr:
+    """Whether the varint that eight bytes begin with is short enough to be read byte by byte."""
+    goes_on = Const("u64", int.from_bytes(b"\x80" * GUESSED, "little"))
+    return Compare("ne", Binary("and", word, goes_on), goes_on)
+
+
+def read_short(writer: Writer, at: Local, word: Local) -> tuple[Local, Local]:
+    """The varint that eight bytes at a place begin with, if it ends within those that are read byte by byte, and the place behind it."""
+    value, after = writer.call("read_short", _read_short, (at, word), MESSAGE)
+    return value, after
+
+
+def _read_short(writer: Writer) -> Contract:
+    at, word = writer.parameter("at", "i64"), writer.parameter("word", "u64")
+    value, after = writer.var("varint", Binary("and", word, SEVEN_BITS)), writer.var("next", add(at, 1))
+    with writer.nested() as longer:
+        _read_guessed(writer, at, word, value, after)
+    writer.emit(If(Compare("ne", Binary("and", word, Const("u64", 0x80)), ZERO), block(longer)))
+    size_is_known = (Compare("ge", after, add(at, 1)), Compare("le", after, add(at, GUESSED)))
+    return Contract((at, word), (value, after), writer.within(at), size_is_known)
 
 
 def _read_guessed(writer: Writer, at: Local, word: Local, value: Local, after: Local, known: int = 1) -> None:

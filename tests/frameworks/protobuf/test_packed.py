@@ -43,9 +43,11 @@ def runs(rng, kind):
     """Varints of which neighbours are mostly of one size, of any size now and then, some of them longer than they must be."""
     found: list[tuple[int, bytes]] = []
     while len(found) < 60:
-        style = rng.choice(["one", "two", "either", "padded", "any"])
+        style = rng.choice(["one", "two", "either", "padded", "longer", "any"])
         for _ in range(rng.randrange(1, 14)):
-            size = {"one": 1, "two": 2, "either": rng.choice([1, 2]), "padded": 2, "any": rng.choice([1, 2, 3, 5, 10])}[style]
+            size = rng.choice(
+                {"one": [1], "two": [2], "either": [1, 2], "padded": [2], "longer": [3, 4, 5, 6], "any": [1, 2, 3, 5, 10]}[style]
+            )
             most = 1 if kind == "bool" else (1 << min(7 * size, 64)) - 1
             raw = rng.randrange(128 if style == "padded" and kind != "bool" else most + 1)
             found.append((raw, varint(raw, size if style == "padded" else 0)))

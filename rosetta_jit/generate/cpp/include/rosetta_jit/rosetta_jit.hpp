@@ -437,6 +437,12 @@ template <class Container> std::int64_t enlarged(const Container &target)
     }
 }
 
+/* Whether more elements will follow those that a container lacks: protobuf's packed integers come by up to eight. */
+template <class Container> bool comes_in_parts(std::int64_t missing)
+{
+    return missing == 1 || (is_repeated<Container>::value && missing <= 8);
+}
+
 /* An element for writing; of protobuf's containers they are pointers. */
 template <class Container> decltype(auto) element(Container &target, std::int64_t index)
 {
@@ -557,6 +563,46 @@ void assign_span(Container &&target, const Lane &from, const Span &span, const u
     }
     static_cast<void>(message);
     assign(target, from.rows + (span.count > 0 ? span.start : 0), span.count);
+}
+
+/* Whether elements can be made of characters at the end of a container. */
+template <class Container, class = void> struct appends_texts : std::false_type {};
+template <class Container>
+struct appends_texts<Container, std::void_t<typename Container::value_type::traits_type, decltype(std::declval<Container &>().reserve(std::size_t{}))>>
+    : std::bool_constant<is_vector<Container>::value && sizeof(typename Container::value_type::value_type) == 1> {};
+
+/* The texts of a list: those that the container has are set, those that it lacks are made of their characters. */
+template <class Container, class Rows, class Lane, class Span>
+void assign_texts(Container &target, const Rows &rows, const Span &span, const Lane &from, const unsigned char *message)
+{
+    const auto *const texts = rows.rows + (span.count > 0 ? span.start : 0);
+    std::int64_t index = 0;
+    if constexpr (appends_texts<Container>::value && sizeof(*from.rows) == 1) {
+        const std::int64_t there = count_of(target);
+        if (span.count > there) {
+            target.reserve(static_cast<std::size_t>(span.count));
+            for (; index < there; index++) {
+                assign_span(target[static_cast<std::size_t>(index)], from, texts[index], message);
+            }
+            for (; index < span.count; index++) {
+                const auto &text = texts[index];
+                const bool in_message = text.count < 0;
+                const auto *const first = reinterpret_cast<const char *>(in_message ? message + text.start : from.rows + (text.count > 0 ? text.start : 0));
+                const std::int64_t size = in_message ? -1 - text.count : text.count;
+                if (size > 0) {
+                    target.emplace_back(first, static_cast<std::size_t>(size));
+                } else {
+                    target.emplace_back();
+                }
+            }
+            return;
+        }
+    }
+    resize_to(target, span.count);
+    const std::int64_t count = std::min(span.count, count_of(target)); /* one of a fixed length has as many as it has */
+    for (; index < count; index++) {
+        assign_span(element(target, index), from, texts[index], message);
+    }
 }
 
 /* Takes rows for `count` elements, and says which is the first. */
@@ -710,7 +756,7 @@ template <class Row, class Container> struct container_lane {
             return false;
         }
         const std::int64_t wanted = capacity + missing;
-        resize_to(*container, missing == 1 && sizeof(Row) > 1 ? std::min(most, enlarged(*container)) : wanted);
+        resize_to(*container, comes_in_parts<Container>(missing) && sizeof(Row) > 1 ? std::max(wanted, std::min(most, enlarged(*container))) : wanted);
         look();
         return capacity >= wanted; /* one of a fixed length has the room that it has */
     }
