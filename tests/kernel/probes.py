@@ -181,7 +181,8 @@ def _premises(premise: Premise | None, known: dict[int, str]) -> str:
 
 def texts() -> Iterator[Probe]:
     """What each pass makes of small kernels."""
-    from tests.kernel.random_kernels import PASSED, random_kernel
+    from tests.kernel.pass_kernels import PASSED
+    from tests.kernel.random_kernels import random_kernel
 
     made = {
         **kernels.ALL,

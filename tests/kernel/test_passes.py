@@ -54,7 +54,8 @@ from rosetta_jit.kernel.walk import statements
 from tests.golden import GOLDEN, check_golden
 from tests.kernel import kernels
 from tests.kernel.kernels import ROW_EXISTS, compare, expect, i64, kernel, need
-from tests.kernel.random_kernels import PASSED, random_kernel
+from tests.kernel.pass_kernels import PASSED
+from tests.kernel.random_kernels import random_kernel
 
 
 def stages(original):

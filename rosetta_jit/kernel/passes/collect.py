@@ -28,16 +28,11 @@ from rosetta_jit.kernel.nodes import (
     SetField,
     Stmt,
 )
+from rosetta_jit.kernel.passes.reuse import EVERYWHERE, WIDEST
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, may_return, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.startup.dataclass import dataclass, field
-
-_WIDEST = 8
-"""The largest width of a scalar: what lies farther away in a row is another one."""
-
-_EVERYWHERE = -1
-"""Stands for all bytes of a lane among the offsets in its rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +54,7 @@ class _Known:
     def forget(self, lane: int, offset: int) -> None:
         """Somebody reads or writes such a field, of any row."""
         self.sets = {place: each for place, each in self.sets.items() if not _meets(place, lane, offset)}
-        if offset == _EVERYWHERE:
+        if offset == EVERYWHERE:
             self.empty = {place: size for place, size in self.empty.items() if place.lane != lane}
         else:
             self.empty = {place: min(size, offset) if place.lane == lane else size for place, size in self.empty.items()}
@@ -77,7 +72,7 @@ class _Known:
 
 
 def _meets(place: Place, lane: int, offset: int) -> bool:
-    return place.lane == lane and (offset == _EVERYWHERE or abs(place.offset - offset) < _WIDEST)
+    return place.lane == lane and (offset == EVERYWHERE or abs(place.offset - offset) < WIDEST)
 
 
 def collect(kernel: Kernel) -> Kernel:
@@ -101,7 +96,7 @@ def _with_sets(block: Sequence[Stmt], variables: set[str]) -> Block:
         kept: Stmt = stmt
         match stmt:
             case Fill(Place(lane, row, 0) as place, Const(_, size), 0) if _stays(row, variables):
-                known.forget(lane, _EVERYWHERE)
+                known.forget(lane, EVERYWHERE)
                 known.empty[place] = int(size)
             case SetField(place, Binary("or", Get(type_, same), Const(_, bits))) if same == place and _stays(place.row, variables):
                 kept, needless = known.add(stmt, type_, int(bits), len(result))
@@ -151,4 +146,4 @@ def _touched(stmt: Stmt) -> set[tuple[int, int]] | None:
 
 
 def _lanes(*addresses: Address) -> Iterator[tuple[int, int]]:
-    return ((each.lane, _EVERYWHERE) for each in addresses if isinstance(each, Place))
+    return ((each.lane, EVERYWHERE) for each in addresses if isinstance(each, Place))
