@@ -102,6 +102,11 @@ class Rule:
     kept: Sequence[tuple[int, bool]] | None
     is_thin: bool
 
+    @property
+    def is_its_part(self) -> bool:
+        """Whether it is never more than its only part, as most that are complete behind a word of an expression."""
+        return self.size == 1 and self.is_thin and self.kept is None
+
     def built(self, parts: list[Any]) -> Tree | Token:
         """The tree of its parts."""
         children = parts if self.kept is None else _kept(parts, self.kept)
@@ -128,9 +133,15 @@ def _kept(parts: list[Any], kept: Sequence[tuple[int, bool]]) -> list[Any]:
 
 def _placed(tree: Tree, parts: list[Any]) -> Tree:
     """The tree with its places: its own are the first that it gets; as a thin rule's only part it stands for all of that text."""
-    start, end, *_ = tree.places
-    before = next((found for found in map(_start, parts) if found != NOWHERE), tree.places[2])
-    behind = next((found for found in map(_end, reversed(parts)) if found != NOWHERE), tree.places[3])
+    start, end, before, behind = tree.places
+    for part in parts:
+        if (found := _start(part)) != NOWHERE:
+            before = found
+            break
+    for part in reversed(parts):
+        if (found := _end(part)) != NOWHERE:
+            behind = found
+            break
     tree.places = (before if start == NOWHERE else start, behind if end == NOWHERE else end, before, behind)
     return tree
 
@@ -180,6 +191,16 @@ class Grammar:
             found = self._states[state] = _row(self.plain["states"][state], self.plain["symbols"])
         return found
 
+    def settled(self, below: int, state: int, kind: str) -> int:
+        """The state above another one once rules that are no more than their only part are complete before a kind of token."""
+        key = below, state, kind
+        found = self._settled.get(key)
+        if found is None:
+            while (action := self.actions(state).get(kind, 0)) < 0 and self.rule(action).is_its_part:
+                state = self.actions(below)[self.rule(action).name]
+            found = self._settled[key] = state
+        return found
+
     def rule(self, action: int) -> Rule:
         """The rule that an action says is complete."""
         return self._rules[~action]
@@ -195,6 +216,10 @@ class Grammar:
     @cached_property
     def _rules(self) -> tuple[Rule, ...]:
         return tuple(Rule(*each) for each in self.plain["rules"])
+
+    @cached_property
+    def _settled(self) -> dict[tuple[int, int, str], int]:
+        return {}
 
     @cached_property
     def _states(self) -> dict[int, Mapping[str, int]]:
@@ -241,6 +266,8 @@ class Parser:
         grammar, states, values = self.grammar, self.states, self.values
         last, kind = grammar.plain["end"], token.type
         while True:
+            if len(states) > 1:
+                states[-1] = grammar.settled(states[-2], states[-1], kind)
             action = grammar.actions(states[-1]).get(kind)
             if action is None:
                 raise UnexpectedTokenError(token)
