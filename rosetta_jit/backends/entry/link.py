@@ -107,17 +107,9 @@ def _optimised(program: Program, machine: binding.TargetMachine) -> binding.Modu
 
 
 def _own(program: Program, machine: binding.TargetMachine) -> binding.ModuleRef:
-    """A program's own module, after LLVM's passes: for what unusual messages need, which is much and seldom runs, a few of them do."""
-    unusual = ir.Module("unusual") if program.has_unusual_apart else None
-    context = binding.create_context()
-    module = linked(_own_parts(program, whole=False, unusual=unusual), context)
+    """A program's own module, after LLVM's passes."""
+    module = linked(_own_parts(program, whole=False))
     _optimise(module, program, machine)
-    if unusual is not None:
-        rest = linked((str(unusual),), context)
-        _empty(unusual)
-        run_few_passes(rest, machine)
-        module.link_in(rest)
-        make_private(module, program.exported)
     return module
 
 
@@ -125,20 +117,20 @@ def _optimise(module: binding.ModuleRef, program: Program, machine: binding.Targ
     """Run LLVM's passes once.
 
     Kernels leave little for LLVM to find, and a few passes find it, in time that is in proportion to the kernel. Those of O3, which take
-    five times as long, are for loops over elements that become loops over vectors; those of O1 for such loops in large kernels and, with
-    vectors made of statements that stand side by side, for arithmetic without loops. docs/performance.md has the figures.
+    five times as long, are for loops over elements that become loops over vectors; those of O1 for such loops in large kernels. Vectors of
+    statements that stand side by side are printed as such (`llvm.vectors`). docs/performance.md has the figures.
     """
     make_private(module, program.exported)
     wants_thorough = bool(program.options.get("functions") or program.options.get("thorough"))
     loops = [kernel for kernel in program.kernels if has_loops_for_vectors(kernel)]
-    if program.is_vast or not (wants_thorough or loops or program.is_straight):
+    if program.is_vast or not (wants_thorough or loops):
         # Of protobuf's TestAllTypesProto3, to combine costs the encoder 0.3 s, of branches and of instructions.
         # A call of it is a twentieth quicker with fewer branches, and 1.5 % with fewer instructions.
         run_few_passes(module, machine, combining=not (program.is_vast and program.entry == "encode"))
         return
     thorough = wants_thorough or any(map(is_moderate, loops))
     tuning = binding.create_pipeline_tuning_options(speed_level=3 if thorough else 1)
-    tuning.loop_vectorization, tuning.slp_vectorization = True, thorough or program.is_straight
+    tuning.loop_vectorization, tuning.slp_vectorization = True, thorough
     builder = binding.create_pass_builder(machine, tuning)
     run_passes(builder.getModulePassManager(), module, builder)
 
@@ -146,17 +138,14 @@ def _optimise(module: binding.ModuleRef, program: Program, machine: binding.Targ
 # --- parts ---------------------------------------------------------------------------------------------------------------
 
 
-def _own_parts(program: Program, *, whole: bool, unusual: ir.Module | None = None) -> Iterator[str]:
-    """The modules that a program's own is linked from, as LLVM text; if it is to be ``whole``, they define what they call of `support`.
-
-    What is for unusual messages goes into a module of its own, if one is given.
-    """
+def _own_parts(program: Program, *, whole: bool) -> Iterator[str]:
+    """The modules that a program's own is linked from, as LLVM text; if it is to be ``whole``, they define what they call of `support`."""
     kernels, options = program.kernels, program.options
     opening = options.get("opening")
     if program.is_typed:
         yield from _typed(program.first)
     else:
-        yield _emitted(program.first, FUNCTIONS[0], whole=whole, has_usual=program.has_usual, unusual=unusual)
+        yield _emitted(program.first, FUNCTIONS[0], whole=whole, has_usual=program.has_usual)
     yield from (_emitted(kernel, name, whole=whole) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
     if opening is not None:
         yield _going_on(program.first, opening)
@@ -230,9 +219,9 @@ def _support(name: str) -> bytes:
     return kept("support", name, lambda: object_of([definitions.text((name,))], (name,)))
 
 
-def _emitted(kernel: Kernel, name: str, *, whole: bool, has_usual: bool = False, unusual: ir.Module | None = None) -> str:
+def _emitted(kernel: Kernel, name: str, *, whole: bool, has_usual: bool = False) -> str:
     module = ir.Module(name)
-    llvm.emit(module, kernel, name, whole=whole, has_usual=has_usual, unusual=unusual)
+    llvm.emit(module, kernel, name, whole=whole, has_usual=has_usual)
     text = str(module)
     _empty(module)
     return text

@@ -77,11 +77,6 @@ class Program:
         return tuple(map(traits.is_short_and_straight, self.kernels))
 
     @cached_property
-    def is_straight(self) -> bool:
-        """Whether usual messages are arithmetic without loops."""
-        return traits.are_straight_and_compute(self.kernels)
-
-    @cached_property
     def is_typed(self) -> bool:
         """Whether the first kernel goes through numba."""
         return self.options["with_numba"] and not traits.is_large(self.first) and not self.calls_host
@@ -96,15 +91,6 @@ class Program:
         """Whether of the kernel the first of several bodies alone becomes a part of the usual call."""
         several = len(self.first.bodies) > 1 and not self.first.hidden and self.are_short[0]
         return self.entry in ("decode", "borrow") and several and not (self.calls_host or self.is_typed)
-
-    @cached_property
-    def has_unusual_apart(self) -> bool:
-        """Whether bodies for unusual messages are optimised for themselves: LLVM's slow passes are for the arithmetic of the usual one.
-
-        They then may call nothing that is defined beside the first body.
-        """
-        calls = self.first.routines or self.first.goes_on or self.is_typed or self.calls_host
-        return len(self.first.bodies) > 1 and not calls and self.is_straight
 
     @cached_property
     def has_own_many(self) -> bool:

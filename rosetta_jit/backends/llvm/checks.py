@@ -12,20 +12,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
-from rosetta_jit.backends.llvm.alike import Series
+from rosetta_jit.backends.llvm import vectors
 from rosetta_jit.backends.llvm.frame import F32, F64, I32, I64, Frame, Variable, forgotten
 from rosetta_jit.backends.llvm.outline import FIXED
 from rosetta_jit.kernel.nodes import Block, Expect, Fill, If, Let, Load, Require, Return, SetField, Stmt, Store
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.walk import expressions_of
-
-if TYPE_CHECKING:
-    Part = Stmt | Series
 
 OFTEN = 64
 """Checks of one value from which on it is another one."""
@@ -43,12 +39,13 @@ BITS: dict[ir.Type, ir.Type] = {I32: I32, I64: I64, F32: I32, F64: I64}
 """The types of values that fit in a register, and the integers of their size."""
 
 
-def body(frame: Frame, statements: Block) -> None:
-    """Print a body's statements."""
+def body(frame: Frame, statements: Block, *, in_vectors: bool = False) -> None:
+    """Print a body's statements; if ``in_vectors``, what is computed for stores side by side together."""
     reads: Counter[str] = Counter()
     stores = 0
     many = sum(isinstance(each, Expect | If) for each in statements) > OFTEN
-    for part in _in_stretches(llvm_stmt.parts(frame, statements)):
+    parts = llvm_stmt.parts(frame, statements)
+    for part in _in_stretches(vectors.joined(statements, parts, frame.strides) if in_vectors else parts):
         llvm_stmt.print_part(frame, part)
         stores += isinstance(part, SetField | Store)
         if stores == STORES and not frame.builder.block.is_terminated:
@@ -61,7 +58,7 @@ def body(frame: Frame, statements: Block) -> None:
                 del reads[name]
 
 
-def _in_stretches(parts: Sequence[Part]) -> Iterator[Part]:
+def _in_stretches(parts: Sequence[vectors.Part]) -> Iterator[vectors.Part]:
     """The same parts; what stands at a known place of the message is loaded at the begin of the stretch of stores that first needs it."""
     straight = [each for each in parts if isinstance(each, STRAIGHT)]
     if len(straight) < len(parts) or sum(isinstance(each, SetField) for each in straight) <= STORES:

@@ -30,7 +30,7 @@ def expression(frame: Frame, expr: nodes.Expr) -> ir.Value:
     """The value of an expression, computed where the frame's builder stands."""
     match expr:
         case nodes.Const(type_, value):
-            return _constant(type_, value)
+            return scalar_constant(type_, value)
         case nodes.Local(_, name):
             return _local(frame, name)
         case nodes.Load(type_, at, order):
@@ -116,7 +116,7 @@ def pointer(frame: Frame, address: nodes.Address) -> ir.Value:
 
 def wire_pointer(frame: Frame, at: nodes.Expr) -> ir.Value:
     """The machine address of a byte of the message."""
-    base, offset = _parts(at)
+    base, offset = base_and_offset(at)
     if base == BEGIN:
         return _moved(frame, frame.message(), offset)
     place = expression(frame, base)
@@ -130,7 +130,7 @@ def wire_pointer(frame: Frame, at: nodes.Expr) -> ir.Value:
 def place_pointer(frame: Frame, place: nodes.Place) -> ir.Value:
     """The machine address of a field of a row."""
     builder, stride = frame.builder, frame.strides[place.lane]
-    base, rows = _parts(place.row)
+    base, rows = base_and_offset(place.row)
     row = expression(frame, base)
 
     def start() -> ir.Value:
@@ -144,7 +144,7 @@ def place_pointer(frame: Frame, place: nodes.Place) -> ir.Value:
     return builder.gep(_moved(frame, address, rows * stride), [offset], source_etype=I8)
 
 
-def _parts(index: nodes.Expr) -> tuple[nodes.Expr, int]:
+def base_and_offset(index: nodes.Expr) -> tuple[nodes.Expr, int]:
     """What is computed of an index, and the constant behind it: LLVM would find it with more effort."""
     match index:
         case nodes.Binary("add", base, nodes.Const("i64", offset)):
@@ -185,7 +185,8 @@ def store(frame: Frame, address: ir.Value, value: ir.Value, type_: nodes.Scalar,
     builder.store(value, address, align=alignment)
 
 
-def _constant(type_: nodes.Scalar, value: float) -> ir.Value:
+def scalar_constant(type_: nodes.Scalar, value: float) -> ir.Constant:
+    """A constant of a scalar type."""
     if type_ == "i64":
         return constant(int(value))
     if not is_float(type_):
@@ -274,7 +275,7 @@ def _fits(frame: Frame, op: str, left: ir.Value, right: ir.Value) -> ir.Value:
 def _convert(frame: Frame, value: ir.Value, source: nodes.Scalar, target: nodes.Scalar) -> ir.Value:
     builder, kind = frame.builder, LLVM_TYPES[target]
     if target == "bool":
-        return _compare(frame, "ne", value, _constant(source, 0), source)
+        return _compare(frame, "ne", value, scalar_constant(source, 0), source)
     match is_float(source), is_float(target):
         case True, True:
             if source == target:

@@ -36,6 +36,7 @@ from rosetta_jit.kernel.state import (
     USED,
     lane_word,
 )
+from rosetta_jit.kernel.traits import are_straight_and_compute
 
 SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
 ARGUMENTS = ("buffer", "begin", "end", "state", "row")
@@ -59,9 +60,7 @@ TINY, SHORT = 8, 24
 """Statements up to which a routine is part of its callers: if it does not loop, and if its callers are not many."""
 
 
-def emit(
-    module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, has_usual: bool = False, unusual: ir.Module | None = None
-) -> ir.Function:
+def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, has_usual: bool = False) -> ir.Function:
     """Define the kernel's function in the module.
 
     The kernel must have passed `verify`: what it promises there is handed to LLVM as a fact.
@@ -74,18 +73,14 @@ def emit(
     has_usual
         Whether the first body of several is a function for others, too, to be put into what calls it: `NAME.usual`, which gives `UNUSUAL`
         where `NAME.next` is to be asked.
-    unusual
-        A module for all bodies but the first. It is for kernels without routines, which all bodies call.
     """
     routines = _routines(module, kernel, name)
     inside = f"{name}.inside" if kernel.hidden else name
     usual = _function(module, SIGNATURE, f"{name}.usual", ARGUMENTS) if has_usual and len(kernel.bodies) > 1 else None
     function = _function(module, SIGNATURE, inside, ARGUMENTS)
-    following = _following(unusual or module, kernel, 1, f"{inside}.next", routines)
-    if following is not None and (has_usual or unusual is not None):
-        following.linkage = ""  # others call it
-        following.calling_convention = "preserve_mostcc" if usual is None else ""  # who calls the usual body keeps little
-        following = following if unusual is None else _declared(module, following)
+    following = _following(module, kernel, 1, f"{inside}.next", routines)
+    if following is not None and usual is not None:
+        following.linkage = following.calling_convention = ""  # others call it, which keep little
     if usual is None or following is None:
         _attempt(function, kernel, 0, routines, following)
     else:
@@ -234,7 +229,7 @@ def _attempt(
     frame.alike, frame.counting = found(kernel, body), bool(counted)
     if frame.alike and counted:
         begin_rows(frame, kernel.direction)
-    llvm_checks.body(frame, body)
+    llvm_checks.body(frame, body, in_vectors=is_first and are_straight_and_compute((kernel,)))
     if not frame.builder.block.is_terminated:
         frame.builder.unreachable()  # verified: every path that gets here has ended in a Return before
     _finish(frame, counted)
@@ -274,13 +269,6 @@ def _of_next(module: ir.Module, name: str) -> ir.Function:
     function.attributes.add("noinline")
     function.calling_convention = "preserve_mostcc"
     return function
-
-
-def _declared(module: ir.Module, function: ir.Function) -> ir.Function:
-    """The same function for another module."""
-    same = _of_next(module, function.name)
-    same.calling_convention = function.calling_convention
-    return same
 
 
 def _width(kernel: Kernel) -> int:

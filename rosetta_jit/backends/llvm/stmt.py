@@ -27,6 +27,7 @@ from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Frame, Stored
 from rosetta_jit.backends.llvm.growth import reserve
 from rosetta_jit.backends.llvm.series import print_cases, print_series
 from rosetta_jit.backends.llvm.sites import site_of
+from rosetta_jit.backends.llvm.vectors import Wide, print_wide
 from rosetta_jit.kernel import ir as kernel
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
@@ -60,12 +61,14 @@ def parts(frame: Frame, statements: nodes.Block) -> Sequence[nodes.Stmt | Series
     return frame.alike.parts(statements)
 
 
-def print_part(frame: Frame, part: nodes.Stmt | Series) -> None:
+def print_part(frame: Frame, part: nodes.Stmt | Series | Wide) -> None:
     """Print a part of a block, unless one before it has ended it."""
     if frame.builder.block.is_terminated:
         return
     if isinstance(part, Series):
         print_series(frame, part, block)
+    elif isinstance(part, Wide):
+        print_wide(frame, part)
     else:
         _statement(frame, part)
 
