@@ -3,7 +3,7 @@
 ; A bytes object alone is decoded here, by a kernel that is part of this function if it is short: then its row is known to be 0, and its first byte
 ; to be the message's. Else little is kept across its call, so that few registers are saved for the caller. The program's own holder belongs to
 ; one thread, and the slow path has one for each other thread. What a borrowing decoder does besides is `retain`. Where the kernel's first body
-; alone is part of this function, the message that it leaves to the next one is `call_of_next`'s (`first_body.ll`): a function that calls nothing
+; alone is part of this function, the message that it leaves to the next one is `call_of_next`'s (`next_body.ll`): a function that calls nothing
 ; but at its very end needs no stack.
 declare ptr @any_call(ptr, ptr, i64, ptr)
 declare void @llvm.assume(i1)
@@ -52,28 +52,6 @@ ask:
 other:
   %found = musttail call ptr @any_call(ptr %self, ptr %args, i64 %nargsf, ptr %names)
   ret ptr %found
-}
-
-; What a call ends with: the holder, or what the slow path says.
-define internal ptr @finish(ptr %context, ptr %state, ptr %args, ptr %message, i64 %result) alwaysinline {
-  %good = icmp sge i64 %result, 0
-  br i1 %good, label %return, label %failed, !prof !0
-return:
-  store i64 1, ptr %state
-  %source = call ptr @message_behind(ptr %state, ptr %message)
-  call void @retain(ptr %context, ptr %source)
-  %holder.at = getelementptr ptr, ptr %context, i64 1
-  %holder = load ptr, ptr %holder.at
-  call void @keep(ptr %holder)
-  ret ptr %holder
-failed:
-  store i64 0, ptr %state
-  %arguments = call ptr @arguments_behind(ptr %state, ptr %args)
-  call void @untell(ptr %context, ptr %state)
-  call void @say_failed(ptr %context)
-  call void @note(i64 %result, ptr %state)
-  %answer = tail call ptr @slow(ptr %context, ptr %arguments, i64 1, ptr null)
-  ret ptr %answer
 }
 
 ; The program's own holder has room for its one message, always: word 18 of its state, which kernels look at for any row.

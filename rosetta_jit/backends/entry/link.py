@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from llvmlite import binding, ir
 
-from rosetta_jit.backends.entry.program import Options, Program
+from rosetta_jit.backends.entry.program import NEXT_CALL, Options, Program
 from rosetta_jit.backends.llvm import definitions, support
 from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.kernel.entries import SYMBOLS, EntryName
@@ -42,8 +42,8 @@ else:
     host_table, references = late("rosetta_jit.backends.entry", "host_table", "references")
 
 USUAL: dict[EntryName, tuple[str, ...]] = {
-    "decode": ("owning.ll", "decode.ll"),
-    "borrow": ("borrowing.ll", "decode.ll"),
+    "decode": ("owning.ll", "finish.ll", "decode.ll"),
+    "borrow": ("borrowing.ll", "finish.ll", "decode.ll"),
     "encode": ("usable.ll", "measured.ll", "encode.ll"),
     "bridge": ("bridge.ll",),
 }
@@ -57,13 +57,20 @@ REST: dict[EntryName, tuple[str, ...]] = {
 }
 """Whatever else is called."""
 
+NEXT: dict[EntryName, tuple[str, ...]] = {
+    "decode": ("owning.ll", "finish.ll", "arguments.ll", "next_body.ll"),
+    "borrow": ("finish.ll", "arguments.ll", "next_body.ll"),
+}
+"""What goes on with a message that the kernel's first body has left, where that alone is a part of the usual call."""
+
 ALONE = ("any_decode.ll",)
 """What is left to call of a decoder whose loop over many messages stands beside its kernel."""
 
 FUNCTIONS = ("kernel", "size", "write")
 """The names of a program's kernels: what decodes or encodes; to encode, what measures; of a bridge, what encodes what was decoded."""
 
-REST_SYMBOL = "any_call"
+REST_SYMBOLS = ("any_call", NEXT_CALL)
+"""What the usual call leaves to others."""
 
 
 def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:
@@ -169,6 +176,8 @@ def _surrounding_texts(program: Program) -> tuple[str, ...]:
     rest = ALONE if program.has_own_many else REST[program.entry]
     if program.entry == "encode" and leaves_something(program.kernels[1]):
         rest = tuple("leaving.ll" if each == "unmeasured.ll" else each for each in rest)
+    if program.has_usual:
+        rest = (*rest, *NEXT[program.entry])
     around = (rest,) if program.is_inside else ((*USUAL[program.entry], "arguments_left.ll", "all_bodies.ll"), rest)
     return tuple(_entry_text(templates, program) for templates in around if templates)
 
@@ -211,7 +220,7 @@ def _surroundings(module: binding.ModuleRef, program: Program) -> Iterator[bytes
 
 @cache
 def _entries(*texts: str) -> bytes:
-    return kept("entries", "\n".join(texts), lambda: object_of(texts, (*SYMBOLS["encode"], REST_SYMBOL), thorough=False))
+    return kept("entries", "\n".join(texts), lambda: object_of(texts, (*SYMBOLS["encode"], *REST_SYMBOLS), thorough=False))
 
 
 @cache

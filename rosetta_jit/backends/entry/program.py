@@ -13,6 +13,9 @@ from rosetta_jit.startup.cached import cached_property
 if TYPE_CHECKING:
     from rosetta_jit.kernel.host import UserFunction
 
+NEXT_KERNEL, NEXT_CALL = "kernel.next", "call_of_next"
+"""Of a kernel whose first body is a part of the usual call, the bodies behind it, and the rest of the call."""
+
 
 class Options(TypedDict):
     """What a program is compiled with, besides its kernels.
@@ -53,8 +56,8 @@ class Program:
 
     @property
     def exported(self) -> tuple[str, ...]:
-        """The symbols that others may ask for."""
-        return (*SYMBOLS[self.entry], HOST, ON_DEMAND)
+        """The symbols that others may ask for: its users, and the parts of which it is made."""
+        return (*SYMBOLS[self.entry], HOST, ON_DEMAND, *((NEXT_KERNEL, NEXT_CALL) if self.has_usual else ()))
 
     @cached_property
     def is_vast(self) -> bool:
