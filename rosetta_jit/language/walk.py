@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from typing import assert_never
 
 from rosetta_jit.language import typed
-from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.model.walk import changed, renewed
 
 
 def operands(expr: typed.Expr) -> tuple[typed.Expr, ...]:
@@ -49,28 +49,28 @@ def rebuilt(expr: typed.Expr, change: Callable[[typed.Expr], typed.Expr]) -> typ
     """The expression with each of its parts changed; of a `Nearest`, the check stays a comparison, of which both sides are changed."""
     match expr:
         case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place):
-            return replace(expr, place=placed(place, change))
+            return renewed(expr, place=placed(place, change))
         case typed.Search(place, _, condition):
-            return replace(expr, place=placed(place, change), condition=change(condition))
+            return renewed(expr, place=placed(place, change), condition=change(condition))
         case typed.Reduce(_, _, count, value, _, refused):
-            changed = tuple((change(condition), why) for condition, why in refused)
+            why_not = tuple((change(condition), why) for condition, why in refused)
             chosen = None if expr.chosen is None else change(expr.chosen)
             assert chosen is None or isinstance(chosen, typed.Reduce)
-            return replace(expr, count=change(count), value=change(value), refused=changed, chosen=chosen)
+            return renewed(expr, count=change(count), value=change(value), refused=why_not, chosen=chosen)
         case typed.Unary(_, operand) | typed.Convert(operand):
-            return replace(expr, operand=change(operand))
+            return renewed(expr, operand=change(operand))
         case typed.Binary(_, left, right):
-            return replace(expr, left=change(left), right=change(right))
+            return renewed(expr, left=change(left), right=change(right))
         case typed.Nearest(operand, check=check):
-            return replace(expr, operand=change(operand), check=replace(check, left=change(check.left), right=change(check.right)))
+            return renewed(expr, operand=change(operand), check=renewed(check, left=change(check.left), right=change(check.right)))
         case typed.Call(_, arguments) | typed.HostCall(_, arguments) | typed.Given(_, arguments):
-            return replace(expr, arguments=tuple(map(change, arguments)))
+            return renewed(expr, arguments=changed(arguments, change))
         case typed.Choice(cases, otherwise, pieces=pieces):
             pairs = tuple((change(condition), change(value)) for condition, value in cases)
             rest = None if otherwise is None else change(otherwise)
-            return replace(expr, cases=pairs, otherwise=rest, pieces=tuple(map(change, pieces)))
+            return renewed(expr, cases=pairs, otherwise=rest, pieces=changed(pieces, change))
         case typed.Listed(items, index):
-            return replace(expr, items=tuple(map(change, items)), index=change(index))
+            return renewed(expr, items=changed(items, change), index=change(index))
         case typed.Const() | typed.Local() | typed.StateVariable():
             return expr
         case _:
@@ -84,8 +84,11 @@ def indices(place: typed.Place) -> tuple[typed.Expr, ...]:
 
 def placed(place: typed.Place, change: Callable[[typed.Expr], typed.Expr]) -> typed.Place:
     """A place with its indices changed."""
-    steps = tuple(replace(step, index=change(step.index)) if isinstance(step, typed.IndexStep) else step for step in place.steps)
-    return replace(place, steps=steps)
+
+    def stepped(step: typed.Step) -> typed.Step:
+        return renewed(step, index=change(step.index)) if isinstance(step, typed.IndexStep) else step
+
+    return renewed(place, steps=changed(place.steps, stepped))
 
 
 def renamed(expr: typed.Expr, names: dict[str, typed.Expr]) -> typed.Expr:

@@ -1,12 +1,13 @@
 """What expressions and rules are made of, and the same ones of other parts: what every walk over them has in common.
 
-The depth of an expression is bounded by the parser, so that walks may be recursive.
+What nothing changes in stays the object that it is. The depth of an expression is bounded by the parser, so that walks may be recursive.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import TypeVar, assert_never, cast
+from operator import is_
+from typing import Any, TypeVar, assert_never, cast
 
 from rosetta_jit.model import mapping
 from rosetta_jit.model.expr import (
@@ -37,6 +38,32 @@ from rosetta_jit.startup.dataclass import replace
 Field = Path | Len
 """A field or its length."""
 
+NodeT = TypeVar("NodeT")
+"""An expression, a rule, or a part of one."""
+
+ItemT = TypeVar("ItemT")
+"""An item of a tuple."""
+
+
+def renewed(old: NodeT, **parts: object) -> NodeT:
+    """The same with other parts; itself where all of them are what it has, as most are for most that ask."""
+    for name, part in parts.items():
+        if getattr(old, name) is not part:
+            return replace(cast("Any", old), **parts)
+    return old
+
+
+def changed(items: tuple[ItemT, ...], change: Callable[[ItemT], ItemT]) -> tuple[ItemT, ...]:
+    """Items that are changed; the tuple itself where none is."""
+    new = tuple(map(change, items))
+    return items if all(map(is_, new, items)) else new
+
+
+def _pair(pair: tuple[Expr, Expr], change: Callable[[Expr], Expr]) -> tuple[Expr, Expr]:
+    first, second = pair
+    new = change(first), change(second)
+    return pair if new[0] is first and new[1] is second else new
+
 
 def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
     """The expression with each of its parts changed; a path's parts are the indices in it."""
@@ -46,28 +73,28 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
         case Path():
             return with_indices(expr, change)
         case Len(path):
-            return replace(expr, path=with_indices(path, change))
+            return renewed(expr, path=with_indices(path, change))
         case Unary(operand=operand):
-            return replace(expr, operand=change(operand))
+            return renewed(expr, operand=change(operand))
         case Binary(left=left, right=right):
-            return replace(expr, left=change(left), right=change(right))
+            return renewed(expr, left=change(left), right=change(right))
         case Call(arguments=arguments):
             where = None if expr.where is None else change(expr.where)
-            return replace(expr, arguments=tuple(map(change, arguments)), where=where)
+            return renewed(expr, arguments=changed(arguments, change), where=where)
         case Choice(cases, otherwise):
-            pairs = tuple((change(condition), change(value)) for condition, value in cases)
-            pieces = tuple(map(change, expr.pieces))
-            return replace(expr, cases=pairs, otherwise=None if otherwise is None else change(otherwise), pieces=pieces)
+            pairs = changed(cases, lambda pair: _pair(pair, change))
+            pieces = changed(expr.pieces, change)
+            return renewed(expr, cases=pairs, otherwise=None if otherwise is None else change(otherwise), pieces=pieces)
         case List(items):
-            return replace(expr, items=tuple(map(change, items)))
+            return renewed(expr, items=changed(items, change))
         case Item(items=items, index=index):
-            return replace(expr, items=change(items), index=change(index))
+            return renewed(expr, items=change(items), index=change(index))
         case Given(arguments=arguments):
-            return replace(expr, arguments=tuple(map(change, arguments)))
+            return renewed(expr, arguments=changed(arguments, change))
         case Coerced(place, value):
-            return replace(expr, place=with_indices(place, change), value=change(value))
+            return renewed(expr, place=with_indices(place, change), value=change(value))
         case Nearest(value, again, origin):
-            return replace(expr, value=change(value), again=change(again), place=change(origin))
+            return renewed(expr, value=change(value), again=change(again), place=change(origin))
         case _:
             assert_never(expr)
 
@@ -77,27 +104,27 @@ def with_expressions(rule: Rule, change: Callable[[Expr], Expr]) -> Rule:
     match rule:
         case mapping.Assign(place, value, where=where):
             where = None if where is None else change(where)
-            return replace(rule, place=with_indices(place, change), value=change(value), where=where)
+            return renewed(rule, place=with_indices(place, change), value=change(value), where=where)
         case mapping.SetLength(place, value):
-            return replace(rule, place=with_indices(place, change), value=change(value))
+            return renewed(rule, place=with_indices(place, change), value=change(value))
         case mapping.Relation(place, value):
-            return replace(rule, place=_with_indices(place, change), value=change(value))
+            return renewed(rule, place=_with_indices(place, change), value=change(value))
         case mapping.For(start=start, stop=stop):
-            kept = None if rule.kept is None else replace(rule.kept, condition=change(rule.kept.condition))
-            return replace(rule, start=change(start), stop=change(stop), kept=kept)
+            kept = None if rule.kept is None else renewed(rule.kept, condition=change(rule.kept.condition))
+            return renewed(rule, start=change(start), stop=change(stop), kept=kept)
         case mapping.When(condition=condition):
-            return replace(rule, condition=change(condition))
+            return renewed(rule, condition=change(condition))
         case mapping.Ignore(place) | mapping.Default(place):
-            return replace(rule, place=with_indices(place, change))
+            return renewed(rule, place=with_indices(place, change))
         case mapping.Arranged(place, flag, cases):
-            pairs = tuple((change(constant), change(value)) for constant, value in cases)
-            return replace(rule, place=with_indices(place, change), flag=with_indices(flag, change), cases=pairs)
+            pairs = changed(cases, lambda pair: _pair(pair, change))
+            return renewed(rule, place=with_indices(place, change), flag=with_indices(flag, change), cases=pairs)
         case mapping.SetState(value=value):
-            return replace(rule, value=change(value))
+            return renewed(rule, value=change(value))
         case mapping.Reject(pieces=pieces):
-            return replace(rule, pieces=tuple(map(change, pieces)))
+            return renewed(rule, pieces=changed(pieces, change))
         case mapping.Several(places, value):
-            return replace(rule, places=tuple(with_indices(place, change) for place in places), value=change(value))
+            return renewed(rule, places=changed(places, lambda place: with_indices(place, change)), value=change(value))
         case mapping.SameNames() | mapping.Rest():
             return rule
         case _:
@@ -136,26 +163,26 @@ def _with_indices(place: Field | List, change: Callable[[Expr], Expr]) -> Field 
     """A place, or several, with its indices changed."""
     match place:
         case Len(path):
-            return replace(place, path=with_indices(path, change))
+            return renewed(place, path=with_indices(path, change))
         case List(items):
-            return replace(place, items=tuple(rebuilt(each, change) for each in items))
+            return renewed(place, items=changed(items, lambda each: rebuilt(each, change)))
         case Path():
             return with_indices(place, change)
 
 
 def with_indices(path: Path, change: Callable[[Expr], Expr]) -> Path:
     """A path with its indices changed."""
-    return replace(path, steps=tuple(_with_indices_in(step, change) for step in path.steps))
+    return renewed(path, steps=changed(path.steps, lambda step: _with_indices_in(step, change)))
 
 
 def _with_indices_in(step: Step, change: Callable[[Expr], Expr]) -> Step:
     match step:
         case Index(index):
-            return replace(step, index=change(index))
+            return renewed(step, index=change(index))
         case Keyed(value=value):
-            return replace(step, value=change(value))
+            return renewed(step, value=change(value))
         case Slice(start, stop, by):
-            return replace(step, start=change(start), stop=None if stop is None else change(stop), step=change(by))
+            return renewed(step, start=change(start), stop=None if stop is None else change(stop), step=change(by))
         case _:
             return step
 

@@ -13,6 +13,7 @@ from rosetta_jit.kernel.nodes import (
     Const,
     Convert,
     Expect,
+    Failure,
     Fits,
     Load,
     Lookup,
@@ -23,11 +24,11 @@ from rosetta_jit.kernel.nodes import (
     SetField,
     Unary,
 )
-from rosetta_jit.kernel.terms import BEGIN as AT
-from rosetta_jit.kernel.terms import ROW, add, index
+from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index
 from tests.backends import kernels
 from tests.backends.engines import ENGINES, outcome
 from tests.backends.holders import rows
+from tests.backends.kernels import failure, row_fits
 from tests.backends.messages import BAD_TEXT, GOOD, SIGNALLING_F32, hostile
 
 BACKENDS = ENGINES[1:]
@@ -51,6 +52,31 @@ def test_good_messages_decode(backend):
         grown = [result for result in results if result == -1]
         assert len(grown) == {"counted": 1, "varints": 1}.get(name, 0)
         assert all(result >= -1 for result in results)
+
+
+def usual_length():
+    """That the message has the length that most have, which is told only where nothing else fails."""
+    return Expect(Compare("eq", add(BEGIN, 2), END), Failure(5, Const("i64", -1)))
+
+
+@pytest.mark.parametrize("before", [(), (usual_length(),), (Require(BEGIN, index(2), failure(1)),)], ids=["first", "behind", "later"])
+@pytest.mark.parametrize("backend", ENGINES)
+def test_a_row_that_the_holder_has_not(backend, before):
+    """Also of the message after one that has failed farther on, of which the state still tells."""
+    second = (
+        row_fits(),
+        Require(BEGIN, index(2), failure(2)),
+        Expect(Compare("eq", Load("u8", add(BEGIN, 1)), Const("u8", 1)), failure(3, END)),
+    )
+    made = kernels.kernel(
+        (*before, row_fits(), Require(BEGIN, index(2), failure(4)), SetField(Place(0, ROW), Load("u8", BEGIN)), Return(add(BEGIN, 2))),
+        (*second, SetField(Place(0, ROW), Load("u8", BEGIN)), Return(add(BEGIN, 2))),
+        strides=(8,),
+    )
+    holder = rows(made, 2)
+    expected = rows(made, 2)
+    for message, row in ((b"ab", 0), (b"a", 0), (b"\x00\x00\x00", 1), (b"ab", 2), (b"a\x01c", 2), (b"", 2), (b"ab", 1)):
+        assert outcome(backend, made, message, holder, row=row) == outcome("interpreter", made, message, expected, row=row), (message, row)
 
 
 @pytest.mark.parametrize("backend", ENGINES)
@@ -146,14 +172,14 @@ SCALARS = ("bool", "i8", "u8", "i16", "u16", "i32", "u32", "i64", "u64", "f32", 
 
 def operands(type_):
     """The two numbers that a test message starts with."""
-    return Load(type_, AT), Load(type_, add(AT, 8))
+    return Load(type_, BEGIN), Load(type_, add(BEGIN, 8))
 
 
 def agree(expressions, type_, pairs):
     """One kernel that computes all of the expressions."""
     fields = tuple(SetField(Place(0, ROW, 8 * number), each) for number, each in enumerate(expressions))
     kernel = kernels.kernel(
-        (Require(AT, index(16), kernels.failure(1)), *fields, Return(AT)), strides=(8 * len(expressions),), name=f"of_{type_}"
+        (Require(BEGIN, index(16), kernels.failure(1)), *fields, Return(BEGIN)), strides=(8 * len(expressions),), name=f"of_{type_}"
     )
     for left, right in pairs:
         message = struct.pack(FORMATS[type_], left).ljust(8, b"\0") + struct.pack(FORMATS[type_], right).ljust(8, b"\0")

@@ -369,9 +369,9 @@ def test_words_that_lie_otherwise_are_compared_alone(second):
 
 def test_the_last_element_is_asked_for_first():
     sets = [SetField(Place(0, ROW, 8), index(number)) for number in range(3)]
-    looked, last, *rest = gathered(*(each for number in range(3) for each in (element(number), sets[number])))
-    assert looked.condition.operand == last.condition == element(2).condition
-    assert (looked.then, last, rest) == ((element(0), element(1)), element(2), sets)
+    looked, *rest = gathered(*(each for number in range(3) for each in (element(number), sets[number])))
+    assert looked.condition.operand == element(2).condition
+    assert (looked.then, rest) == ((element(0), element(1), element(2)), sets)
 
 
 @pytest.mark.parametrize(

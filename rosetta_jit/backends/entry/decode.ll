@@ -6,7 +6,6 @@
 ; alone is part of this function, the message that it leaves to the next one is `call_of_next`'s (`next_body.ll`): a function that calls nothing
 ; but at its very end needs no stack.
 declare ptr @any_call(ptr, ptr, i64, ptr)
-declare void @llvm.assume(i1)
 
 define ptr @call(ptr %self, ptr %args, i64 %nargsf, ptr %names) {
   %alone = call i1 @is_alone(i64 %nargsf, ptr %names)
@@ -33,7 +32,6 @@ decode:
   %data = getelementptr i8, ptr %message, i64 32
   %size.at = getelementptr i8, ptr %message, i64 16
   %size = load i64, ptr %size.at
-  call void @assume_row(ptr %state)
   call void @enter(ptr %state, i64 %epoch, i64 1)
   call void @lend_registers(ptr %context, ptr %state)
   call void @tell(ptr %context, ptr %state)
@@ -52,13 +50,4 @@ ask:
 other:
   %found = musttail call ptr @any_call(ptr %self, ptr %args, i64 %nargsf, ptr %names)
   ret ptr %found
-}
-
-; The program's own holder has room for its one message, always: word 18 of its state, which kernels look at for any row.
-define internal void @assume_row(ptr %state) alwaysinline {
-  %rows.at = getelementptr i64, ptr %state, i64 18
-  %rows = load i64, ptr %rows.at
-  %has.row = icmp sgt i64 %rows, 0
-  call void @llvm.assume(i1 %has.row)
-  ret void
 }

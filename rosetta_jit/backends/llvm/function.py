@@ -23,8 +23,9 @@ from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.series import begin_rows, end_rows
 from rosetta_jit.backends.printing import counted_lanes, emptied_lanes, statements
 from rosetta_jit.kernel.ir import Kernel, Routine
-from rosetta_jit.kernel.nodes import Block, Call, Expect, Expr, For, HostCall, Require, Stmt, While
+from rosetta_jit.kernel.nodes import Block, Call, Capacity, Compare, Const, Expect, Expr, For, HostCall, Require, Stmt, While
 from rosetta_jit.kernel.state import (
+    CAPACITY,
     ERROR_INDICES,
     ERROR_OFFSET,
     ERROR_SITE,
@@ -36,7 +37,9 @@ from rosetta_jit.kernel.state import (
     USED,
     lane_word,
 )
+from rosetta_jit.kernel.terms import BEGIN, ROW
 from rosetta_jit.kernel.traits import are_straight_and_compute
+from rosetta_jit.startup.dataclass import replace
 
 SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
 ARGUMENTS = ("buffer", "begin", "end", "state", "row")
@@ -52,6 +55,9 @@ MANY_STATEMENTS = 512
 
 UNUSUAL = -1 << 63
 """What a kernel's first body gives where the next one is to be asked: no place in a message, and the number of no failure."""
+
+NOWHERE = Const("i64", -1)
+"""The place of a failure that is told only where there is no other."""
 
 OFTEN = 16
 """Calls from which on a tiny routine stays a function if it begins with a call: that is made anyway."""
@@ -72,7 +78,7 @@ def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, ha
         declared in any case.
     has_usual
         Whether the first body of several is a function for others, too, to be put into what calls it: `NAME.usual`, which gives `UNUSUAL`
-        where `NAME.next` is to be asked.
+        where `NAME.next` is to be asked. Who calls it knows that the holder has the row.
     """
     routines = _routines(module, kernel, name)
     inside = f"{name}.inside" if kernel.hidden else name
@@ -85,18 +91,56 @@ def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, ha
         _attempt(function, kernel, 0, routines, following)
     else:
         usual.attributes.add("alwaysinline")
-        _attempt(usual, kernel, 0, routines, constant(UNUSUAL))
-        _usual_or_next(function, usual, following)
+        known, row = _without_row(kernel)
+        _attempt(usual, known, 0, routines, constant(UNUSUAL))
+        _usual_or_next(function, kernel, row, usual, following)
     if whole:
         definitions.define(module)
     return _behind_check(module, kernel, function, name) if kernel.hidden else function
 
 
-def _usual_or_next(function: ir.Function, usual: ir.Function, following: ir.Function) -> None:
-    """The body of a kernel's function whose bodies all have functions of their own."""
+def _without_row(kernel: Kernel) -> tuple[Kernel, Expect | None]:
+    """The kernel whose first body takes it that the holder has the row, and the check that this was.
+
+    It stays where a failure before it may be told instead, as one without a place never is.
+    """
+    body, place = kernel.bodies[0], 0
+    while place < len(body) and _fails(body[place], NOWHERE) and not _asks_for_row(body[place]):
+        place += 1
+    row = body[place] if place < len(body) else None
+    if not isinstance(row, Expect) or not _asks_for_row(row):
+        return kernel, None
+    return replace(kernel, bodies=(body[:place] + body[place + 1 :], *kernel.bodies[1:])), row
+
+
+def _asks_for_row(stmt: Stmt) -> bool:
+    """Whether a statement is the check that the holder has the row."""
+    return _fails(stmt, BEGIN) and isinstance(stmt, Expect) and stmt.condition == Compare("lt", ROW, Capacity(0))
+
+
+def _fails(stmt: Stmt, at: Expr) -> bool:
+    """Whether a statement is a check whose failure tells a place, and nothing besides."""
+    return isinstance(stmt, Expect) and stmt.failure.at == at and not stmt.failure.indices
+
+
+def _usual_or_next(function: ir.Function, kernel: Kernel, row: Expect | None, usual: ir.Function, following: ir.Function) -> None:
+    """The body of a kernel's function whose bodies have functions of their own, and the check that the usual one leaves out."""
     builder = ir.IRBuilder(function.append_basic_block("entry"))
+    first, done, other = (function.append_basic_block(name) for name in ("first", "done", "other"))
+    if row is None:
+        builder.branch(first)
+    else:
+        _, begin, _, state, number = function.args
+        missing = function.append_basic_block("missing")
+        rows = builder.load(state_word(builder, state, lane_word(0, CAPACITY)), typ=I64, align=8)
+        builder.cbranch(builder.icmp_signed("<", number, rows), first, missing).set_weights(COLD)
+        builder.position_at_end(missing)
+        told = (constant(row.failure.site), begin, *[constant(0)] * _width(kernel))
+        for word, value in zip(_words(len(told)), told, strict=True):
+            builder.store(value, state_word(builder, state, word), align=8)
+        builder.branch(other)
+    builder.position_at_end(first)
     result = builder.call(usual, function.args)
-    done, other = function.append_basic_block("done"), function.append_basic_block("other")
     builder.cbranch(builder.icmp_signed("!=", result, constant(UNUSUAL)), done, other).set_weights(COLD)
     builder.position_at_end(done)
     builder.ret(result)

@@ -35,6 +35,9 @@ from rosetta_jit.startup.dataclass import dataclass
 SIZES = (8, 4, 2)
 """How many numbers a vector has, the best first."""
 
+WIDEST = 32
+"""The most bytes that are stored at once: some CPUs take their time before they store twice as many."""
+
 DEEP = 32
 """How far what is stored is followed to what it is computed from."""
 
@@ -150,7 +153,8 @@ class _Look:
     def _wide(self, stores: Sequence[nodes.SetField | nodes.Store]) -> Iterator[Wide | nodes.SetField | nodes.Store]:
         at = 0
         while at < len(stores):
-            sizes = [size for size in SIZES if at + size <= len(stores)]
+            most = min(len(stores) - at, WIDEST // nodes.WIDTH[type_of(stores[at].value)])
+            sizes = [size for size in SIZES if size <= most]
             vectors = ((size, self._stored(stores[at : at + size])) for size in sizes)
             size, vector = next((found for found in vectors if found[1] is not None), (1, None))
             yield stores[at] if vector is None else Wide(stores[at], vector)

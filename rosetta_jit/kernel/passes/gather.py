@@ -84,9 +84,8 @@ def _chains(block: Block) -> list[_Chain]:
 
 
 def _last_first(checks: Sequence[Expect]) -> Block:
-    """The check of the highest number, behind the others where it fails."""
-    *others, last = checks
-    return If(Unary("not", last.condition), tuple(others)), last
+    """All of them where that of the highest number fails."""
+    return (If(Unary("not", checks[-1].condition), tuple(checks)),)
 
 
 # --- numbers side by side ------------------------------------------------------------------------------------------------
