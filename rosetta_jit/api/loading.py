@@ -73,7 +73,7 @@ def _compiled(build: Any, cache: Cache, link: Callable[[Mapping[str, Any], bytes
     from rosetta_jit.api import cacheable as certainty
 
     doubts = certainty.doubts(build.called)
-    name = None if doubts else entry_name(build.text)
+    name = None if doubts or cache.keeps_nothing else entry_name(build.text)
     if name is not None:
         with suppress(KeyError):
             return _answered(build, cache, name, _shared(name, cache, link))
@@ -81,7 +81,9 @@ def _compiled(build: Any, cache: Cache, link: Callable[[Mapping[str, Any], bytes
     image = build.image()
     doubts = (*doubts, *certainty.doubts_of_compiled(build.called, addressing))
     certainty.note(build.request, cache, doubts)
-    header = {**build.header, "name": entry_name(build.text)}
+    header = build.header
+    if header.get("rare"):
+        header = {**header, "name": name or entry_name(build.text)}
     if name is None or doubts:
         return link(header, image)
     cache.put(name, build.header, image)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 
 from rosetta_jit.kernel import walk
@@ -61,9 +61,9 @@ class Namespace:
         return candidate
 
 
-def statements(block: Block) -> Iterator[Stmt]:
+def statements(block: Block) -> list[Stmt]:
     """All statements of a block, those of inner blocks included."""
-    return (statement for statement, _ in walk.statements(block))
+    return walk.flat(block)
 
 
 def counted_lanes(kernel: Kernel, body: Block) -> list[int]:

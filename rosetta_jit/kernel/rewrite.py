@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import assert_never
 
 from rosetta_jit.kernel import ir, nodes
-from rosetta_jit.kernel.walk import blocks_of, expressions_of, operands, parts_of, statements, subexpressions
+from rosetta_jit.kernel.walk import NESTED, blocks_of, expressions_of, flat, operands, parts_of, statements, subexpressions
 from rosetta_jit.startup.dataclass import replace
 
 NO_NAMES: Mapping[str, str] = MappingProxyType({})
@@ -111,9 +111,9 @@ def _restated(stmt: nodes.Stmt, parts: list[nodes.Expr]) -> nodes.Stmt:
 
 def with_blocks(stmt: nodes.Stmt, change: Callable[[nodes.Block], nodes.Block]) -> nodes.Stmt:
     """A statement with each block inside it changed, in order."""
-    old = blocks_of(stmt)
-    if not old:
+    if type(stmt) not in NESTED:
         return stmt
+    old = blocks_of(stmt)
     new = [change(block) for block in old]
     return stmt if all(map(_is_same, new, old)) else _refilled(stmt, new)
 
@@ -169,17 +169,17 @@ def substituted(expr: nodes.Expr, values: Mapping[str, nodes.Expr], renamed: Map
 
 def locals_in(expr: nodes.Expr) -> set[str]:
     """Names of the locals that an expression reads."""
-    return {part.name for part in subexpressions(expr) if isinstance(part, nodes.Local)}
+    return {part.name for part in subexpressions(expr) if type(part) is nodes.Local}
 
 
 def names_in(stmts: Iterable[nodes.Stmt]) -> set[str]:
     """Names of the locals that statements read themselves, not in the blocks inside."""
-    return {part.name for part in parts_of(stmts) if isinstance(part, nodes.Local)}
+    return {part.name for part in parts_of(stmts) if type(part) is nodes.Local}
 
 
 def names_read(block: nodes.Block) -> set[str]:
     """Names of the locals that a block reads, at any depth."""
-    return names_in(stmt for stmt, _ in statements(block))
+    return names_in(flat(block))
 
 
 def reads_memory(expr: nodes.Expr) -> bool:

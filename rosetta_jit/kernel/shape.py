@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from itertools import chain, pairwise
+from collections.abc import Mapping
+from itertools import pairwise
 
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.limits import MAX_BLOCKS, MAX_EXPRESSION
@@ -67,8 +67,10 @@ def _of_a_body(expr: nodes.Expr) -> bool:
 
 
 def _statements_error(
-    inside: Iterable[tuple[nodes.Stmt, int]], names: tuple[str, ...], sites: int, routines: tuple[ir.Routine, ...]
+    inside: list[tuple[nodes.Stmt, int]], names: tuple[str, ...], sites: int, routines: tuple[ir.Routine, ...]
 ) -> str | None:
+    if _are_deep([stmt for stmt, _ in inside]):
+        return "an expression is nested too deep"
     bound = set(names)
     known = {routine.name: routine for routine in routines}
     for stmt, depth in inside:
@@ -85,8 +87,6 @@ def _statements_error(
 def _statement_error(stmt: nodes.Stmt, depth: int, sites: int, routines: Mapping[str, ir.Routine]) -> str | None:
     if depth > MAX_BLOCKS:
         return "blocks are nested too deep"
-    if len(parts_of((stmt,))) > MAX_EXPRESSION and any(map(_too_deep, expressions_of(stmt))):
-        return "an expression is nested too deep"
     match stmt:
         case nodes.Require(_, _, failure) | nodes.Expect(_, failure) | nodes.HostCall(_, _, _, failure):
             return _failing_error((failure.site,), failure.indices, sites)
@@ -109,10 +109,11 @@ def _failing_error(named: tuple[int, ...], indices: tuple[nodes.Expr, ...], site
     return "too many indices" if len(indices) > INDEX_WORDS else None
 
 
-def _too_deep(expr: nodes.Expr) -> bool:
-    level = operands(expr)
-    for _ in range(MAX_EXPRESSION):
+def _are_deep(stmts: list[nodes.Stmt]) -> bool:
+    """Whether an expression of some statements is nested too deep: all are looked through together, level by level."""
+    level = [expr for stmt in stmts for expr in expressions_of(stmt)]
+    for _ in range(1 + MAX_EXPRESSION):
         if not level:
             return False
-        level = tuple(chain.from_iterable(map(operands, level)))
+        level = [part for expr in level for part in operands(expr)]
     return True

@@ -7,6 +7,7 @@ from itertools import islice
 
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.walk import blocks_of, every_statement, parts_of, statements
+from rosetta_jit.startup.dataclass import dataclass
 
 SHORT: dict[nodes.Direction, int] = {"decode": 48, "encode": 32, "size": 32}
 """Statements up to which a call costs a kernel more than 5 % of its time. Who encodes makes bytes besides."""
@@ -114,9 +115,29 @@ def _are_more(found: Iterable[object], most: int) -> bool:
     return next(islice(found, most, None), None) is not None
 
 
-def calls_to_host(kernels: Iterable[ir.Kernel]) -> list[nodes.HostCall]:
+@dataclass(frozen=True, slots=True)
+class HostUse:
+    """What kernels ask the functions of their host, and whether they ask it for the time, or for the number of a message."""
+
+    calls: tuple[nodes.HostCall, ...]
+    asks: bool
+
+    @property
+    def ours(self) -> list[str]:
+        """The names of the functions that they ask and that are not the user's, in order."""
+        return sorted({call.function for call in self.calls if "." in call.function})
+
+
+def use_of_host(kernels: Iterable[ir.Kernel]) -> HostUse:
+    """What kernels have to do with their host, by one look through all of them."""
+    every = [stmt for kernel in kernels for stmt in every_statement(kernel)]
+    calls = tuple([stmt for stmt in every if type(stmt) is nodes.HostCall])
+    return HostUse(calls, nodes.HostValue in set(map(type, parts_of(every))))
+
+
+def calls_to_host(kernels: Iterable[ir.Kernel]) -> tuple[nodes.HostCall, ...]:
     """What kernels ask functions of the host."""
-    return [stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, nodes.HostCall)]
+    return tuple(stmt for kernel in kernels for stmt in every_statement(kernel) if isinstance(stmt, nodes.HostCall))
 
 
 def leaves_something(kernel: ir.Kernel) -> bool:
@@ -138,12 +159,12 @@ def _writes(stmt: nodes.Stmt) -> bool:
 
 def our_functions(kernels: Iterable[ir.Kernel]) -> list[str]:
     """The names of the functions that kernels ask and that are not the user's, in order."""
-    return sorted({call.function for call in calls_to_host(kernels) if "." in call.function})
+    return use_of_host(kernels).ours
 
 
 def asks_host(kernels: Iterable[ir.Kernel]) -> bool:
     """Whether kernels ask the host for the time, or for the number of a message."""
-    return any(nodes.HostValue in set(map(type, parts_of(every_statement(kernel)))) for kernel in kernels)
+    return use_of_host(kernels).asks
 
 
 def registers_read(kernel: ir.Kernel) -> set[int]:

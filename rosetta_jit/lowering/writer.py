@@ -193,7 +193,7 @@ class Writer:
         return nodes.Failure(self.sites.setdefault(site, len(self.sites)), self.position if at is None else at, where.indices)
 
     def expect(self, condition: nodes.Expr, kind: str, where: Where, detail: str, *, at: nodes.Expr | None = None, line: str = "") -> None:
-        if condition not in self.certain:
+        if not self.certain or condition not in self.certain:
             self.emit(nodes.Expect(condition, self.failure(kind, where, detail, at=at, line=line)))
 
     def require(self, size: nodes.Expr | int, where: Where, detail: str = "the message ends here", *, at: nodes.Expr | None = None) -> None:

@@ -23,7 +23,7 @@ from rosetta_jit.kernel.ir import Kernel, Site
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError
-from rosetta_jit.kernel.traits import LARGE, LARGE_WITHOUT_RULES, asks_host, our_functions
+from rosetta_jit.kernel.traits import LARGE, LARGE_WITHOUT_RULES, HostUse, use_of_host
 from rosetta_jit.language.check.mapping import Checked, check
 from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.installed import GROUP as FUNCTIONS
@@ -221,7 +221,12 @@ class Build:
     @cached_property
     def functions(self) -> tuple[UserFunction, ...]:
         """The functions of the user's that the kernels call."""
-        return called_functions(self.request, self.types.functions, self.kernels)
+        return called_functions(self.request, self.types.functions, self.host.calls)
+
+    @cached_property
+    def host(self) -> HostUse:
+        """What the kernels have to do with their host."""
+        return use_of_host(self.kernels)
 
     @cached_property
     def called(self) -> tuple[GivenFunction, ...]:
@@ -252,9 +257,9 @@ class Build:
             "manners": self.manners,
             "entry": self.entry,
             "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
-            "asks_host": asks_host(self.kernels),
+            "asks_host": self.host.asks,
             "state": kept_of(self.kernels, {"": self.types.state}),
-            "host": our_functions(self.kernels),
+            "host": self.host.ours,
             "limit": self.limit,
             "wires": self.wires,
             "wire": None if self.types.share is None else self.types.share.number,
@@ -267,7 +272,7 @@ class Build:
         said = None if self.types.rules is None else self.checked.mapping.limit
         if said is not None:
             return said
-        return MAX_PIXEL_BYTES if our_functions(self.kernels) else GRACE_BYTES
+        return MAX_PIXEL_BYTES if self.host.ours else GRACE_BYTES
 
     @property
     def wires(self) -> list[str]:
@@ -290,7 +295,7 @@ class Build:
     def compiled_with(self) -> Options:
         """What the code depends on besides the kernels and the entry."""
         opening = None if self.rare is None else self.rare.opening
-        return {"with_numba": self.backend.types_kernels, "functions": self.functions, "opening": opening}
+        return {"with_numba": self.backend.types_kernels, "functions": self.functions, "opening": opening, "host": self.host}
 
     def stage(self, stage: str) -> str:
         """What the program became, as text."""

@@ -10,9 +10,7 @@ from rosetta_jit.catalogue import functions as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.host import UserFunction
-from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.nodes import Scalar
-from rosetta_jit.kernel.traits import calls_to_host
+from rosetta_jit.kernel.nodes import HostCall, Scalar
 from rosetta_jit.language.uses import Signature
 from rosetta_jit.lowering.rules.scalars import scalar_type
 from rosetta_jit.runtime.code.allowed import ALLOWED
@@ -29,9 +27,9 @@ def check_given(request: Request, declared: Mapping[str, Signature]) -> None:
         raise MappingError(problems)
 
 
-def called_functions(request: Request, declared: Mapping[str, Signature], kernels: Iterable[Kernel]) -> tuple[UserFunction, ...]:
+def called_functions(request: Request, declared: Mapping[str, Signature], calls: Iterable[HostCall]) -> tuple[UserFunction, ...]:
     """The functions that kernels call, as given. A name with a dot is one of ours."""
-    called = sorted({call.function for call in calls_to_host(kernels) if "." not in call.function})
+    called = sorted({call.function for call in calls if "." not in call.function})
     functions = {each.name: each.function for each in request.functions}
     missing = tuple(words.not_given(declared[name].span, name) for name in called if name not in functions)
     if missing:

@@ -48,6 +48,7 @@ PASSES = (
     "hoist",
     "join",
     "merge",
+    "neglect",
     "reuse",
     "simplify",
     "sink",

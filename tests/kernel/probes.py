@@ -183,10 +183,12 @@ def texts() -> Iterator[Probe]:
     """What each pass makes of small kernels."""
     from tests.kernel.pass_kernels import PASSED
     from tests.kernel.random_kernels import random_kernel
+    from tests.kernel.sized_kernels import SIZED
 
     made = {
         **kernels.ALL,
         **PASSED,
+        **SIZED,
         **{f"random {seed}": random_kernel(seed) for seed in range(30)},
         "unsafe": REFUSED["load without a check"][1],
     }

@@ -14,7 +14,9 @@ from hashlib import sha256
 import pytest
 from platformdirs import user_cache_path
 
+import rosetta_jit as rj
 from rosetta_jit.errors import CacheWarning
+from rosetta_jit.pipeline.build import Build
 from rosetta_jit.runtime.cache import kernels
 from rosetta_jit.runtime.cache.kernels import ENTRY, MANIFEST, Cache
 from rosetta_jit.runtime.cache.sealed import MAGIC, DamagedError, seal, unseal
@@ -177,6 +179,14 @@ def test_the_environment_names_or_disables_the_default(tmp_path, monkeypatch):
     cache.put(NAME, HEADER, IMAGE)
     assert cache.get(NAME) is None
     assert not (tmp_path / "mine").exists()
+
+
+def test_where_nothing_is_kept_no_program_needs_a_name(monkeypatch):
+    """It is a digest of the kernels' text, which takes a twentieth of a large type's compile."""
+    monkeypatch.setenv("ROSETTA_JIT_CACHE", "off")
+    monkeypatch.setattr(Build, "text", property(lambda _: pytest.fail("asked for")))
+    decode = rj.Decoder.of("std_msgs/Header", encoding="ros1")
+    assert decode(bytes(16)).to_dict()["frame_id"] == ""
 
 
 @pytest.mark.parametrize("named", [None, "", "/somewhere/else"])

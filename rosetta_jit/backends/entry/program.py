@@ -24,6 +24,7 @@ class Options(TypedDict):
     does the same. ``functions`` are those of the user's that the kernels call; they need numba. ``references`` are, of a bridge, the lanes
     that become the message when it is decoded. ``thorough`` takes the time for LLVM's slow passes, whatever the kernels look like.
     ``opening`` is what messages begin with that are left to another program, which is made on demand (`rosetta_jit.runtime.on_demand`).
+    ``host`` is what the kernels have to do with their host, where that is known.
     """
 
     with_numba: bool
@@ -31,6 +32,7 @@ class Options(TypedDict):
     references: NotRequired[Sequence[int]]
     thorough: NotRequired[bool]
     opening: NotRequired[bytes | None]
+    host: NotRequired[traits.HostUse]
 
 
 class Program:
@@ -67,12 +69,16 @@ class Program:
     @cached_property
     def calls_host(self) -> bool:
         """Whether kernels call functions of their host."""
-        return bool(traits.calls_to_host(self.kernels))
+        return bool(self._host.calls)
 
     @cached_property
     def asks_host(self) -> bool:
         """Whether kernels ask for the time, or for the number of a message."""
-        return traits.asks_host(self.kernels)
+        return self._host.asks
+
+    @cached_property
+    def _host(self) -> traits.HostUse:
+        return self.options.get("host") or traits.use_of_host(self.kernels)
 
     @cached_property
     def are_short(self) -> tuple[bool, ...]:

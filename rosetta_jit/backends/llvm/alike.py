@@ -15,7 +15,7 @@ from rosetta_jit.backends.llvm.outline import Outline, Slot, is_number
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Assign, Block, Call, Const, Copy, Expr, Fill, For, If, Local, Reserve, Scalar, Stmt, Switch, While
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
-from rosetta_jit.kernel.walk import blocks_of, parts_of, statements
+from rosetta_jit.kernel.walk import blocks_of, flat, parts_of
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.late import Late
 
@@ -93,7 +93,7 @@ NOTHING = Found({}, {})
 
 def found(kernel: Kernel, body: Block) -> Found:
     """The series of a body of a kernel, if it is a large one."""
-    every = [each for each, _ in statements(body)]
+    every = flat(body)
     if len(every) < MANY or kernel.kept:
         return NOTHING
     look = _Look(kernel)
@@ -105,7 +105,7 @@ def found(kernel: Kernel, body: Block) -> Found:
 
 def _may_repeat(block: Block) -> bool:
     """Whether a block has many statements that are worth a loop or may hold such; a look at all inside would cost more with each level."""
-    return sum(isinstance(each, MAY_BE_WORTH) for each in block) >= ROUNDS
+    return len(block) >= ROUNDS and sum(isinstance(each, MAY_BE_WORTH) for each in block) >= ROUNDS
 
 
 def _blocks(stmt: Stmt) -> tuple[Block, ...]:
@@ -175,8 +175,8 @@ class _Look:
 
 def _used_names(block: Block) -> list[str]:
     """The names that a block reads or sets, at any depth, each as often as it does."""
-    every = [stmt for stmt, _ in statements(block)]
-    return [part.name for part in parts_of(every) if isinstance(part, Local)] + [stmt.name for stmt in every if isinstance(stmt, Assign)]
+    every = flat(block)
+    return [part.name for part in parts_of(every) if type(part) is Local] + [stmt.name for stmt in every if type(stmt) is Assign]
 
 
 def _following(numbers: Sequence[int]) -> list[int]:
@@ -198,7 +198,7 @@ def _end(numbers: Sequence[int], at: int, period: int) -> int:
 
 def _best(block: Block, slots: Sequence[Sequence[Slot]], where: range, period: int, uses: Counter[str]) -> tuple[Series, int, int] | None:
     """A series among statements that repeat themselves, with its begin and end: of all ways to cut them, one that carries least."""
-    if not any(isinstance(each, WORTH) for each, _ in statements(block[where.start : where.start + period])):
+    if not any(isinstance(each, WORTH) for each in flat(block[where.start : where.start + period])):
         return None
     middle = (len(where) // 2 // period) * period
     begins = sorted(range(where.start, where.start + period), key=lambda begin: _carries(slots, middle + begin, period))
@@ -225,7 +225,7 @@ def _joined(slots: Iterable[Sequence[Slot]]) -> list[Slot]:
 
 def _is_vast(body: Block) -> bool:
     """Whether a case is worth a table where there is but one more like it: a message type that stands in others in several ways."""
-    return sum(1 for _ in statements(body)) >= MANY
+    return len(flat(body)) >= MANY
 
 
 def _case(group: Sequence[tuple[int, Block, list[Slot]]]) -> Cases | None:

@@ -174,7 +174,7 @@ def _calls(kernel: Kernel) -> Counter[str]:
 
 def _is_in_place(routine: Routine, calls: int) -> bool:
     """Whether a routine is printed where it is called. LLVM could do that, but would have results and failures to take apart again."""
-    parts = list(statements(routine.body))
+    parts = statements(routine.body)
     if calls >= OFTEN and isinstance(routine.body[0], Call):
         return False
     is_tiny = len(parts) <= TINY and not any(isinstance(each, For | While) for each in parts)
@@ -328,7 +328,7 @@ def _exit(entry: ir.IRBuilder, name: str, values: int) -> Exit:
 
 def _failed(entry: ir.IRBuilder, kernel: Kernel, state: ir.Value, *, is_first: bool) -> Exit | StoredExit:
     """Where the failures of a body lead to."""
-    if is_first and sum(1 for _ in statements(kernel.bodies[0])) >= MANY_STATEMENTS:
+    if is_first and len(statements(kernel.bodies[0])) >= MANY_STATEMENTS:
         words = tuple(state_word(entry, state, word) for word in _words(2 + _width(kernel)))
         return StoredExit(entry.function.append_basic_block("failed"), words)
     return _exit(entry, "failed", 2 + _width(kernel))
@@ -378,7 +378,7 @@ def _record(builder: ir.IRBuilder, state: ir.Value, failed: Exit | StoredExit, *
 
 def _index_count(body: Block) -> int:
     """The most indices that a failure of the body reports."""
-    return max((len(_indices(each)) for each in statements(body)), default=0)
+    return max([len(_indices(each)) for each in statements(body)], default=0)
 
 
 def _indices(statement: Stmt) -> Sequence[Expr]:

@@ -98,6 +98,9 @@ class Lines(ir.IRBuilder):
 
     # --- memory and control --------------------------------------------------------------------------------------------------
 
+    def alloca(self, typ: ir.Type, size: ir.Value | int | None = None, name: str = "") -> ir.Value:
+        return super().alloca(typ, size, name) if size is not None else self._named(POINTER, f"alloca {typ}", name)
+
     def load(self, ptr: ir.Value, name: str = "", align: int | None = None, typ: ir.Type | None = None) -> ir.Value:
         assert typ is not None
         aligned = "" if align is None else f", align {align}"

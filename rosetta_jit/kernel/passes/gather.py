@@ -95,7 +95,7 @@ def _in_pairs(block: Block) -> dict[int, Block]:
     """What stands in place of checks of two numbers, by the checks' places."""
     made: dict[int, Block] = {}
     for place, (first, second) in enumerate(pairwise(block)):
-        if place not in made and (whole := _compared(first, second)) is not None:
+        if type(first) is type(second) is Expect and place not in made and (whole := _compared(first, second)) is not None:
             made[place], made[place + 1] = (If(Unary("not", whole), (first, second)),), ()
     return made
 

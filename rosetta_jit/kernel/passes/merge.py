@@ -51,6 +51,8 @@ class _Open:
 
     def close_behind(self, stmt: Stmt) -> None:
         """End the groups that may not reach beyond a statement."""
+        if not self.by_key:
+            return
         if any(map(may_return, blocks_of(stmt))):
             self.clear()
         for name in changed_names((stmt,)):

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from operator import is_
 
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.nodes import Block
+from rosetta_jit.kernel.nodes import Block, Copy, For, Require, SetField, Stmt, Store
 from rosetta_jit.kernel.passes.bulk import bulk, bulk_of_bytes, group
 from rosetta_jit.kernel.passes.collect import collect
 from rosetta_jit.kernel.passes.drop import drop, without
@@ -15,6 +15,7 @@ from rosetta_jit.kernel.passes.gather import gather
 from rosetta_jit.kernel.passes.hoist import hoist
 from rosetta_jit.kernel.passes.join import join
 from rosetta_jit.kernel.passes.merge import merge
+from rosetta_jit.kernel.passes.neglect import neglect
 from rosetta_jit.kernel.passes.reuse import reuse
 from rosetta_jit.kernel.passes.simplify import simplify
 from rosetta_jit.kernel.passes.sink import sink
@@ -22,10 +23,12 @@ from rosetta_jit.kernel.passes.unroll import unroll
 from rosetta_jit.kernel.proof.verify import VerificationError, check_shape, settled, verify
 from rosetta_jit.kernel.proof.without_checks import is_less
 from rosetta_jit.kernel.traits import LARGE, is_large
+from rosetta_jit.kernel.walk import every_statement
 
 Pass = Callable[["Kernel"], "Kernel"]
 
 PASSES: tuple[Pass, ...] = (
+    neglect,
     forget,
     simplify,
     forget,
@@ -49,11 +52,20 @@ PASSES: tuple[Pass, ...] = (
     sink,
 )
 
-FIELD_BY_FIELD = tuple(each for each in PASSES if each not in (collect, gather, join))
+FIELD_BY_FIELD = tuple(each for each in PASSES if each not in (neglect, collect, gather, join))
 """Those for source that people read, and that may see what is done with each field."""
 
 ANY_MACHINE = tuple(bulk_of_bytes if each is bulk else each for each in FIELD_BY_FIELD if each is not group)
 """Those for code that may run where numbers lie with their high byte first."""
+
+
+NEEDS: Mapping[Pass, tuple[type[Stmt], ...]] = {
+    **dict.fromkeys((group, unroll, hoist, bulk, bulk_of_bytes, sink), (For,)),
+    collect: (SetField,),
+    merge: (Require,),
+    join: (Store, SetField, Copy),
+}
+"""Kinds of statements of which a kernel has one if a pass is to find anything. Passes make none of them where there was none before."""
 
 
 def run(kernel: Kernel, passes: tuple[Pass, ...] = PASSES, *, large: int = LARGE) -> Kernel:
@@ -85,7 +97,7 @@ def _all(kernel: Kernel, passes: tuple[Pass, ...], large: int) -> Kernel:
     check_shape(kernel)
     results: dict[Pass, Kernel] = {}
     proven: Kernel | None = None
-    for transform in _once(passes) if is_large(kernel, large) else passes:
+    for transform in _needed(_once(passes) if is_large(kernel, large) else passes, kernel):
         made = results.get(transform)
         if made is not None and _is_same(made, kernel):
             continue
@@ -102,6 +114,12 @@ def _all(kernel: Kernel, passes: tuple[Pass, ...], large: int) -> Kernel:
 def _once(passes: tuple[Pass, ...]) -> tuple[Pass, ...]:
     """Each pass once, `drop` at the end: its proof is the last one then."""
     return (*(each for each in dict.fromkeys(passes) if each is not drop), drop)
+
+
+def _needed(passes: tuple[Pass, ...], kernel: Kernel) -> list[Pass]:
+    """The passes that may find something in a kernel."""
+    kinds = set(map(type, every_statement(kernel)))
+    return [each for each in passes if not kinds.isdisjoint(NEEDS.get(each, kinds))]
 
 
 def _is_same(kernel: Kernel, other: Kernel) -> bool:

@@ -34,7 +34,7 @@ from rosetta_jit.kernel.nodes import (
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.terms import type_of
-from rosetta_jit.kernel.walk import blocks_of, bound_names, parts_of, statements
+from rosetta_jit.kernel.walk import NESTED, blocks_of, bound_names, every_statement, flat, parts_of
 from rosetta_jit.startup.dataclass import dataclass, field
 
 MESSAGE = -1
@@ -46,8 +46,11 @@ EVERYWHERE = -1
 WIDEST = 8
 """The largest width of a scalar: what lies farther away in a row is another one."""
 
-READS, PLAIN = (Load, Get), (Const, Local)
+READS, PLAIN = frozenset((Load, Get)), frozenset((Const, Local))
 """What reads memory, and what has nothing inside."""
+
+WRITERS = frozenset((Call, Store, SetField, Copy, Fill, HostCall))
+"""What may write to memory."""
 
 _Bytes = tuple[int, int]
 """What is written: the number of a memory, and at which offset of its rows."""
@@ -75,7 +78,7 @@ class _Names:
 
 def reuse(kernel: Kernel) -> Kernel:
     """The kernel with a name for what it would read more than once."""
-    taken = {name for body in kernel.bodies for stmt, _ in statements(body) for name in bound_names(stmt)}
+    taken = {name for stmt in every_statement(kernel) for name in bound_names(stmt)}
     written: dict[str, set[_Bytes]] = {}
     for routine in kernel.routines:
         written[routine.name] = _written_in(routine.body, written)
@@ -83,13 +86,14 @@ def reuse(kernel: Kernel) -> Kernel:
 
 
 def _body(body: Block, taken: set[str], written: Mapping[str, set[_Bytes]]) -> Block:
-    reads = [part for part in parts_of(stmt for stmt, _ in statements(body)) if isinstance(part, READS)]
+    reads = [part for part in parts_of(flat(body)) if type(part) in READS]
     if len(set(reads)) == len(reads):
         return body
     names = _Names(changed_names(body), taken, written)
     named = _block(body, {}, names)
-    uses = Counter([part.name for part in parts_of(stmt for stmt, _ in statements(named)) if isinstance(part, Local)])
-    return _inlined(named, {name for name in names.made if uses[name] == 1}, {})
+    uses = Counter([part.name for part in parts_of(flat(named)) if type(part) is Local])
+    single = {name for name in names.made if uses[name] == 1}
+    return _inlined(named, single, {}) if single else named
 
 
 # --- names for reads ---------------------------------------------------------------------------------------------------
@@ -98,10 +102,11 @@ def _body(body: Block, taken: set[str], written: Mapping[str, set[_Bytes]]) -> B
 def _block(block: Block, known: _Known, names: _Names) -> Block:
     result: list[Stmt] = []
     for stmt in block:
-        inside = {each for inner in blocks_of(stmt) for each in _written_in(inner, names.written)}
-        _forget(known, inside)
-        result.extend(_statement(stmt, known, names))
-        _forget(known, _written(stmt, names.written))
+        if type(stmt) in NESTED:
+            _forget(known, {each for inner in blocks_of(stmt) for each in _written_in(inner, names.written)})
+        result += _statement(stmt, known, names)
+        if type(stmt) in WRITERS:
+            _forget(known, _written(stmt, names.written))
     return tuple(result)
 
 
@@ -121,15 +126,17 @@ def _statement(stmt: Stmt, known: _Known, names: _Names) -> Block:
             changed: Stmt = stmt
         case _:
             changed = with_expressions(stmt, lambda expr: _read(expr, known, names, lets))
+    if type(changed) not in NESTED:
+        return (*lets, changed)
     return (*lets, with_blocks(changed, lambda inner: _block(inner, {memory: dict(seen) for memory, seen in known.items()}, names)))
 
 
 def _read(expr: Expr, known: _Known, names: _Names, lets: list[Stmt]) -> Expr:
     """An expression with names in place of what it reads."""
-    if isinstance(expr, PLAIN):
+    if type(expr) in PLAIN:
         return expr
     changed = with_operands(expr, lambda operand: _read(operand, known, names, lets))
-    if not isinstance(changed, READS) or not names.variables.isdisjoint(locals_in(changed)):
+    if not isinstance(changed, Load | Get) or not names.variables.isdisjoint(locals_in(changed)):
         return changed
     seen = known.setdefault(_source(changed), {})
     if changed not in seen:
@@ -147,7 +154,7 @@ def _source(read: Expr) -> int:
 
 
 def _written_in(block: Block, routines: Mapping[str, set[_Bytes]]) -> set[_Bytes]:
-    return {each for stmt, _ in statements(block) for each in _written(stmt, routines)}
+    return {each for stmt in flat(block) if type(stmt) in WRITERS for each in _written(stmt, routines)}
 
 
 def _written(stmt: Stmt, routines: Mapping[str, set[_Bytes]]) -> set[_Bytes]:

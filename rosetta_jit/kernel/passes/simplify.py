@@ -8,9 +8,9 @@ from itertools import repeat
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.passes.fold import FALSE, TRUE, folded
-from rosetta_jit.kernel.rewrite import ends, names_in, names_read, with_blocks, with_bodies, with_expressions, with_operands
+from rosetta_jit.kernel.rewrite import ends, names_read, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, index, split, type_of
-from rosetta_jit.kernel.walk import statements, subexpressions
+from rosetta_jit.kernel.walk import NESTED, flat, parts_of, subexpressions
 from rosetta_jit.startup.dataclass import dataclass, field
 
 
@@ -28,6 +28,25 @@ class _Names:
     values: dict[str, nodes.Expr]
     computed: dict[nodes.Expr, nodes.Expr]
     news: list[nodes.Expr] = field(default_factory=list["nodes.Expr"])
+    kinds: set[type[nodes.Expr]] = field(default_factory=set["type[nodes.Expr]"])
+
+    def learn(self, expr: nodes.Expr, value: nodes.Expr) -> None:
+        """An expression has a value from here on."""
+        self.computed[expr] = value
+        self.news.append(expr)
+        self.kinds.add(type(expr))
+
+    def known(self, expr: nodes.Expr) -> nodes.Expr:
+        """What an expression is known to be, or itself. Of most nothing is known, which their kind tells in less time than their hash."""
+        return self.computed.get(expr, expr) if type(expr) in self.kinds else expr
+
+    def simple(self, expr: nodes.Expr) -> nodes.Expr:
+        """The simplest form of an expression."""
+        if isinstance(expr, nodes.Const):
+            return expr
+        if isinstance(expr, nodes.Local):
+            return self.known(self.values.get(expr.name, expr))
+        return self.known(folded(with_operands(expr, self.simple)))
 
 
 def simplify(kernel: ir.Kernel) -> ir.Kernel:
@@ -36,7 +55,7 @@ def simplify(kernel: ir.Kernel) -> ir.Kernel:
 
 
 def _body(body: nodes.Block) -> nodes.Block:
-    assigned = Counter(stmt.name for stmt, _ in statements(body) if isinstance(stmt, nodes.Assign))
+    assigned = Counter([stmt.name for stmt in flat(body) if type(stmt) is nodes.Assign])
     names = _Names(assigned, {BEGIN.name, END.name, ROW.name}, {}, {})
     simple = _block(body, names)
     return _used(simple, names_read(simple), set())
@@ -48,20 +67,11 @@ def _body(body: nodes.Block) -> nodes.Block:
 def _block(block: nodes.Block, names: _Names) -> nodes.Block:
     result: list[nodes.Stmt] = []
     for stmt in block:
-        result.extend(_statement(with_expressions(stmt, lambda expr: _expression(expr, names)), names))
-        if ends(tuple(result[-1:])):
+        made = _statement(with_expressions(stmt, names.simple), names)
+        result += made
+        if made and ends(made):
             break
     return tuple(result)
-
-
-def _expression(expr: nodes.Expr, names: _Names) -> nodes.Expr:
-    if isinstance(expr, nodes.Local):
-        value = names.values.get(expr.name, expr)
-        return names.computed.get(value, value)
-    if isinstance(expr, nodes.Const):
-        return expr
-    simple = folded(with_operands(expr, lambda operand: _expression(operand, names)))
-    return names.computed.get(simple, simple)
 
 
 def _statement(stmt: nodes.Stmt, names: _Names) -> nodes.Block:
@@ -75,13 +85,12 @@ def _statement(stmt: nodes.Stmt, names: _Names) -> nodes.Block:
             if not names.assigned[name]:
                 names.fixed.add(name)
             return (stmt,)
-        case nodes.Expect(condition, _) if condition == TRUE:
+        case nodes.Expect(nodes.Const(_, value), _) if value:
             return ()
         case nodes.Expect(nodes.Compare("eq", nodes.Local(type_, name) as local, nodes.Const() as value), _) if (
             type_ not in FLOATS and name in names.fixed
         ):
-            names.computed[local] = value
-            names.news.append(local)
+            names.learn(local, value)
             return (stmt,)
         case nodes.If(nodes.Const(_, value), then, otherwise):
             return _block(then if value else otherwise, names)
@@ -112,12 +121,13 @@ def _let(name: str, value: nodes.Expr, names: _Names) -> nodes.Block:
         if value in names.computed:
             names.values[name] = names.computed[value]
             return ()
-        names.computed[value] = nodes.Local(type_of(value), name)
-        names.news.append(value)
+        names.learn(value, nodes.Local(type_of(value), name))
     return (nodes.Let(name, value),)
 
 
 def _nested(stmt: nodes.Stmt, names: _Names) -> nodes.Block:
+    if type(stmt) not in NESTED:
+        return (stmt,)
     if isinstance(stmt, nodes.For):
         names.fixed.add(stmt.variable)
     known = iter([(stmt.condition, TRUE), (stmt.condition, FALSE)]) if isinstance(stmt, nodes.If) else repeat(None)
@@ -133,8 +143,7 @@ def _branch(block: nodes.Block, names: _Names, known: tuple[nodes.Expr, nodes.Ex
     """A block that may run or not, where an expression has a known value: what is computed in it is forgotten behind it."""
     mark = len(names.news)
     if known is not None and known[0] not in names.computed and _is_settled(known[0], names):
-        names.computed[known[0]] = known[1]
-        names.news.append(known[0])
+        names.learn(*known)
     result = _block(block, names)
     while len(names.news) > mark:
         del names.computed[names.news.pop()]
@@ -170,6 +179,6 @@ def _used(block: nodes.Block, read: set[str], live: set[str]) -> nodes.Block:
                 continue
             case _:
                 kept = with_blocks(stmt, lambda inner: _used(inner, read, live))
-        live.update(names_in((kept,)))
+        live.update([part.name for part in parts_of((kept,)) if type(part) is nodes.Local])
         result.append(kept)
     return tuple(reversed(result))

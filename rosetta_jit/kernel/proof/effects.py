@@ -79,4 +79,4 @@ def rows(scope: Scope, stmt: Reserve | Advance) -> None:
     if len(after.terms) > MAX_USED_TERMS:
         after = scope.facts.abbreviated(after, scope.facts.lower(used), MAX_ROWS)
         scope.facts.derive(All((minus(capacity, after), minus(after, used))))
-    scope.used[stmt.lane] = after
+    scope.use(stmt.lane, after)

@@ -22,7 +22,7 @@ class Linear(NamedTuple):
     terms: Terms = ()
 
 
-_linear: Callable[[tuple[int, Terms]], Linear] = partial(tuple[int | Terms].__new__, Linear)
+sum_of: Callable[[tuple[int, Terms]], Linear] = partial(tuple[int | Terms].__new__, Linear)
 """A `Linear` of a pair, in half the time of its class: no others are made so often."""
 
 
@@ -31,21 +31,21 @@ def plus(left: Linear, right: Linear) -> Linear:
     constant, terms = left
     other, other_terms = right
     if not other_terms:
-        return _linear((constant + other, terms))
+        return sum_of((constant + other, terms))
     if not terms:
-        return _linear((constant + other, other_terms))
+        return sum_of((constant + other, other_terms))
     total = dict(terms)
     for atom, coefficient in other_terms:
         total[atom] = total.get(atom, 0) + coefficient
-    return _linear((constant + other, _terms(total)))
+    return sum_of((constant + other, tuple(sorted([term for term in total.items() if term[1]]))))
 
 
 def times(linear: Linear, factor: int) -> Linear:
     """A multiple."""
     if factor == 0:
-        return Linear(0)
+        return sum_of((0, ()))
     constant, terms = linear
-    return _linear((constant * factor, tuple([(atom, coefficient * factor) for atom, coefficient in terms])))
+    return sum_of((constant * factor, tuple([(atom, coefficient * factor) for atom, coefficient in terms])))
 
 
 def minus(left: Linear, right: Linear) -> Linear:
@@ -53,24 +53,27 @@ def minus(left: Linear, right: Linear) -> Linear:
     constant, terms = left
     other, other_terms = right
     if terms == other_terms:
-        return _linear((constant - other, ()))
+        return sum_of((constant - other, ()))
     if not other_terms:
-        return _linear((constant - other, terms))
+        return sum_of((constant - other, terms))
     total = dict(terms)
     for atom, coefficient in other_terms:
         total[atom] = total.get(atom, 0) - coefficient
-    return _linear((constant - other, _terms(total)))
+    return sum_of((constant - other, tuple(sorted([term for term in total.items() if term[1]]))))
 
 
 def shifted(linear: Linear, by: int) -> Linear:
     """A constant more."""
     constant, terms = linear
-    return _linear((constant + by, terms))
+    return sum_of((constant + by, terms))
 
 
 def coefficient_of(linear: Linear, atom: int) -> int:
     """What an atom is multiplied by."""
-    return next((c for a, c in linear.terms if a == atom), 0)
+    for each, coefficient in linear.terms:
+        if each == atom:
+            return coefficient
+    return 0
 
 
 def replaced(linear: Linear, atom: int, value: Linear) -> Linear:
@@ -118,7 +121,7 @@ def contradict(facts: list[Linear], budget: int) -> bool:
                 joined = origin | other_origin
                 if not are_few and joined.bit_count() > eliminated + 1:
                     continue
-                over, under = Linear(constant, terms), Linear(other_constant, other_terms)
+                over, under = sum_of((constant, terms)), sum_of((other_constant, other_terms))
                 row = tightened(plus(times(over, other_factor), times(under, factor)))
                 if not row.terms:
                     if row.constant < 0:
@@ -173,8 +176,4 @@ def _strongest(facts: list[Linear]) -> list[Linear]:
     for constant, terms in facts:
         if terms not in best or best[terms] > constant:
             best[terms] = constant
-    return [Linear(constant, terms) for terms, constant in best.items()]
-
-
-def _terms(total: dict[int, int]) -> Terms:
-    return tuple(sorted([term for term in total.items() if term[1]]))
+    return [sum_of((constant, terms)) for terms, constant in best.items()]

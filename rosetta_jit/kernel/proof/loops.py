@@ -22,7 +22,7 @@ from rosetta_jit.kernel.proof.scope import Scope, Typed
 from rosetta_jit.kernel.proof.symbolic import linear
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.terms import type_of
-from rosetta_jit.kernel.walk import bound_names, expressions_of, statements
+from rosetta_jit.kernel.walk import blocks_of, bound_names, expressions_of, flat, statements
 from rosetta_jit.startup.dataclass import dataclass
 
 ZERO = Linear(0)
@@ -59,8 +59,8 @@ class Loop:
     count: Linear = ZERO
 
 
-Made = tuple[tuple[str, ...], set[str]]
-"""The names that a statement gives values to, and those that these are made of; no names where it gives none."""
+Made = tuple[tuple[str, ...], set[str], bool]
+"""The names that a statement gives values to, those that these are made of, and whether the statement is an Assign."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,7 @@ class Entry:
     """Where a loop begins: a mark to go back to, used lengths, and the variables and lanes that the loop changes."""
 
     mark: int
-    used: list[Linear]
+    used: tuple[Linear, ...]
     variables: dict[str, Typed]
     lanes: set[int]
 
@@ -77,13 +77,13 @@ def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
     """Walk any round of a loop, and go to the place after it, with the same guesses known."""
     names = changed_names(loop.body)
     variables = {name: scope.locals[name] for name in sorted(names & scope.locals.keys())}
-    at_entry = Entry(scope.mark(), list(scope.used), variables, advanced_lanes(loop.body))
+    at_entry = Entry(scope.mark(), scope.used, variables, advanced_lanes(loop.body))
     kept = [guess for guess in (*guesses(scope, names), *counted(loop, scope)) if guess not in dropped]
     while True:
         written = 0 if scope.record is None else scope.record.mark()
         lost = _round(scope, loop, at_entry, kept)
         scope.rollback(at_entry.mark)
-        scope.used = list(at_entry.used)
+        scope.used = at_entry.used
         if not lost:
             break
         if scope.record is not None:
@@ -140,14 +140,14 @@ def _conjuncts(formula: Formula) -> list[Linear]:
 
 def changed_names(body: Block) -> set[str]:
     """The variables that a loop assigns."""
-    return {stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign)}
+    return {stmt.name for stmt in flat(body) if type(stmt) is Assign}
 
 
-def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Container[str], made: dict[int, Made]) -> set[Guess]:
+def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Container[str], made: dict[int, list[Made]]) -> set[Guess]:
     """That a variable does not fall below its first value, where a loop sets it to what is not made of that, or says what it keeps.
 
-    What grows in each round is tried all the same: a loop around this one may grow by it. ``made`` keeps what statements make, by their
-    ids: those of a loop are asked for again by each loop around it.
+    What grows in each round is tried all the same: a loop around this one may grow by it. ``made`` keeps what statements make,
+    and those inside them, by their ids: those of a loop are asked for again by each loop around it.
     """
     variables = {name for name in changed_names(body) if name in known}
     named = {name for expr in said for name in locals_in(expr)} - (set[str]() if measure is None else locals_in(measure))
@@ -157,27 +157,37 @@ def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Con
     return {Guess(name, 2, 1) for name in found}
 
 
-def _not_made_of_themselves(body: Block, names: set[str], made: dict[int, Made]) -> set[str]:
+def _not_made_of_themselves(body: Block, names: set[str], made: dict[int, list[Made]]) -> set[str]:
     """Of some variables those that a loop sets to what is not computed from them."""
     users: dict[str, set[str]] = {}
-    assigned: dict[str, list[set[str]]] = {}
-    for stmt, _ in statements(body):
-        found = made.get(id(stmt))
-        if found is None:
-            found = made[id(stmt)] = _made(stmt)
-        targets, read = found
-        if not targets:
-            continue
-        if type(stmt) is Assign:
-            assigned.setdefault(stmt.name, []).append(read)
+    assigned: dict[str, list[set[str]]] = {name: [] for name in names}
+    for targets, read, is_assigned in _all_made(body, made):
+        if is_assigned and targets[0] in names:
+            assigned[targets[0]].append(read)
         for name in read:
-            users.setdefault(name, set()).update(targets)
+            known = users.get(name)
+            if known is None:
+                users[name] = set(targets)
+            else:
+                known.update(targets)
     return {name for name in names if not all(map(_made_of(name, users).intersection, assigned[name]))}
 
 
-def _made(stmt: Stmt) -> Made:
-    targets = (stmt.name,) if isinstance(stmt, Assign) else bound_names(stmt)
-    return targets, set[str]().union(*map(locals_in, expressions_of(stmt))) if targets else set[str]()
+def _all_made(body: Block, made: dict[int, list[Made]]) -> list[Made]:
+    """What the statements of a block give values to, and those inside."""
+    found: list[Made] = []
+    for stmt in body:
+        known = made.get(id(stmt))
+        if known is None:
+            known = made[id(stmt)] = [*_made(stmt), *(each for block in blocks_of(stmt) for each in _all_made(block, made))]
+        found += known
+    return found
+
+
+def _made(stmt: Stmt) -> list[Made]:
+    is_assigned = isinstance(stmt, Assign)
+    targets = (stmt.name,) if is_assigned else bound_names(stmt)
+    return [(targets, set[str]().union(*map(locals_in, expressions_of(stmt))), is_assigned)] if targets else []
 
 
 def _made_of(name: str, users: Mapping[str, set[str]]) -> set[str]:
@@ -268,8 +278,9 @@ def _written(value: Expr, named: Mapping[str, Expr]) -> Expr:
 
 def instance(scope: Scope, guess: Guess, at_entry: Typed, value: Linear, rounds: Linear) -> Linear:
     """A guess about a value, as a fact; ``at_entry`` is the variable before the first round, and so many ``rounds`` were before."""
-    marks = [*anchors(scope, at_entry), plus(linear(at_entry[1]), times(rounds, guess.step))]
-    return times(minus(value, marks[guess.anchor]), guess.sign)
+    counts = guess.anchor == ROUNDS
+    mark = plus(linear(at_entry[1]), times(rounds, guess.step)) if counts else anchors(scope, at_entry)[guess.anchor]
+    return times(minus(value, mark), guess.sign)
 
 
 def assume_counted(scope: Scope, at_entry: Entry, kept: list[Guess], rounds: Linear) -> None:
@@ -294,4 +305,4 @@ def forget(scope: Scope, at_entry: Entry, kept: list[Guess]) -> None:
         if guess.anchor != ROUNDS:
             scope.facts.assume(instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess), ZERO))
     for lane in sorted(at_entry.lanes):
-        scope.used[lane] = grown(scope, lane, at_entry.used[lane])
+        scope.use(lane, grown(scope, lane, at_entry.used[lane]))

@@ -13,12 +13,14 @@ from rosetta_jit.kernel.limits import MAX_POSITION, MAX_ROWS
 from rosetta_jit.kernel.nodes import Scalar
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import Formula
-from rosetta_jit.kernel.proof.linear import Linear, coefficient_of, minus, plus, shifted, times
+from rosetta_jit.kernel.proof.linear import Linear, coefficient_of, minus, plus, shifted, sum_of, times
 from rosetta_jit.kernel.proof.scope import Arrival, Scope, Typed
 from rosetta_jit.kernel.proof.symbolic import linear
 
 BEGIN_ATOM = 0
 """The first atom of every scope."""
+
+ZERO = Linear(0)
 
 FAR = 1 << 32
 """A distance that says nothing worth keeping."""
@@ -26,7 +28,7 @@ FAR = 1 << 32
 
 def branch(scope: Scope, ways: list[tuple[Formula, Callable[[], bool]]]) -> bool:
     """Walk each way under its condition, and go on with what all that arrive have in common; True where all have returned."""
-    here, used = scope.mark(), list(scope.used)
+    here, used = scope.mark(), scope.used
     before: dict[str, Typed] = {}
     arrivals: list[Arrival] = []
     returned = False
@@ -45,7 +47,7 @@ def branch(scope: Scope, ways: list[tuple[Formula, Callable[[], bool]]]) -> bool
             before.update(changed)
             arrivals.append(_arrive(scope, changed, mark))
         scope.rollback(here)
-        scope.used = list(used)
+        scope.used = used
     if arrivals and scope.record is not None:
         from rosetta_jit.kernel.proof.meetings import meet
 
@@ -65,12 +67,12 @@ def _arrive(scope: Scope, before: dict[str, Typed], mark: int) -> Arrival:
         if _is_number(now):
             distances[name] = _distances(scope, linear(now[1]), anchors(scope, before[name]))
     premises = None if scope.record is None else scope.record.premises()
-    return Arrival(changed, list(scope.used), scope.facts.rollback(mark), distances, premises)
+    return Arrival(changed, scope.used, scope.facts.rollback(mark), distances, premises)
 
 
 def anchors(scope: Scope, old: Typed) -> list[Linear]:
     """What the values of a variable are compared with."""
-    return [linear(scope.locals["begin"][1]), linear(scope.locals["end"][1]), linear(old[1]), Linear(0)]
+    return [linear(scope.locals["begin"][1]), linear(scope.locals["end"][1]), linear(old[1]), ZERO]
 
 
 def _is_number(value: Typed) -> bool:
@@ -83,13 +85,13 @@ def _distances(scope: Scope, value: Linear, marks: list[Linear]) -> list[tuple[i
 
     Worth a proof is only that the value is in the message, and no less than before, or greater where that is quickly found.
     """
-    begin, end, old, zero = marks
     lower = scope.facts.lower
+    behind_begin, behind_end, grown_by, itself = [minus(value, mark) for mark in marks]
     return [
-        (_least(scope, minus(value, begin)), lower(minus(begin, value))),
-        (lower(minus(value, end)), _least(scope, minus(end, value))),
-        (_growth(scope, minus(value, old)), lower(minus(old, value))),
-        (lower(minus(value, zero)), lower(minus(zero, value))),
+        (_least(scope, behind_begin), lower(times(behind_begin, -1))),
+        (lower(behind_end), _least(scope, times(behind_end, -1))),
+        (_growth(scope, grown_by), lower(times(grown_by, -1))),
+        (lower(itself), lower(times(itself, -1))),
     ]
 
 
@@ -105,17 +107,18 @@ def _growth(scope: Scope, distance: Linear) -> int:
 
 def _meet(scope: Scope, before: dict[str, Typed], arrivals: list[Arrival]) -> None:
     """Go on with what is true on all paths that arrive (at least one); ``before`` is what any of them changed."""
-    first = arrivals[0]
+    first, *others = arrivals
     for terms, bound in first.gained.items():
-        shared = [arrival.gained.get(terms) for arrival in arrivals]
-        scope.facts.assume(Linear(-min([bound, *(b for b in shared if b is not None)]), terms) if None not in shared else None)
+        shared = [arrival.gained.get(terms) for arrival in others]
+        if None not in shared:
+            scope.facts.assume(sum_of((-min([bound, *(each for each in shared if each is not None)]), terms)))
     for name, old in before.items():
         scope.bind(name, _met(scope, old, arrivals, name))
-    if all(arrival.used == first.used for arrival in arrivals):
-        scope.used = list(first.used)
+    if all(arrival.used is first.used for arrival in arrivals):
+        scope.used = first.used
         return
     lanes = zip(scope.used, *[arrival.used for arrival in arrivals], strict=True)
-    scope.used = [grown(scope, lane, used) if met.count(met[0]) < len(met) else met[0] for lane, (used, *met) in enumerate(lanes)]
+    scope.used = tuple([grown(scope, lane, used) if met.count(met[0]) < len(met) else met[0] for lane, (used, *met) in enumerate(lanes)])
 
 
 def _met(scope: Scope, old: Typed, arrivals: list[Arrival], name: str) -> Typed:
@@ -130,8 +133,9 @@ def _met(scope: Scope, old: Typed, arrivals: list[Arrival], name: str) -> Typed:
     own = _distances(scope, linear(old[1]), marks) if unchanged else []
     for k, mark in enumerate(marks):
         ways = [arrival.distances.get(name, own)[k] for arrival in arrivals]
-        learn_distance(scope, minus(met, mark), min(way[0] for way in ways))
-        learn_distance(scope, minus(mark, met), min(way[1] for way in ways))
+        distance = minus(met, mark)
+        learn_distance(scope, distance, min([way[0] for way in ways]))
+        learn_distance(scope, times(distance, -1), min([way[1] for way in ways]))
     return old[0], met
 
 

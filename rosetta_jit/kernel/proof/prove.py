@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple, assert_never
 
 from rosetta_jit.kernel.limits import MAX_CASES, MAX_PROPAGATED, MAX_TRIED
 from rosetta_jit.kernel.proof.formula import All, Any, Formula, equal, is_vague, negated, said
-from rosetta_jit.kernel.proof.linear import Linear, Terms, coefficient_of, contradict, minus, replaced, shifted, tightened, times
+from rosetta_jit.kernel.proof.linear import Linear, Terms, coefficient_of, contradict, minus, replaced, shifted, sum_of, tightened, times
 from rosetta_jit.startup.dataclass import dataclass, field
 
 
@@ -33,6 +33,10 @@ Procedure = Literal["constants", "unreachable", "bounds", "sums", "elimination",
 """Who proves: a look at constants, the contradiction of what a path takes as known, the table of bounds, a sum of few facts,
 Fourier-Motzkin elimination, or that in each case of a choice. What the proof infers comes from the rules of operations (`integers`) and
 from where paths meet (`paths`)."""
+
+
+_UNITS = (1, -1)
+"""Coefficients that have no common factor with others."""
 
 
 def _shares_atom(fact: Any, goal: Linear) -> bool:
@@ -63,7 +67,7 @@ class Facts:
         self.lows.append(low)
         self.highs.append(high)
         self._born.append((low, high))
-        return Linear(0, ((len(self.lows) - 1, 1),))
+        return sum_of((0, ((len(self.lows) - 1, 1),)))
 
     def named(self, key: Hashable, low: int, high: int) -> Linear:
         """The atom of a term that linear reasoning cannot look into; the same term is the same atom. The bounds hold on every path."""
@@ -146,7 +150,8 @@ class Facts:
         if len(terms) == 1:
             self._learn_bound(constant, *terms[0])
         elif terms:
-            constant, terms = tightened(fact)
+            if terms[0][1] not in _UNITS:
+                constant, terms = tightened(fact)
             known = self._bounds.get(terms)
             if known is None or known < -constant:
                 self._trail.append(("sum", terms, known))
@@ -230,13 +235,28 @@ class Facts:
         known = self._bounds.get(linear.terms)
         return total if known is None else max(total, known + linear.constant)
 
+    def is_shown(self, linear: Linear) -> bool:
+        """Whether a lower bound of 0 stands in the table."""
+        total, terms = linear
+        for atom, coefficient in terms:
+            total += coefficient * (self.lows[atom] if coefficient > 0 else self.highs[atom])
+        return total >= 0 or ((known := self._bounds.get(terms)) is not None and known + linear.constant >= 0)
+
     def upper(self, linear: Linear) -> int:
         """An upper bound, by a look at the table."""
         return -self.lower(times(linear, -1))
 
+    def lies_within(self, linear: Linear, low: int, high: int) -> bool:
+        """Whether the bounds of its atoms show that a sum lies between two numbers."""
+        least = greatest = linear.constant
+        for atom, coefficient in linear.terms:
+            below, above = (self.lows[atom], self.highs[atom]) if coefficient > 0 else (self.highs[atom], self.lows[atom])
+            least, greatest = least + coefficient * below, greatest + coefficient * above
+        return low <= least and greatest <= high
+
     def sums_about(self, atom: int, most: int) -> list[Linear]:
         """Some facts (each >= 0) that name an atom among others."""
-        return [Linear(-self._bounds[terms], terms) for terms in self._about.get(atom, ())[:most]]
+        return [sum_of((-self._bounds[terms], terms)) for terms in self._about.get(atom, ())[:most]]
 
     def shows(self, formula: Formula) -> bool:
         """Whether a formula stands in the table: to assume it would add nothing."""
@@ -271,7 +291,9 @@ class Facts:
     def _proves(self, formula: Formula, depth: int, effort: Effort) -> bool:
         match formula:
             case Linear():
-                return self.lower(formula) >= 0 or self._follows(formula, effort) or (depth > 0 and self._by_cases(formula, depth, effort))
+                if self.is_shown(formula):
+                    return True
+                return (effort.summands > 0 and self._follows(formula, effort)) or (depth > 0 and self._by_cases(formula, depth, effort))
             case All(parts):
                 return all(self._proves(part, depth, effort) for part in parts)
             case Any(parts):
@@ -320,7 +342,7 @@ class Facts:
 
     def _follows(self, goal: Linear, effort: Effort) -> bool:
         """Whether a goal is a sum of facts, or the facts around it contradict its opposite."""
-        if effort.summands and self._is_sum(goal, effort.summands):
+        if self._is_sum(goal, effort.summands):
             return True
         nearby = self._nearby(goal, effort.facts) if effort.facts else None
         return bool(nearby) and contradict([*nearby, shifted(times(goal, -1), -1)], effort.combinations)
@@ -339,7 +361,7 @@ class Facts:
             return False
         *_, atom, wanted = min(about)
         for terms in self._about[atom][: -1 - MAX_TRIED : -1]:
-            fact = Linear(-self._bounds[terms], terms)
+            fact = sum_of((-self._bounds[terms], terms))
             factor, left = divmod(wanted, coefficient_of(fact, atom))
             if left or factor < 0:
                 continue
@@ -367,6 +389,6 @@ class Facts:
                     break
         if not sums:
             return []
-        known = [Linear(-self._bounds[terms], terms) for terms in sums]
-        lows = [Linear(-self.lows[atom], ((atom, 1),)) for atom in atoms]
-        return known + lows + [Linear(self.highs[atom], ((atom, -1),)) for atom in atoms]
+        known = [sum_of((-self._bounds[terms], terms)) for terms in sums]
+        lows = [sum_of((-self.lows[atom], ((atom, 1),))) for atom in atoms]
+        return known + lows + [sum_of((self.highs[atom], ((atom, -1),))) for atom in atoms]

@@ -26,13 +26,13 @@ class Scope:
     """What a place of a kernel can see: its locals, the lanes, and the facts about them.
 
     Locals are gained along a path and given up at its end, as facts are, so that a path costs what it changes and not what there is.
-    ``record`` writes down what the kernel owes, where somebody wants to read it.
+    So are used lengths, of which each change makes new ones. ``record`` writes down what the kernel owes, where somebody wants to read it.
     """
 
     strides: tuple[int, ...]
     facts: Facts = field(default_factory=Facts)
     locals: dict[str, Typed] = field(default_factory=dict[str, "Typed"])
-    used: list[Linear] = field(default_factory=list[Linear])
+    used: tuple[Linear, ...] = ()
     capacity: list[Linear] = field(default_factory=list[Linear])
     record: Record | None = None
     _trail: list[tuple[str, Typed | None]] = field(default_factory=list[tuple[str, "Typed | None"]])
@@ -41,6 +41,10 @@ class Scope:
         """Give a local a value."""
         self._trail.append((name, self.locals.get(name)))
         self.locals[name] = typed
+
+    def use(self, lane: int, used: Linear) -> None:
+        """Give a lane another used length."""
+        self.used = (*self.used[:lane], used, *self.used[lane + 1 :])
 
     def mark(self) -> int:
         """A point to roll back to."""
@@ -68,7 +72,7 @@ class Arrival:
     """What one path brings to a meeting point; ``premises`` are what it took as known, where that is written down."""
 
     changed: dict[str, Typed]
-    used: list[Linear]
+    used: tuple[Linear, ...]
     gained: dict[Terms, int]
     distances: dict[str, list[tuple[int, int]]]
     premises: Premise | None = None
@@ -82,9 +86,11 @@ def entry(strides: tuple[int, ...], record: Record | None = None) -> Scope:
     end = plus(begin, length)
     facts.assume(shifted(times(end, -1), MAX_POSITION))
     scope.locals = {"begin": ("i64", begin), "end": ("i64", end), "row": ("i64", facts.fresh(0, limits("i64")[1]))}
+    every: list[Linear] = []
     for _ in strides:
         capacity, used = facts.fresh(0, MAX_ROWS), facts.fresh(0, MAX_ROWS)
         facts.assume(minus(capacity, used))
         scope.capacity.append(capacity)
-        scope.used.append(used)
+        every.append(used)
+    scope.used = tuple(every)
     return scope

@@ -14,7 +14,7 @@ from rosetta_jit.kernel.decimals import LARGEST_SCALE, MOST_DIGITS
 from rosetta_jit.kernel.limits import MAX_PLACES
 from rosetta_jit.kernel.proof import claims, integers
 from rosetta_jit.kernel.proof.formula import All, Any, Formula, bounded, equal, negated
-from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
+from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, sum_of, times
 from rosetta_jit.kernel.proof.obligations import UnprovenError, certify, demand, oblige
 from rosetta_jit.kernel.proof.prove import Facts
 from rosetta_jit.kernel.proof.scope import Scope, Typed, Value
@@ -97,6 +97,8 @@ def check_lane(scope: Scope, lane: int) -> None:
 def in_range(scope: Scope, value: Linear, type_: nodes.Scalar) -> Linear:
     """``value``, proven to be in its type's range: the operation that made it did not wrap."""
     (low, high), wraps = limits(type_), claims.NO_WRAP[type_]
+    if scope.record is None and scope.facts.lies_within(value, low, high):
+        return value
     oblige(scope, shifted(times(value, -1), high), wraps)
     oblige(scope, shifted(value, -low), wraps)
     return value
@@ -194,7 +196,7 @@ def _constant(type_: nodes.Scalar, value: float) -> Value:
     low, high = limits(type_)
     if not isinstance(value, int) or not low <= value <= high:
         raise UnprovenError(f"{value} is no {type_}")
-    return Linear(int(value))
+    return sum_of((int(value), ()))
 
 
 def _binary(scope: Scope, op: nodes.Arithmetic, left: Typed, right: Typed) -> Typed:

@@ -46,7 +46,7 @@ class _Walk:
     dropped: dict[int, set[Guess]] = field(default_factory=dict[int, "set[Guess]"])
     seen: dict[int, nodes.Stmt] = field(default_factory=dict[int, "nodes.Stmt"])
     needed: set[int] = field(default_factory=set[int])
-    made: dict[int, Made] = field(default_factory=dict[int, "Made"])
+    made: dict[int, list[Made]] = field(default_factory=dict[int, "list[Made]"])
 
 
 def verify(kernel: ir.Kernel, record: Record | None = None) -> None:

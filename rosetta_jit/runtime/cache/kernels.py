@@ -98,6 +98,11 @@ class Cache:
         """Whether later processes find what this one has put here: there is a folder, and writing to it has not failed."""
         return self._folder is not None and "folder" not in self._warned
 
+    @property
+    def keeps_nothing(self) -> bool:
+        """Whether nobody needs the name of a program: none is found here."""
+        return not self.max_bytes
+
     def get(self, name: str) -> Entry | None:
         """The program of that name, or None."""
         return self._read(name + ENTRY)
