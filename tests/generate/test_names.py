@@ -22,8 +22,8 @@ from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.manners import PROTOC
 from rosetta_jit.generate.lisp.words import runtime_names, symbols
 from rosetta_jit.model.types import Ref
-from tests.generate import cpp, driver, lisp, native, test_python
-from tests.generate.test_random_in_python import module
+from tests.generate import cpp, driver, lisp, native, python
+from tests.generate.python import module
 from tests.runtime.test_shipped_growth import likely
 
 if TYPE_CHECKING:
@@ -200,7 +200,7 @@ def through_cpp(made: Case, folder: Path) -> list[str]:
 
 def through_python(made: Case, folder: Path) -> list[str]:
     unit = module(made.request, BOTH, NO_WISHES)
-    return [test_python.answer(unit, each) for each in made.messages]
+    return [python.answer(unit, each) for each in made.messages]
 
 
 def through_lisp(cases: list[Case], folder: Path) -> Iterator[list[str]]:
