@@ -102,3 +102,28 @@ def test_texts_that_come_one_by_one_are_read_where_they_are_checked():
     answers_as_the_library(unit, programs, harmed([one, mapped, one + one, b"\x1a\x03\x0a\x01x" + one], 60, "texts") + broken)
     assert unit.decode(one + one).v == texts + texts
     assert unit.decode(one + one).one.texts == texts + texts
+
+
+def test_entries_without_a_value_have_messages_of_their_type():
+    """Types that contain themselves, too, whose values have no row then."""
+    schema = "message M { int32 n = 1; map<string, M> own = 2; map<int32, P> others = 3; } message P { P p = 1; }"
+    given = protobuf(schema)
+    unit, programs = module(type_request("decode", "t.M", given)), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    answers_as_the_library(unit, programs, [b"\x12\x03\x0a\x01a", b"\x12\x00", b"\x1a\x02\x08\x05", b"\x1a\x00"])
+    assert unit.decode(b"\x12\x03\x0a\x01a\x1a\x00") == unit.M(own={"a": unit.M()}, others={0: unit.P()})
+
+
+def test_the_last_entry_of_a_key_stands():
+    """In a message field that comes twice, too, whose maps are merged: a dictionary, unlike the library's rows, has each key once."""
+    schema = "message M { In i = 1; map<string, In> top = 2; } message In { map<string, int32> m = 1; repeated M inner = 2; }"
+    given = protobuf(schema)
+    unit, decode, encode = module(type_request("decode", "t.M", given)), rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given)
+    a1, a2, b3 = (b"\x0a\x05\x0a\x01" + key + b"\x10" + bytes([value]) for key, value in ((b"a", 1), (b"a", 2), (b"b", 3)))
+    for parts, wanted in (((a1 + a2,), {"a": 2}), ((a1, a2), {"a": 2}), ((a2 + b3, a1), {"a": 1, "b": 3})):
+        message = b"".join(b"\x0a" + bytes([len(part)]) + part for part in parts)
+        found = unit.decode(message)
+        assert found.i.m == wanted == dict(decode(message).i.m)
+        assert unit.encode(found) == encode(encode.holder_type.from_dict({"i": {"m": wanted}}))
+        entry = b"\x0a\x01x\x12" + bytes([len(a1)])
+        entries = b"".join(b"\x12" + bytes([len(entry + each)]) + entry + each for each in (a1, b3))
+        assert unit.decode(entries).top == {"x": unit.In({"b": 3})}  # the values of entries are not merged
