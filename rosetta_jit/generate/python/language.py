@@ -24,7 +24,7 @@ from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Advance, Const, Direction, Return
 from rosetta_jit.kernel.traits import asks_host
 from rosetta_jit.kernel.walk import statements
-from rosetta_jit.model.types import Ref
+from rosetta_jit.model.types import Bytes, Ref
 from rosetta_jit.startup.dataclass import replace
 
 REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
@@ -155,7 +155,8 @@ class _Module:
             return Make(self.unit, scope, self.names, taken).value(arrays[lane], self.unit.layout.lanes[lane].element, lane, "")
 
         origins, lanes = self.unit.origins.get("borrow", ()), self._lanes(kernel)
-        objects = Objects(made, row, inner, self.unit.layout, frozenset(arrays), self.unit.numpy, frozenset(self.names.values()))
+        blobs = frozenset(lane for lane, type_ in arrays.items() if isinstance(self.unit.schema.resolve(type_), Bytes))
+        objects = Objects(made, row, inner, self.unit.layout, frozenset(arrays), blobs, self.unit.numpy, frozenset(self.names.values()))
         text, attempts = print_kernel(kernel, lanes, "borrow", self.loads, origins, objects, self.paths, flat=is_flat(kernel, lanes))
         return "\n\n".join([self._sites("borrow"), f"\n{text.rstrip()}", f"\n{self._decode(attempts)}"])
 

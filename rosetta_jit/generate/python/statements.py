@@ -11,7 +11,7 @@ from rosetta_jit.generate.origins import Origin, origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.expressions import CODES, Scope, expression, location, view_name
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
-from rosetta_jit.generate.python.reading import numbers_read, takes_text
+from rosetta_jit.generate.python.reading import gathered, numbers_read, takes_text
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import mul, type_of
@@ -26,12 +26,14 @@ OF_ANY_SIZE = ("read_varint", "read_element")
 class Attempt:
     """A body as a function: its name, and the names of what it needs of the message's lanes and row.
 
-    Of a routine, ``is_mostly_a_byte`` says that its results are a byte and the place behind it, unless that byte is 128 or more.
+    Of a routine, ``is_mostly_a_byte`` says that its results are a byte and the place behind it, unless that byte is 128 or more;
+    ``may_lack`` that this byte may be missing.
     """
 
     name: str
     needs: tuple[str, ...]
     is_mostly_a_byte: bool = False
+    may_lack: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +41,7 @@ class Objects:
     """How a function comes to objects: ``result`` is what a return of success gives at a position.
 
     Of decoders ``row`` is the object of a lane's row, ``inner`` are the lines of functions for rows that contain rows of their own type,
-    and ``arrays`` are the lanes of arrays in the ``layout``. ``numpy``: arrays of numbers are numpy's;
+    ``arrays`` are the lanes of arrays in the ``layout``, and ``blobs`` those of bytes among them. ``numpy``: arrays of numbers are numpy's;
     ``classes`` are the names of classes, which no local hides.
     """
 
@@ -48,6 +50,7 @@ class Objects:
     inner: Callable[[Scope], list[str]] = lambda _: []
     layout: Layout | None = None
     arrays: frozenset[int] = frozenset()
+    blobs: frozenset[int] = frozenset()
     numpy: bool = False
     classes: frozenset[str] = frozenset()
 
@@ -214,7 +217,7 @@ def _effect(function: Function, stmt: nodes.Effect) -> None:
                     f"{scope.struct('<' if nodes.WIDTH[type_] == 1 else order, CODES[type_], 'store')}(data, {where}, {text}){origin}"
                 )
         case nodes.SetField(nodes.Place(lane), _) if lane in scope.direct.gathered:
-            function.line(f"{scope.lanes.rows(lane)}.append({scope.text(lane, 0)}){origin}")
+            function.line(f"{scope.lanes.rows(lane)}.append({gathered(scope, lane)}){origin}")
         case nodes.SetField(place, value):
             target = _target(function, place, value)
             text = function.text(value)
@@ -352,7 +355,7 @@ def _call(function: Function, call: nodes.Call) -> None:
     if routine.is_mostly_a_byte:
         at, (value, after) = expression(scope, call.arguments[0]), results
         least = "" if is_not_negative(call.arguments[0], function.positive) else "0 <= "
-        function.line(f"{value} = data[{bare(at)}] if {least}{at} < end else 128")
+        function.line(f"{value} = data[{bare(at)}]" + (f" if {least}{at} < end else 128" if routine.may_lack else ""))
         function.line(f"{after} = {at} + 1")
         function.line(f"if {value} >= 128:")
         if call.routine in OF_ANY_SIZE:
