@@ -373,3 +373,14 @@ def test_arrays_that_are_not_the_fields_are_refused(ranges):
 def test_other_languages_have_no_arrays_of_numpy():
     with pytest.raises(SchemaError, match="no-numpy"):
         generated(TORSO, "c", BOTH, "torso", NUMPY)
+
+
+def test_arrays_of_the_fields_type_are_written_as_they_lie():
+    """Every other element, elements turned around, none; and not those of two dimensions."""
+    unit = module(type_request("decode", "exlcm.example_t", {"encoding": "lcm"}), wishes=NUMPY)
+    wanted = unit.encode(unit.example_t(num_ranges=3, ranges=[1, -2, 300]))
+    made = np.array([1, 0, -2, 0, 300], np.int16)
+    for ranges in (made[::2], made[::2].astype(">i2"), np.array([1, -2, 300], np.int16), np.array([1, -2, 300], np.int64)):
+        assert unit.encode(unit.example_t(num_ranges=3, ranges=ranges)) == wanted
+    with pytest.raises(unit.EncodeError):
+        unit.encode(unit.example_t(num_ranges=1, ranges=np.zeros((1, 2), np.int16)))

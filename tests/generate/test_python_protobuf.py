@@ -127,3 +127,72 @@ def test_the_last_entry_of_a_key_stands():
         entry = b"\x0a\x01x\x12" + bytes([len(a1)])
         entries = b"".join(b"\x12" + bytes([len(entry + each)]) + entry + each for each in (a1, b3))
         assert unit.decode(entries).top == {"x": unit.In({"b": 3})}  # the values of entries are not merged
+
+
+def test_long_messages_of_types_that_contain_themselves():
+    """Their bytes stay in parts until the message is whole: around that length, in lists, maps, oneofs and messages between."""
+    schema = """
+        message M { bytes data = 1; M one = 2; repeated M many = 3; map<string, M> named = 4; oneof which { M first = 5; string text = 6; }
+            Between between = 7; }
+        message Between { M inner = 1; string text = 2; repeated M inners = 3; }
+    """
+    given = protobuf(schema)
+    unit, programs = module(type_request("decode", "t.M", given)), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    deep = {"data": b"end"}
+    for _ in range(60):
+        deep = {"data": bytes(3000), "one": deep}
+    leaves = [{"data": bytes(size)} for size in (0, 10, 32700, 32760, 32768, 40000, 3_000_000)]
+    between = {"inner": leaves[5], "text": "é" * 20000, "inners": leaves[:5]}
+    values = [*leaves, deep, {"many": leaves, "one": leaves[6], "first": {"one": leaves[3], "text": "x" * 50000}}]
+    values += [{"named": {"a": leaves[6], "b": {"between": between}}, "between": between}, {"between": {"inner": {}}}]
+    messages = [bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in values]
+    answers_as_the_library(unit, programs, messages)
+    wrong = unit.M(one=unit.M(data="text" * 20000), data=bytes(50000))
+    for made in (wrong, unit.M(many=[wrong, unit.M(data=7)]), unit.M(many=[unit.M(data=bytes(50000)), 5])):
+        with pytest.raises(unit.EncodeError):
+            unit.encode(made)
+
+
+def test_bytes_that_come_one_by_one_are_appended_where_they_are():
+    """Of the message, in a list apart, and in messages within it, whose lists are merged."""
+    given = protobuf(
+        "message M { repeated bytes v = 1; S one = 2; int32 n = 3; repeated bytes w = 20; } message S { repeated bytes v = 1; }"
+    )
+    request = type_request("decode", "t.M", given)
+    assert "v.append(data[" in generated(request, "python", BOTH, "unit")["unit.py"]
+    unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    values = [b"", b"a", bytes(200), b"\xff" * 20000]
+    good = bytes(programs[1](programs[1].holder_type.from_dict({"v": values, "one": {"v": values}, "n": 1, "w": values})))
+    answers_as_the_library(unit, programs, harmed([good, good + good, b"\x0a\x01a\x18\x01\x0a\x01b"], 60, "bytes"))
+    assert unit.decode(good + good).v == values + values
+    assert unit.decode(good + good).one.v == values + values
+
+
+def test_lengths_of_several_bytes():
+    """Of two to five, those that are too long or too large, and those that end nowhere; of texts, bytes and messages."""
+    given = protobuf("message M { string text = 1; bytes data = 2; S one = 3; repeated S many = 4; } message S { string text = 1; }")
+    unit, programs = module(type_request("decode", "t.M", given)), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    sizes = [127, 128, 129, 16383, 16384, 2097151, 2097152]
+    good = [b"\x12" + unit._varint(size) + bytes(size) for size in sizes] + [b"\x12\x83\x80\x80\x80\x00abc", b"\x0a\x81\x00a"]
+    lengths = [b"\x80" * count + last for count in range(1, 11) for last in (b"", b"\x00", b"\x01", b"\x08", b"\x7f")]
+    answers_as_the_library(
+        unit, programs, good + [tag + each + b"rest" for tag in (b"\x0a", b"\x12", b"\x1a", b"\x22") for each in lengths]
+    )
+
+
+def test_texts_stay_in_the_message_until_they_are_made():
+    """Of messages within others, entries of maps and cases of oneofs: empty ones, those that come again, and those that are no UTF-8."""
+    schema = """
+        message M { string name = 1; S one = 2; repeated S many = 3; map<string, string> names = 4;
+            oneof which { string a = 5; int32 b = 6; } }
+        message S { string text = 1; optional string note = 2; bytes data = 3; }
+    """
+    given = protobuf(schema)
+    text = generated(type_request("decode", "t.M", given), "python", ("decode",), "unit")["unit.py"]
+    assert " _text(" not in text[text.index("def _borrow_1") :]
+    unit, programs = module(type_request("decode", "t.M", given)), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    inner = {"text": "é" * 70, "note": "", "data": b"\xff"}
+    value = {"name": "n", "one": inner, "many": [inner, {}, {"text": "b" * 300}], "names": {"": "x", "k": "", "ü": "v"}, "a": ""}
+    one = bytes(programs[1](programs[1].holder_type.from_dict(value)))
+    answers_as_the_library(unit, programs, harmed([one, one + b"\x0a\x00\x12\x02\x0a\x00", b"\x2a\x01x\x30\x05"], 80, "where"))
+    assert unit.decode(one + b"\x12\x03\x0a\x01z").one == unit.S(text="z", note="", data=b"\xff")

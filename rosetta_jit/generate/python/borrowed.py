@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 from rosetta_jit.generate.python.mentions import blocks_within, changes, counted_lanes, places_of, reads_any
 from rosetta_jit.kernel import ir, nodes
-from rosetta_jit.kernel.rewrite import locals_in, with_blocks
+from rosetta_jit.kernel.rewrite import locals_in, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.layout import Layout, Number
@@ -32,8 +32,12 @@ class _Copy:
     size: nodes.Expr
 
 
-def borrowed(block: nodes.Block, kernel: ir.Kernel, layout: Layout) -> nodes.Block:
-    """A body without the copies."""
+def borrowed(kernel: ir.Kernel, layout: Layout) -> ir.Kernel:
+    """A kernel without the copies."""
+    return with_bodies(kernel, tuple(_borrowed(body, kernel, layout) for body in kernel.bodies))
+
+
+def _borrowed(block: nodes.Block, kernel: ir.Kernel, layout: Layout) -> nodes.Block:
     blocks, parts = blocks_within(block), [stmt for stmt, _ in statements(block)]
     mentions: dict[int, set[int]] = {}
     for stmt in (*parts, *(stmt for routine in kernel.routines for stmt, _ in statements(routine.body))):

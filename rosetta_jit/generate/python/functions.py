@@ -10,7 +10,6 @@ from rosetta_jit.backends.printing import Namespace, Writer
 from rosetta_jit.generate.cleared import settled
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.python.borrowed import borrowed
 from rosetta_jit.generate.python.classes import WORDS
 from rosetta_jit.generate.python.direct import FEW, direct
 from rosetta_jit.generate.python.expressions import CODES, Scope, expression, flat_name, view_name
@@ -105,10 +104,8 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Att
     body = reached(kernel.bodies[number])
     if kernel.direction != "decode":
         body = undamaged(body, kernel.sites)
-    elif objects.layout is not None:
-        body = borrowed(body, kernel, objects.layout)
-        if scope.flat:
-            body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, objects.blobs, few=0 if scope.numpy else FEW)
+    elif scope.flat and objects.layout is not None:
+        body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, objects.blobs, few=0 if scope.numpy else FEW)
     function.settled = settled(body)
     function.read, function.positive = read_names(body), not_negative(body)
     function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, nodes.Reserve))

@@ -101,7 +101,8 @@ class Make:
                     return f'{text} if {count} else ""'
                 return self._text("_text", slot, lane, row)
             case Bytes():
-                return self._text("_bytes", slot, lane, row)
+                inside = slot.lane not in self.reserved
+                return f"data[{start} : {start} - 1 - {count}] if {count} else b''" if inside else self._text("_bytes", slot, lane, row)
             case Array() if isinstance(element, Number):
                 if WIDTH[element.scalar] == 1 and element.scalar != "bool":
                     borrowed = self._text("_bytes", slot, lane, row)

@@ -9,7 +9,7 @@ from typing import assert_never
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.origins import Origin, origin_of
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.python.expressions import CODES, Scope, expression, location, view_name
+from rosetta_jit.generate.python.expressions import CODES, Scope, expression, is_small, location, view_name
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
 from rosetta_jit.generate.python.reading import gathered, numbers_read, takes_text
 from rosetta_jit.kernel import ir, nodes
@@ -18,8 +18,8 @@ from rosetta_jit.kernel.terms import mul, type_of
 from rosetta_jit.model.layout import Layout
 from rosetta_jit.startup.dataclass import dataclass, field
 
-OF_ANY_SIZE = ("read_varint", "read_element")
-"""Routines for integers of protobuf that often have several bytes: one call reads those that end."""
+OF_SEVERAL_BYTES = {**dict.fromkeys(("read_varint", "read_element", "read_packed"), "_several_bytes"), "read_size": "_long_length"}
+"""Routines for integers of protobuf that often have several bytes, with the function that reads those that end by one call."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +135,7 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
             else:
                 _fail_if(function, function.text(folded(nodes.Unary("not", condition))), failure)
         case nodes.Let(name, value) | nodes.Var(name, value) | nodes.Assign(name, value):
+            function.scope.note(name, is_small=isinstance(stmt, nodes.Let) and is_small(value, function.scope.small))
             if name in function.read:
                 text = function.text(value)
                 function.line(f"{function.scope.locals.identifier(name)} = {text}{_origin(function, stmt)}")
@@ -348,6 +349,10 @@ def _call(function: Function, call: nodes.Call) -> None:
     scope, routine = function.scope, function.routines[call.routine]
     _pass_on(function, routine)
     results = [scope.locals.identifier(result.name) for result in call.results]
+    called = next(each for each in function.kernel.routines if each.name == call.routine)
+    for result, own in zip(call.results, called.results, strict=True):
+        limits = (each.right for each in called.ensures if isinstance(each, nodes.Compare) and (each.op, each.left) == ("le", own))
+        scope.note(result.name, is_small=own.type == "u64" and any(is_small(limit, ()) for limit in limits))
     sites = [f"sites[{each - 1}]" if function.is_routine else str(each) for each in call.sites]
     indices = "indices" if function.is_routine else _tuple([function.text(each) for each in call.indices])
     arguments = ", ".join(["data", "end", _tuple(sites), indices, *routine.needs, *(function.text(each) for each in call.arguments)])
@@ -358,8 +363,8 @@ def _call(function: Function, call: nodes.Call) -> None:
         function.line(f"{value} = data[{bare(at)}]" + (f" if {least}{at} < end else 128" if routine.may_lack else ""))
         function.line(f"{after} = {at} + 1")
         function.line(f"if {value} >= 128:")
-        if call.routine in OF_ANY_SIZE:
-            function.line(f"    {value}, {after} = _several_bytes(data, {bare(at)})")
+        if call.routine in OF_SEVERAL_BYTES:
+            function.line(f"    {value}, {after} = {OF_SEVERAL_BYTES[call.routine]}(data, {bare(at)})")
             function.line(f"if not {after}:")
         bound = f"    {bound}"
     function.line(f"{bound}{routine.name}({arguments})")
