@@ -1,4 +1,4 @@
-"""Encoders of objects that were just taken apart: where their arrays and texts lie in the lanes need not be checked."""
+"""Encoders of objects that were just taken apart, and decoders whose rows are their own: no span of these needs to be checked."""
 
 from __future__ import annotations
 

@@ -19,10 +19,9 @@ from tests.constructs.contained import EVERY, contained
 from tests.constructs.examples import FILES, MAPPINGS
 from tests.generate import cpp, lisp
 from tests.generate.driver import answers, needs_gcc
+from tests.generate.python import answer, module
+from tests.generate.python import same as same_line
 from tests.generate.test_examples import QUICK, Case, case_of, decoded, encoded, results
-from tests.generate.test_python import answer
-from tests.generate.test_python import same as same_line
-from tests.generate.test_random_in_python import module
 from tests.generate.through_c import loaded_in_c
 from tests.mapping_examples import Example
 from tests.test_documents import EXAMPLES

@@ -20,9 +20,8 @@ from rosetta_jit.errors import MappingError
 from rosetta_jit.generate.build import NO_WISHES, generated
 from tests.generate import cpp, lisp
 from tests.generate.driver import answers, expected, harmed, needs_gcc
-from tests.generate.test_python import answer
-from tests.generate.test_python import same as same_line
-from tests.generate.test_random_in_python import module
+from tests.generate.python import answer, module
+from tests.generate.python import same as same_line
 from tests.generate.through_c import loaded_in_c
 from tests.mapping_examples import Example, example, type_of
 from tests.runtime.test_shipped_growth import likely

@@ -12,7 +12,7 @@ from rosetta_jit.api.options import request_of
 from rosetta_jit.generate.build import generated
 from tests.generate import cpp, lisp
 from tests.generate.driver import answers, driver, expected, harmed, needs_gcc, write
-from tests.generate.test_python import answer
+from tests.generate.python import answer
 
 FILES = {
     "m.bottle-schema": """"m" (("a" (:list :double)) ("n" (:list :int)) ("names" (:list :string)) ("steps" (:list :int))

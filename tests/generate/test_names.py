@@ -22,8 +22,8 @@ from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.manners import PROTOC
 from rosetta_jit.generate.lisp.words import runtime_names, symbols
 from rosetta_jit.model.types import Ref
-from tests.generate import cpp, driver, lisp, native, test_python
-from tests.generate.test_random_in_python import module
+from tests.generate import cpp, driver, lisp, native, python
+from tests.generate.python import module
 from tests.runtime.test_shipped_growth import likely
 
 if TYPE_CHECKING:
@@ -200,12 +200,12 @@ def through_cpp(made: Case, folder: Path) -> list[str]:
 
 def through_python(made: Case, folder: Path) -> list[str]:
     unit = module(made.request, BOTH, NO_WISHES)
-    return [test_python.answer(unit, each) for each in made.messages]
+    return [python.answer(unit, each) for each in made.messages]
 
 
 def through_lisp(cases: list[Case], folder: Path) -> Iterator[list[str]]:
     """What Lisp says of values, too, is compared here."""
-    answers = lisp.answers(folder, [(made.request, made.messages) for made in cases])
+    answers = lisp.answers(folder, [(made.request, made.messages) for made in cases], lisp.QUICKLY)
     for made, found in zip(cases, answers, strict=True):
         for line, wanted in zip(found, lisp.expected(made.request, *made.pair, made.messages), strict=True):
             assert line == wanted

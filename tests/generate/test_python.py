@@ -7,10 +7,8 @@ import re
 import struct
 import subprocess
 import sys
-import types
 from itertools import permutations
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -18,78 +16,23 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.api.options import request_of, type_request
 from rosetta_jit.errors import MappingError, SchemaError
-from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
+from rosetta_jit.generate.build import Wishes, generated
 from tests.generate.corpora import corpora, numbers_in_texts
-from tests.generate.driver import expected, harmed
+from tests.generate.driver import harmed
+from tests.generate.python import BOTH, answer, answers_as_the_library, module, same
 from tests.generate.test_c import CALLING, HOSTILE, SUBJECTS, TORSO
 from tests.generate.test_cpp import OUTER
 from tests.golden import GOLDEN, check_golden
 
-BOTH = ("decode", "encode")
 MAPPINGS = Path(__file__).resolve().parents[2] / "mappings"
 FEW = {"lcm exlcm.example_t", "corba RTC::TimedWChar little", "protobuf rj.OneOf", "protobuf rj.Maps", "protobuf rj.Tree"}
-
-
-@pytest.fixture
-def module(monkeypatch):
-    """A function that imports what is generated."""
-
-    def imported(request, directions=BOTH, wishes=NO_WISHES):
-        made = types.ModuleType("generated_unit")
-        monkeypatch.setitem(sys.modules, made.__name__, made)  # dataclasses look there for the names of types
-        text = generated(request, "python", directions, "unit", wishes)["unit.py"]
-        exec(compile(text, "unit.py", "exec"), made.__dict__)  # noqa: S102 - what is under test
-        return made
-
-    return imported
-
-
-def answer(unit, message: bytes) -> str:
-    """As the drivers in C and C++ say it."""
-    try:
-        return f"ok {unit.encode(unit.decode(message)).hex()}"
-    except unit.MessageError as error:
-        line = f" ({error.line})" if error.line else ""
-        offset = "" if error.offset is None else f" {error.offset}"
-        return f"{error.kind}{offset} [{error.path}] {error.detail}{line}"
-
-
-def same(found: str, wanted: str) -> bool:
-    """A signalling NaN of 32 bits becomes a quiet one in Python's floats, and one that is computed may have another sign: that is all."""
-    if "memory than its size allows" in found:
-        return found.split("]", maxsplit=1)[0] == wanted.split("]", maxsplit=1)[0]
-    if found == wanted or not (found.startswith("ok ") and wanted.startswith("ok ") and len(found) == len(wanted)):
-        return found == wanted
-    one, other = bytes.fromhex(found[3:]), bytes.fromhex(wanted[3:])
-    changes = [at for at, (a, b) in enumerate(zip(one, other, strict=True)) if a != b]
-    return all(is_quieted(one, other, at) or (one[at] ^ other[at] == 0x80 and ends_nan(one, at)) for at in changes)
-
-
-def is_quieted(found: bytes, wanted: bytes, at: int) -> bool:
-    """Whether a byte is the second of a NaN of 32 bits, in either byte order, that was signalling, and is the same but quiet."""
-    if found[at] != wanted[at] | 0x40 or not found[at] & 0x80:
-        return False
-    places = ((range(at - 2, at), at + 1), (range(at + 1, at + 3), at - 1))
-    return any(
-        0 <= min(first, *rest) <= max(first, *rest) < len(found)
-        and found[first] & 0x7F == 0x7F
-        and (wanted[at] & 0x3F or any(wanted[each] for each in rest))
-        for rest, first in places
-    )
-
-
-def ends_nan(message: bytes, at: int) -> bool:
-    """Whether a byte can be the first of a NaN in either byte order: seven bits of its exponent are set, and the eighth beside them."""
-    return message[at] & 0x7F == 0x7F and any(each >= 0x80 for each in (*message[max(0, at - 1) : at], *message[at + 1 : at + 2]))
-
-
 SIGNALLING = [bytes.fromhex(each) for each in ("0100807f", "ffffbfff", "0000a07f", "01008cff")]
 QUIET = [bytes.fromhex(each) for each in ("0100c07f", "5634d27f")]
 FLOATS = """syntax = "proto3"; package f; message Floats { float one = 1; repeated float many = 2; }"""
 
 
 @pytest.mark.parametrize("arrays", ["", "numpy"])
-def test_bits_of_nans(arrays, module):
+def test_bits_of_nans(arrays):
     """Quiet ones keep all bits; signalling ones of 32 bits are quiet in a float of Python, and as they came in an array of numpy."""
     request = type_request("decode", "f.Floats", {"encoding": "protobuf", "schema": {"f.proto": FLOATS}})
     unit = module(request, BOTH, Wishes(numpy=bool(arrays)))
@@ -112,14 +55,8 @@ def test_no_other_bits_may_differ():
     assert not same("ok 0000c041", "ok 00008041")
 
 
-def answers_as_the_library(unit, programs, messages) -> None:
-    for message in messages:
-        found, wanted = answer(unit, message), expected(*programs, message)
-        assert same(found, wanted), (message.hex(), found, wanted)
-
-
 @pytest.mark.parametrize("name", SUBJECTS)
-def test_python_answers_as_the_library_does(name, module):
+def test_python_answers_as_the_library_does(name):
     request, good = SUBJECTS[name]
     of = (rj.Decoder, rj.Encoder) if request.mapping else (rj.Decoder.of, rj.Encoder.of)
     programs = [make(request.mapping or request.type, encoding=request.encoding) for make in of]
@@ -127,14 +64,14 @@ def test_python_answers_as_the_library_does(name, module):
 
 
 @pytest.mark.parametrize("corpus", [each for each in corpora() if each.name in FEW], ids=lambda each: each.name)
-def test_messages_of_peers(corpus, module):
+def test_messages_of_peers(corpus):
     answers_as_the_library(module(corpus.request), corpus.programs(), harmed(list(corpus.messages[:4]), 4, corpus.name))
 
 
 @pytest.mark.parametrize(
     ("type_", "good"), [("geometry_msgs/Twist", struct.pack("<6d", *range(6))), ("std_msgs/Bool", b"\1"), ("std_msgs/Time", b"\2" * 8)]
 )
-def test_messages_that_are_numbers_alone(type_, good, module):
+def test_messages_that_are_numbers_alone(type_, good):
     """They are packed at once, if that can be."""
     unit = module(type_request("decode", type_, {"encoding": "ros1"}))
     programs = rj.Decoder.of(type_, encoding="ros1"), rj.Encoder.of(type_, encoding="ros1")
@@ -154,7 +91,7 @@ message All {
 """
 
 
-def test_messages_within_others_are_written_from_the_objects(module):
+def test_messages_within_others_are_written_from_the_objects():
     """Behind their lengths, whatever is there of them: fields with their default, -0.0, cases with the value 0, nothing at all."""
     given = {"encoding": "protobuf", "schema": {"n.proto": NESTED}}
     request = type_request("decode", "n.All", given)
@@ -179,7 +116,7 @@ def test_messages_within_others_are_written_from_the_objects(module):
             unit.encode(made)
 
 
-def test_wide_texts_are_written_in_code_units(module):
+def test_wide_texts_are_written_in_code_units():
     """Those of ROS 2, which its bytes have as UTF-16; bounded ones, and behind other fields, too."""
     given = {"encoding": "cdr", "schema": "uint8 before\nwstring wide\nfloat64 after\nwstring<=9 bounded\nwstring[] many\n"}
     request = type_request("decode", "w/msg/Wide", given)
@@ -190,14 +127,14 @@ def test_wide_texts_are_written_in_code_units(module):
     answers_as_the_library(unit, (rj.Decoder.of("w/msg/Wide", **given), encode), harmed([bytes(message)], 12, "wide"))
 
 
-def test_decimal_numbers(module):
+def test_decimal_numbers():
     request, programs, messages = numbers_in_texts()
     answers_as_the_library(module(request), programs, harmed(messages, 12, "numbers"))
 
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("corpus", corpora(), ids=lambda each: each.name)
-def test_all_messages_of_peers(corpus, module):
+def test_all_messages_of_peers(corpus):
     answers_as_the_library(module(corpus.request), corpus.programs(), harmed(list(corpus.messages), 4, corpus.name))
 
 
@@ -225,7 +162,7 @@ def test_a_module_needs_the_standard_library_alone(tmp_path):
     assert done.stdout.splitlines() == ["[1.5707963705062866, 0.0, -1.5707963705062866]", struct.pack("<ii3d", 266, 3, 0.0, 0.0, 0.0).hex()]
 
 
-def test_a_hostile_schema_stays_in_its_place(module):
+def test_a_hostile_schema_stays_in_its_place():
     unit = module(type_request("decode", "evil/Outer", {"encoding": "ros1", "schema": HOSTILE + OUTER}))
     rows = (
         struct.pack("<If", 1, 2.5)
@@ -244,7 +181,7 @@ def test_a_hostile_schema_stays_in_its_place(module):
 @pytest.mark.parametrize(
     "name", ["data", "end", "most", "sites", "indices", "self", "parts", "target", "np", "Struct", "field", "call_end"]
 )
-def test_types_are_called_as_the_module_calls_its_own(module, name):
+def test_types_are_called_as_the_module_calls_its_own(name):
     """A class of that name would be hidden by a parameter or a variable, or hide what the module needs."""
     schema = f"{name} one\n{name}[] more\n===\nMSG: evil/{name}\nint16 x\nstring y\n"
     unit = module(type_request("decode", "evil/Outer", {"encoding": "ros1", "schema": schema}))
@@ -253,7 +190,7 @@ def test_types_are_called_as_the_module_calls_its_own(module, name):
     assert answer(unit, message) == f"ok {message.hex()}"
 
 
-def test_loops_that_do_nothing_are_not_printed(module):
+def test_loops_that_do_nothing_are_not_printed():
     """Of points that may lack a coordinate each is checked where it is written, and a loop that did so before has nothing left."""
     unit = module(request_of("decode", {}, mapping="ros1/grid_cells.mapping"))
     programs = rj.Decoder("ros1/grid_cells.mapping"), rj.Encoder("ros1/grid_cells.mapping")
@@ -292,7 +229,7 @@ def test_docs_of_a_schema_are_docs():
     assert "exit" not in calls
 
 
-def test_functions_of_the_mapping_are_the_programs_own(tmp_path, module):
+def test_functions_of_the_mapping_are_the_programs_own(tmp_path):
     (tmp_path / "calling.mapping").write_text(CALLING)
     unit = module(request_of("decode", {"encoding": "yarp3"}, mapping=str(tmp_path / "calling.mapping")), ("decode",))
 
@@ -307,7 +244,7 @@ def test_functions_of_the_mapping_are_the_programs_own(tmp_path, module):
         unit.decode(struct.pack("<ii3d", 266, 3, -90.0, 0.0, 0.0))
 
 
-def test_objects_that_cannot_be_written(module):
+def test_objects_that_cannot_be_written():
     unit = module(SUBJECTS["joints"][0])
     with pytest.raises(unit.EncodeError, match="range"):
         unit.encode(unit.JointState(name=[1]))
@@ -319,7 +256,7 @@ SCALARS = ("float", "double", "int32", "sint64", "uint32", "fixed64", "sfixed32"
 
 
 @pytest.mark.parametrize("wishes", [Wishes(), Wishes(numpy=True)], ids=["", "numpy"])
-def test_cases_of_one_union_that_are_numbers_of_several_types(wishes, module):
+def test_cases_of_one_union_that_are_numbers_of_several_types(wishes):
     pairs = list(permutations(SCALARS, 2))
     unions = " ".join(f"oneof u{i} {{ {a} a{i} = {2 * i + 1}; {b} b{i} = {2 * i + 2}; }}" for i, (a, b) in enumerate(pairs))
     schema = {"u.proto": f'syntax = "proto3"; package p; message U {{ {unions} }}'}
@@ -338,7 +275,7 @@ def _value_of(scalar):
 
 @pytest.mark.parametrize("type_", ["rj.Scalars", "rj3.All"])
 @pytest.mark.parametrize("value", [2**40, -(2**40), 1.0, "1"])
-def test_integers_that_their_fields_cannot_hold(type_, value, module):
+def test_integers_that_their_fields_cannot_hold(type_, value):
     """Also where they are written in as many bytes as they need."""
     (corpus,) = [each for each in corpora() if each.name == f"protobuf {type_}"]
     unit = module(corpus.request, ("encode",))
@@ -353,7 +290,7 @@ def test_classes_are_the_modules_own():
         generated(TORSO, "python", BOTH, "torso", Wishes(holder="protobuf"))
 
 
-def test_what_the_host_tells(module):
+def test_what_the_host_tells():
     """Messages are counted by the module, decoded and encoded ones together."""
     schema = {
         "a.bottle-schema": '"a" (("value" :int))',
@@ -374,7 +311,7 @@ ARRAYS = {"lcm exlcm.example_t", "ros2 test_interface_files/UnboundedSequences b
 
 
 @pytest.mark.parametrize("name", SUBJECTS)
-def test_with_arrays_of_numpy_it_answers_as_the_library_does(name, module):
+def test_with_arrays_of_numpy_it_answers_as_the_library_does(name):
     request, good = SUBJECTS[name]
     of = (rj.Decoder, rj.Encoder) if request.mapping else (rj.Decoder.of, rj.Encoder.of)
     programs = [make(request.mapping or request.type, encoding=request.encoding) for make in of]
@@ -382,17 +319,17 @@ def test_with_arrays_of_numpy_it_answers_as_the_library_does(name, module):
 
 
 @pytest.mark.parametrize("corpus", [each for each in corpora() if each.name in ARRAYS], ids=lambda each: each.name)
-def test_messages_of_peers_as_arrays_of_numpy(corpus, module):
+def test_messages_of_peers_as_arrays_of_numpy(corpus):
     answers_as_the_library(module(corpus.request, wishes=NUMPY), corpus.programs(), harmed(list(corpus.messages[:2]), 2, corpus.name))
 
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("corpus", corpora(), ids=lambda each: each.name)
-def test_all_messages_of_peers_as_arrays_of_numpy(corpus, module):
+def test_all_messages_of_peers_as_arrays_of_numpy(corpus):
     answers_as_the_library(module(corpus.request, wishes=NUMPY), corpus.programs(), harmed(list(corpus.messages), 4, corpus.name))
 
 
-def test_arrays_of_numpy_have_the_types_of_their_fields(module):
+def test_arrays_of_numpy_have_the_types_of_their_fields():
     unit = module(SUBJECTS["joints"][0], wishes=NUMPY)
     sent = unit.JointState(name=["a", "b"], position=np.array([1.5, -2.0]), velocity=[3, 4], effort=np.array([5, 6], ">i2"))
     message = bytearray(unit.encode(sent))
@@ -411,7 +348,7 @@ def test_arrays_of_numpy_have_the_types_of_their_fields(module):
         hash(found)
 
 
-def test_arrays_of_numpy_can_be_views(module):
+def test_arrays_of_numpy_can_be_views():
     unit = module(SUBJECTS["joints"][0], wishes=NUMPY)
     found = unit.decode(unit.encode(unit.JointState(position=np.arange(3.0))), copy=False)
     assert found.position.tolist() == [0.0, 1.0, 2.0]
@@ -427,7 +364,7 @@ def test_arrays_of_numpy_can_be_views(module):
     [[1.0, 2.0], [1, 40000], np.array([[1, 2]]), ["1", "2"], np.array([1, 2**40]), [None, 1]],
     ids=["float", "range", "2d", "text", "wide", "none"],
 )
-def test_arrays_that_are_not_the_fields_are_refused(ranges, module):
+def test_arrays_that_are_not_the_fields_are_refused(ranges):
     unit = module(type_request("decode", "exlcm.example_t", {"encoding": "lcm"}), wishes=NUMPY)
     with pytest.raises(unit.EncodeError):
         unit.encode(unit.example_t(num_ranges=2, ranges=ranges))
@@ -438,97 +375,12 @@ def test_other_languages_have_no_arrays_of_numpy():
         generated(TORSO, "c", BOTH, "torso", NUMPY)
 
 
-def test_short_integers_are_read_without_a_call(module):
-    """Tags and lengths of one byte, at the end of a message too; and texts of which one is not ASCII."""
-    given = {
-        "encoding": "protobuf",
-        "schema": {"t.proto": 'syntax = "proto3"; package t; message M { repeated string v = 1; int64 n = 2; }'},
-    }
-    request = type_request("decode", "t.M", given)
-    assert re.search(r"= data\[\w+\] if .*\w+ < end else 128\n", generated(request, "python", ("decode",), "unit")["unit.py"])
-    unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
-    values = [["", "a", "b" * 200], ["é", "", "x"], []]
-    good = [bytes(programs[1](programs[1].holder_type.from_dict({"v": each, "n": -1}))) for each in values]
-    answers_as_the_library(unit, programs, harmed([*good, b"\x0a", b"\x10", b"\x10\x80", b"\x8a\x00\x01a"], 12, "short"))
-    assert [unit.decode(each).v for each in good] == values
-
-
-def protobuf(body: str) -> dict[str, Any]:
-    """Options for types of a schema."""
-    return {"encoding": "protobuf", "schema": {"t.proto": f'syntax = "proto3"; package t; {body}'}}
-
-
-def test_bools_behind_tags_are_one_of_two_texts(module):
-    """Those of which each has its own tag, of one byte and of two."""
-    given = protobuf("message M { repeated bool v = 1 [packed = false]; repeated bool far = 40 [packed = false]; int32 n = 2; }")
-    request = type_request("decode", "t.M", given)
-    assert r"[b'\xc0\x02\x01' if each else b'\xc0\x02\x00' for each in far" in generated(request, "python", BOTH, "unit")["unit.py"]
-    unit, encode = module(request), rj.Encoder.of("t.M", **given)
-    for values in ({"v": [True, False, True], "far": [False, True], "n": 3}, {"v": [], "far": [True]}, {}):
-        assert unit.encode(unit.M(**values)) == bytes(encode(encode.holder_type.from_dict(values)))
-
-
-def test_messages_that_contain_their_own_type_are_written_by_functions(module):
-    """As one, as a list, in a oneof, in a map, in a message between, in a group of their own, and with fields of other lengths."""
-    schema = """
-        message M { string name = 1; sint32 n = 2; repeated M many = 3; M one = 4; oneof which { M first = 5; bool second = 6; }
-            map<string, M> named = 7; repeated Between between = 300; repeated double numbers = 9; Other other = 10; }
-        message Between { fixed32 id = 1; M inner = 2; repeated int32 ids = 3; }
-        message Other { repeated Other others = 1; M back = 2; repeated bool flags = 3 [packed = false]; }
-        message Root { M tree = 1; Other other = 2; int32 n = 3; }
-    """
-    leaf = {"name": "é" * 100, "n": -5, "numbers": [1.5] * 3}
-    between = [{"id": 1, "inner": leaf, "ids": [300, -1]}, {"id": 2}]
-    other = {"others": [{"flags": [True, False]}, {"back": {"n": 7}}], "back": leaf}
-    tree = {"many": [leaf, {"one": leaf}, {"many": [leaf] * 9}], "one": {"one": {}}, "first": leaf, "between": between}
-    values = [{**tree, "other": other, "named": {"a": leaf, "b": {"second": True}}}, leaf, {}]
-    for type_, cases in (("M", values), ("Root", [{"tree": each, "other": other, "n": 4} for each in values])):
-        request = type_request("decode", f"t.{type_}", protobuf(schema))
-        text = generated(request, "python", BOTH, "unit")["unit.py"]
-        assert "_encoded_" in text
-        assert "_size_1" not in text
-        programs = rj.Decoder.of(f"t.{type_}", **protobuf(schema)), rj.Encoder.of(f"t.{type_}", **protobuf(schema))
-        messages = [bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in cases]
-        answers_as_the_library(module(request), programs, harmed(messages, 12, type_))
-
-
-@pytest.mark.parametrize("type_", ["sint32", "sint64", "int32", "int64", "uint64"])
-def test_integers_of_several_bytes(type_, module):
-    """Packed and behind tags, of one byte to ten, cut off anywhere, and of more than ten."""
-    given = protobuf(f"message M {{ repeated {type_} v = 1; repeated {type_} apart = 2 [packed = false]; {type_} one = 3; }}")
-    request = type_request("decode", "t.M", given)
-    assert "_several_bytes(" in generated(request, "python", BOTH, "unit")["unit.py"]
-    unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
-    most = 31 if type_.endswith("32") else 63
-    numbers = [sign * (1 << bit) - less for bit in range(most) for sign in (1, -1) for less in (0, 1)]
-    numbers = [each for each in numbers if each >= 0 or type_[0] != "u"]
-    good = [
-        bytes(programs[1](programs[1].holder_type.from_dict({"v": numbers, "apart": numbers[::-1], "one": each}))) for each in numbers[-3:]
-    ]
-    bad = [tag + b"\x80" * count + last for tag in (b"\x10", b"\x18") for count in range(11) for last in (b"", b"\x01", b"\x7f")]
-    packed = [b"\x0a" + bytes([len(each) - 1]) + each[1:] for each in bad]
-    beyond = [b"\x0a\x02\x80\x80\x01\x10\x01", b"\x0a\x03\x01\x80\x80\x01"]
-    answers_as_the_library(unit, programs, harmed(good, 40, type_) + bad + packed + beyond)
-    assert unit.decode(good[0]).v == numbers
-
-
-def test_texts_that_come_one_by_one_are_read_where_they_are_checked(module):
-    """Of the message, of messages within it, listed and merged, and of those that contain their own type; apart from each other, too."""
-    schema = """
-        message M { repeated string v = 1; repeated S many = 2; S one = 3; map<string, S> named = 4; repeated string w = 20; M inner = 5;
-            string last = 8; }
-        message S { repeated string texts = 1; int32 start = 2; }
-    """
-    given = protobuf(schema)
-    request = type_request("decode", "t.M", given)
-    assert "v.append(v_text)" in generated(request, "python", BOTH, "unit")["unit.py"]
-    unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
-    texts = ["", "a", "é" * 70, "b" * 200]
-    inner = {"texts": texts, "start": 1}
-    value = {"v": texts, "many": [inner, {"texts": ["c"]}, inner], "one": inner, "w": texts}
-    given_values = ({**value, "inner": {**value, "inner": {"v": texts}}}, {**value, "named": {"d": inner, "e": {"texts": ["f"]}}})
-    one, mapped = (bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in given_values)
-    broken = [one + b"\x0a\x02\xc3", one + b"\x0a\x01\xc3", b"\x0a\x01x\x1a\x03\x0a\x01\xff", b"\x12\x03\x0a\x01\xff"]
-    answers_as_the_library(unit, programs, harmed([one, mapped, one + one, b"\x1a\x03\x0a\x01x" + one], 60, "texts") + broken)
-    assert unit.decode(one + one).v == texts + texts
-    assert unit.decode(one + one).one.texts == texts + texts
+def test_arrays_of_the_fields_type_are_written_as_they_lie():
+    """Every other element, elements turned around, none; and not those of two dimensions."""
+    unit = module(type_request("decode", "exlcm.example_t", {"encoding": "lcm"}), wishes=NUMPY)
+    wanted = unit.encode(unit.example_t(num_ranges=3, ranges=[1, -2, 300]))
+    made = np.array([1, 0, -2, 0, 300], np.int16)
+    for ranges in (made[::2], made[::2].astype(">i2"), np.array([1, -2, 300], np.int16), np.array([1, -2, 300], np.int64)):
+        assert unit.encode(unit.example_t(num_ranges=3, ranges=ranges)) == wanted
+    with pytest.raises(unit.EncodeError):
+        unit.encode(unit.example_t(num_ranges=1, ranges=np.zeros((1, 2), np.int16)))

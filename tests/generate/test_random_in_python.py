@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import random
-import sys
-import types
 from typing import Any
 
 import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import request_of, type_request
-from rosetta_jit.generate.build import Wishes, generated
-from tests.generate.test_python import same
+from rosetta_jit.generate.build import Wishes
+from tests.generate.python import module, same
 from tests.random_mappings.hostile import altered
 from tests.random_mappings.message_types import some
 from tests.random_mappings.rules import Filler
@@ -21,13 +19,6 @@ from tests.random_mappings.test_wires import aim, counted, maker, mapping, sourc
 from tests.random_mappings.wires import WIRES
 
 MESSAGES = 12
-
-
-def module(request, directions, wishes) -> Any:
-    made = types.ModuleType("random_unit")
-    sys.modules[made.__name__] = made
-    exec(compile(generated(request, "python", directions, "unit", wishes)["unit.py"], "unit.py", "exec"), made.__dict__)  # noqa: S102 - what is under test
-    return made
 
 
 def answer(decode, encode, data: bytes) -> str:

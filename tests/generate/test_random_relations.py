@@ -12,9 +12,9 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.api.options import request_of
 from rosetta_jit.generate.build import NO_WISHES, generated
-from tests.generate import cpp, lisp, test_python
+from tests.generate import cpp, lisp, python
 from tests.generate.driver import answers, driver, expected, needs_gcc, write
-from tests.generate.test_random_in_python import module
+from tests.generate.python import module
 from tests.random_mappings.blocks import Relations
 from tests.random_mappings.conditional import conditional
 from tests.random_mappings.defaults import defaulted, demanded
@@ -56,7 +56,7 @@ class Case:
 
 def alike(found: str, wanted: str) -> bool:
     """A NaN may have another sign, entries of maps come in another order, and C has no memory for what the library refuses as too much."""
-    if test_python.same(found, wanted) or (found.startswith("full ") and wanted.startswith("count ") and "`limit:`" in wanted):
+    if python.same(found, wanted) or (found.startswith("full ") and wanted.startswith("count ") and "`limit:`" in wanted):
         return True
     is_written = found.startswith("ok ") and wanted.startswith("ok ")
     return is_written and sorted(bytes.fromhex(found[3:])) == sorted(bytes.fromhex(wanted[3:]))
@@ -103,7 +103,7 @@ def in_cpp(made: Case, folder: Path) -> None:
 
 def in_python(made: Case, folder: Path) -> None:
     unit = module(made.request, BOTH, NO_WISHES)
-    made.holds([test_python.answer(unit, message) for message in made.messages])
+    made.holds([python.answer(unit, message) for message in made.messages])
 
 
 def in_lisp(made: Case, folder: Path) -> None:

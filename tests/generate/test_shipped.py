@@ -15,8 +15,8 @@ import rosetta_jit as rj
 from rosetta_jit.api.options import request_of
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.generate.build import NO_WISHES, generated
-from tests.generate import cpp, driver, lisp, test_python
-from tests.generate.test_random_in_python import module
+from tests.generate import cpp, driver, lisp, python
+from tests.generate.python import module
 from tests.language.test_shipped_laws import ROOT, SHIPPED
 from tests.runtime.test_shipped_growth import damaged, encoding, likely, messages
 
@@ -142,7 +142,7 @@ def test_in_python(name):
     units = [module(made.request, directions, NO_WISHES) for directions in made.ways]
     if made.is_both:
         for message, wanted in zip(made.messages, made.wanted(), strict=True):
-            assert test_python.same(test_python.answer(units[-1], message), wanted), message.hex()
+            assert python.same(python.answer(units[-1], message), wanted), message.hex()
 
 
 @lisp.needs_sbcl

@@ -14,7 +14,7 @@ from tests.generate import cpp, lisp
 from tests.generate.cpp import needs_cpp
 from tests.generate.driver import answers, compiled, driver, expected, harmed, needs_gcc, write
 from tests.generate.lisp import needs_sbcl
-from tests.generate.test_python import answer
+from tests.generate.python import answer
 
 FILES = {
     "m.bottle-schema": '"m" (("position" :double) ("seq" :int64) ("good" :bool))',

@@ -34,11 +34,15 @@ def _are_same(left: Any, right: Any) -> bool:
 def _array(dtype: "np.dtype[Any]", data: Any, count: int, at: int, copy: bool) -> "npt.NDArray[Any]":
     """Numbers that lie in bytes, as this machine has them: a copy, or a view that cannot be written to where that can be."""
     found: npt.NDArray[Any] = np.ndarray(count, dtype, data, at)
-    return found.astype(dtype.type) if copy or not dtype.isnative else found
+    if dtype.isnative:
+        return found.copy() if copy else found
+    return found.astype(dtype.type)
 
 
 def _raw(dtype: "np.dtype[Any]", numbers: Any, is_bool: bool = False) -> bytes:
     """The bytes of numbers; raises `ValueError` where they are not of one dimension, or cannot be what the field has."""
+    if type(numbers) is np.ndarray and numbers.dtype.type is dtype.type and numbers.ndim == 1:
+        return (numbers if numbers.dtype is dtype else numbers.astype(dtype)).tobytes()
     found: npt.NDArray[Any] = np.asarray(numbers, np.bool_ if is_bool else None)
     if found.ndim != 1:
         raise ValueError(f"an array of {found.ndim} dimensions in place of one")

@@ -4,23 +4,24 @@
     by name     an array of few elements, each set once: the list of so many locals
     one by one  a loop fills row after row: it appends to a list instead
     texts       a text is decoded where it is checked: that is the check
-    gathered    an array whose texts come one by one, wherever they are in the message: each is appended to a list where it is checked
+    gathered    an array whose texts, or bytes, come one by one, wherever they are in the message: each is appended to a list
 
 Everything else goes through lanes as kernels say, and becomes objects in the end.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from typing import cast
 
 from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.groups import turned
+from rosetta_jit.generate.python.mentions import blocks_within, changes, counted_lanes, places_of, reads_any
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.terms import add, index, mul
-from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
+from rosetta_jit.kernel.walk import expressions_of, statements
 from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span
 from rosetta_jit.startup.dataclass import dataclass, field
 
@@ -34,8 +35,8 @@ class Direct:
 
     ``whole`` are lanes that are read by one call, ``appended`` those whose rows are appended to a list, ``loops`` the variables of the
     loops that do so; ``elements`` are the places of rows that are locals, by lane; ``texts`` are the spans of texts that are decoded where
-    they are checked, by lane and offset, with the place and size of the check. ``gathered`` are lanes of texts, each of which is appended
-    where a statement sets where it starts.
+    they are checked, by lane and offset, with the place and size of the check. ``gathered`` are lanes of texts and
+    of bytes, with the place and size of one in the message: it is appended where a statement sets where it starts.
     """
 
     whole: set[int] = field(default_factory=set[int])
@@ -46,21 +47,23 @@ class Direct:
         default_factory=dict[tuple[int, int], "tuple[nodes.Expr, nodes.Expr]"]
     )
 
-    gathered: set[int] = field(default_factory=set[int])
+    gathered: dict[int, tuple[nodes.Expr, nodes.Expr]] = field(default_factory=dict[int, "tuple[nodes.Expr, nodes.Expr]"])
 
     def text_at(self, at: nodes.Expr, size: nodes.Expr) -> tuple[int, int] | None:
         """The span of the text that is checked there."""
         return next((span for span, place in self.texts.items() if place == (at, size)), None)
 
 
-def direct(block: nodes.Block, kernel: ir.Kernel, layout: Layout, arrays: Collection[int], *, few: int = FEW) -> tuple[nodes.Block, Direct]:
+def direct(
+    block: nodes.Block, kernel: ir.Kernel, layout: Layout, arrays: Collection[int], blobs: Collection[int], *, few: int = FEW
+) -> tuple[nodes.Block, Direct]:
     """A body of a decoder whose message's row is locals, without the statements that lanes of ``arrays`` needed; and what is direct.
 
-    Arrays of a fixed length, up to ``few`` elements, are read together with the numbers around them.
+    Arrays of a fixed length, up to ``few`` elements, are read together with the numbers around them; ``blobs`` are arrays of bytes.
     """
-    found = _Search(counted(block), kernel, layout, arrays, few)
+    found = _Search(counted(block), kernel, layout, arrays, blobs, few)
     found.arrays(found.block, nodes.Place(0, index(0)))
-    for inner in _blocks(found.block):
+    for inner in blocks_within(found.block):
         found.texts(inner)
     return found.rewritten(found.block), found.direct
 
@@ -68,8 +71,10 @@ def direct(block: nodes.Block, kernel: ir.Kernel, layout: Layout, arrays: Collec
 class _Search:
     """Looks for arrays and texts in the block that fills a row, and in the loops that fill rows there."""
 
-    def __init__(self, block: nodes.Block, kernel: ir.Kernel, layout: Layout, arrays: Collection[int], few: int) -> None:
-        self.block, self.layout, self.lists, self.few, self.direct = block, layout, arrays, few, Direct()
+    def __init__(
+        self, block: nodes.Block, kernel: ir.Kernel, layout: Layout, arrays: Collection[int], blobs: Collection[int], few: int
+    ) -> None:
+        self.block, self.layout, self.lists, self.blobs, self.few, self.direct = block, layout, arrays, blobs, few, Direct()
         self.instead: dict[int, nodes.Block] = {}
         self.mentions: dict[int, list[nodes.Stmt]] = {}
         self.fields: dict[tuple[int, int], list[nodes.Stmt]] = {}
@@ -80,8 +85,8 @@ class _Search:
                 self._note(stmt)
 
     def _note(self, stmt: nodes.Stmt) -> None:
-        places = list(_places(stmt))
-        for lane in {each.lane for each in places} | _counted(stmt):
+        places = list(places_of(stmt))
+        for lane in {each.lane for each in places} | counted_lanes(stmt):
             self.mentions.setdefault(lane, []).append(stmt)
         for place in () if isinstance(stmt, nodes.Fill) and stmt.target == nodes.Place(0, index(0)) else places:
             self.fields.setdefault((place.lane, place.offset), []).append(stmt)
@@ -173,29 +178,25 @@ class _Search:
                 self._gather(block, lane, element.lane)
 
     def _gather(self, block: nodes.Block, lane: int, text_lane: int) -> None:
-        own = [each for each in block if _changes(each, lane) or _changes(each, text_lane)]
+        own = [each for each in block if changes(each, lane)]
         match own:
             case (
-                nodes.Reserve(_, size),
-                nodes.Let(start, nodes.Used(used)),
-                nodes.Advance(_, size_2),
-                nodes.Copy(nodes.Place(into, nodes.Local(_, begin), 0), nodes.Wire(at), size_3) as copy,
                 nodes.Reserve(_, nodes.Const(_, 1)),
-                nodes.Let(row, nodes.Used(rows)),
+                nodes.Let(row, nodes.Used(_)),
                 nodes.Advance(_, nodes.Const(_, 1)) as advance,
-                nodes.SetField(nodes.Place(_, nodes.Local(_, row_2), 0), nodes.Local(_, set_to)) as first,
-                nodes.SetField(nodes.Place(_, nodes.Local(_, row_3), 8), size_4) as second,
-            ) if (used, into, rows, advance.lane) == (text_lane, text_lane, lane, lane):
-                same = size == size_2 == size_3 == size_4 and start == begin == set_to and row == row_2 == row_3
-                elsewhere = [each for each in (*self.mentions[lane], *self.mentions[text_lane]) if id(each) not in {*map(id, own)}]
-                alone = not any(
-                    _changes(each, text_lane) or (_changes(each, lane) and not isinstance(each, nodes.Let)) for each in elsewhere
-                )
-                alone = alone and not any(place.lane in (lane, text_lane) for each in elsewhere for place in _places(each))
-                read = {id(each) for each, _ in statements(self.block) if _reads(each, {start, row})} == {id(copy), id(first), id(second)}
-                if same and alone and read and self.checks.get((at, size)) == 1 and any(_checks(each, at, size) for each in block):
-                    self.direct.gathered.add(lane)
-                    self.direct.texts[lane, 0] = at, size
+                nodes.SetField(nodes.Place(_, nodes.Local(_, row_2), 0), at) as first,
+                nodes.SetField(nodes.Place(_, nodes.Local(_, row_3), 8), nodes.Binary("sub", nodes.Const(_, -1), size)) as second,
+            ) if row == row_2 == row_3 and not self.mentions.get(text_lane):
+                elsewhere = [each for each in self.mentions[lane] if id(each) not in {*map(id, own)}]
+                alone = not any(changes(each, lane) and not isinstance(each, nodes.Let) for each in elsewhere)
+                alone = alone and not any(place.lane == lane for each in elsewhere for place in places_of(each))
+                read = {id(each) for each, _ in statements(self.block) if reads_any(each, {row})} == {id(first), id(second)}
+                checked = self.checks.get((at, size), 0)
+                is_text = checked == 1 and any(_checks(each, at, size) for each in block)
+                if alone and read and (is_text or (lane in self.blobs and not checked)):
+                    self.direct.gathered[lane] = at, size
+                    if is_text:
+                        self.direct.texts[lane, 0] = at, size
                     self.instead |= {id(each): () for each in own if each is not advance and each is not first}
             case _:
                 pass
@@ -265,65 +266,8 @@ class _Search:
         return True
 
 
-def _places(stmt: nodes.Stmt) -> Iterator[nodes.Place]:
-    """Places of lanes that a statement has to do with."""
-    match stmt:
-        case nodes.SetField(place):
-            yield place
-        case nodes.Copy(target, source, _):
-            yield from (each for each in (target, source) if isinstance(each, nodes.Place))
-        case nodes.Fill(nodes.Place() as target, _, _):
-            yield target
-        case nodes.HostCall():
-            yield from (each.address for each in extents_of(stmt) if isinstance(each.address, nodes.Place))
-        case _:
-            pass
-    for expr in expressions_of(stmt):
-        for part in subexpressions(expr):
-            match part:
-                case nodes.Get(_, place) | nodes.IsText(nodes.Place() as place, _) | nodes.Nearest(nodes.Place() as place, _, _):
-                    yield place
-                case _:
-                    pass
-
-
-def _changes(stmt: nodes.Stmt, lane: int) -> bool:
-    """Whether a statement takes rows of a lane, or sets them."""
-    match stmt:
-        case nodes.Reserve(of) | nodes.Advance(of) | nodes.Let(_, nodes.Used(of)):
-            return of == lane
-        case nodes.SetField(nodes.Place(of)) | nodes.Copy(nodes.Place(of)) | nodes.Fill(nodes.Place(of)):
-            return of == lane
-        case _:
-            return False
-
-
-def _reads(stmt: nodes.Stmt, names: set[str]) -> bool:
-    return any(names & locals_in(expr) for expr in expressions_of(stmt))
-
-
 def _checks(stmt: nodes.Stmt, at: nodes.Expr, size: nodes.Expr) -> bool:
     return isinstance(stmt, nodes.Expect) and stmt.condition == nodes.IsText(nodes.Wire(at), size)
-
-
-def _blocks(block: nodes.Block) -> list[nodes.Block]:
-    """A block and all within it."""
-    found = [block]
-
-    def note(inner: nodes.Block) -> nodes.Block:
-        found.extend(_blocks(inner))
-        return inner
-
-    for stmt in block:
-        with_blocks(stmt, note)
-    return found
-
-
-def _counted(stmt: nodes.Stmt) -> set[int]:
-    """Lanes whose counts a statement changes or asks for."""
-    found = {stmt.lane} if isinstance(stmt, nodes.Reserve | nodes.Advance) else set[int]()
-    parts = (part for expr in expressions_of(stmt) for part in subexpressions(expr))
-    return found | {part.lane for part in parts if isinstance(part, nodes.Used)}
 
 
 def _if_any(stmt: nodes.Stmt, count: nodes.Expr, copy: nodes.Copy) -> bool:

@@ -58,6 +58,8 @@ def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str,
     scope.numpy = unit.numpy
     body, rows = without_work_list(undamaged(reached(kernel.bodies[0]), kernel.sites), unit.layout)
     parts = _parts(unit, kernel, scope, body, written, depth=2)
+    if unit.layout.recursive:
+        parts.join, parts.join_all = "_joined", "_whole"
     parts.binder.bind(0, index(0), "target", Ref(unit.type), unit.layout.root)
     parts.block(parts.body)
     called, pending, inner = set[str](), set(parts.called), dict[int, str]()
@@ -112,6 +114,7 @@ def _row(unit: Unit, kernel: Kernel, scope: ObjectScope, of: tuple[int, str, Row
     lane, struct, row = of
     scope.numpy = unit.numpy
     parts = _parts(unit, kernel, scope, (*row.block, Return(row.end)), written, depth=1)
+    parts.join = parts.join_all = "_joined"
     if any(isinstance(stmt, Expect) and not is_behind_message(stmt) for stmt, _ in statements(parts.body)):
         raise NotInParts
     parts.positions.at = parts.positions.values[row.begin] = Sum(0, frozenset({(row.begin, 1)}))

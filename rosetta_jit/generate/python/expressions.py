@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Collection
 from itertools import groupby
 from typing import TYPE_CHECKING, assert_never
 
@@ -53,6 +54,7 @@ class Scope:
     ``flat``: the fields of the message's row are locals, ``rows``, of which ``floats`` are floats. ``views`` are the lanes that it reaches,
     with the code of the view, empty for the bytes themselves; ``paths`` are the fields that lanes belong to; ``counted`` and ``rooms`` are
     lanes, ``loads`` functions that it needs, ``from_call`` values that each call brings: its time and number, registers, object.
+    ``small`` are the locals of 64 bits, without a sign, that are known to be below 2**63.
     """
 
     locals: Namespace
@@ -69,6 +71,11 @@ class Scope:
     from_call: set[str] = field(default_factory=set[str])
     direct: Direct = field(default_factory=Direct)
     numpy: bool = False
+    small: set[str] = field(default_factory=set[str])
+
+    def note(self, name: str, *, is_small: bool) -> None:
+        """Know of a local whether it is below 2**63."""
+        (self.small.add if is_small else self.small.discard)(name)
 
     def view(self, lane: int, code: str) -> str:
         """The view of a lane's rows as numbers of one type."""
@@ -192,7 +199,28 @@ def _converted(scope: Scope, convert: nodes.Convert) -> str:
     if (zigzag := zigzag_of(convert)) is not None:
         text = expression(scope, zigzag)
         return f"({text} >> 1 ^ -({text} & 1))"
+    if convert.type == "i64" and is_small(convert.operand, scope.small):
+        return expression(scope, convert.operand)
     return _convert(convert.type, type_of(convert.operand), expression(scope, convert.operand))
+
+
+def is_small(expr: nodes.Expr, small: Collection[str]) -> bool:
+    """Whether an integer of 64 bits without a sign is seen to be below 2**63, as some locals are."""
+    match expr:
+        case nodes.Const("u64", value):
+            return value < 1 << 63
+        case nodes.Local("u64", name):
+            return name in small
+        case nodes.Convert("u64", operand):
+            return type_of(operand) in ("bool", "u8", "u16", "u32")
+        case nodes.Binary("and", left, right):
+            return type_of(expr) == "u64" and (is_small(left, small) or is_small(right, small))
+        case nodes.Binary("or" | "xor", left, right):
+            return is_small(left, small) and is_small(right, small)
+        case nodes.Binary("shr", left, nodes.Const(_, places)):
+            return type_of(left) == "u64" and (places > 0 or is_small(left, small))
+        case _:
+            return False
 
 
 def _decimal(scope: Scope, expr: nodes.Nearest | nodes.Digits | nodes.Scale) -> str:

@@ -20,7 +20,7 @@ from rosetta_jit.generate.shares import moved_lanes
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import Role, kind_of
 from rosetta_jit.kernel import ir, nodes
-from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Att
     if kernel.direction != "decode":
         body = undamaged(body, kernel.sites)
     elif scope.flat and objects.layout is not None:
-        body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, few=0 if scope.numpy else FEW)
+        body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, objects.blobs, few=0 if scope.numpy else FEW)
     function.settled = settled(body)
     function.read, function.positive = read_names(body), not_negative(body)
     function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, nodes.Reserve))
@@ -212,24 +212,30 @@ def _routine(writer: Writer, role: Role, routine: ir.Routine, function: Function
     _blank(writer)
     writer.line(f"def {name}({', '.join(['data', 'end', 'sites', 'indices', *parameters, *own])}):")
     writer.lines += function.writer.lines
-    return Attempt(name, tuple(parameters), _is_mostly_a_byte(routine))
+    return Attempt(
+        name, tuple(parameters), _is_mostly_a_byte(routine), isinstance(routine.body[0] if routine.body else None, nodes.Require)
+    )
 
 
 def _is_mostly_a_byte(routine: ir.Routine) -> bool:
     """Whether a routine reads a byte, and goes on if that is 128 or more: a caller may look at it without a call."""
-    match routine.parameters, routine.results, routine.body:
+    body = routine.body
+    if body and isinstance(body[0], nodes.Require):
+        if body[0].size != index(1) or body[0].at != routine.parameters[0]:
+            return False
+        body = body[1:]
+    match routine.parameters, routine.results, body:
         case (
             (at,),
             (value, after),
             (
-                nodes.Require(needed, nodes.Const(_, 1)),
                 nodes.Let(byte, nodes.Load("u8", place)),
                 nodes.Var(first, nodes.Convert("u64", nodes.Local(_, converted))),
                 nodes.Var(behind, nodes.Binary("add", begin, nodes.Const(_, 1))),
                 nodes.If(nodes.Compare("ge", nodes.Local(_, compared), nodes.Const(_, 128)), _, ()),
             ),
         ):
-            is_read = needed == place == begin == at and byte == converted == compared
+            is_read = place == begin == at and byte == converted == compared
             return is_read and (first, behind) == (value.name, after.name)
         case _:
             return False

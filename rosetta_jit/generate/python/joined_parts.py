@@ -22,6 +22,8 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from rosetta_jit.generate.python.statements import Function
 
+JOIN = 'b"".join'
+
 MOST_STARRED = 40
 """Numbers of an array of a fixed length that are packed together with those around it."""
 
@@ -45,7 +47,10 @@ class Around:
 
 
 class Written:
-    """``pending`` are parts that no line has written yet, ``begun`` is whether any has, ``list_name`` the local that has those."""
+    """``pending`` are parts that no line has written yet, ``begun`` is whether any has, ``list_name`` the local that has those.
+
+    ``join`` makes one of the parts of a message within another, ``join_all`` of all parts.
+    """
 
     def __init__(self, unit: Unit, function: Function, scope: ObjectScope, needed: set[tuple[int, int]]) -> None:
         self.unit, self.function, self.scope = unit, function, scope
@@ -54,6 +59,7 @@ class Written:
         self.binder = Binder(unit, function, scope, needed)
         self.exact: dict[int, int] = {}
         self.limits: dict[Expr, int] = {}
+        self.join = self.join_all = JOIN
 
     def line(self, text: str) -> None:
         self.function.line(text)
@@ -140,18 +146,18 @@ class Written:
 
     def end(self, name: str) -> None:
         """Join the parts: that is the result, or has a name."""
-        made = self._joined()
+        made = self._joined(self.join_all)
         self.line(f"{name} = {made}" if name else f"return {made}")
 
-    def _joined(self) -> str:
+    def _joined(self, join: str) -> str:
         """All parts as one."""
         if self.begun:
             self.flush()
-            return f'b"".join({self.list_name})'
+            return f"{join}({self.list_name})"
         texts = [part_text(each, self.scope, self.exact) for each in self.pending]
-        if len(texts) == 1:
+        if len(texts) == 1 and (self.pending[0].codes or join == JOIN):
             return texts[0] if self.pending[0].codes else f"bytes({texts[0]})"
-        return f'b"".join(({", ".join(texts)}))' if texts else 'b""'
+        return f"{join}(({', '.join(texts)}{',' if len(texts) == 1 else ''}))" if texts else 'b""'
 
     # --- a message behind its length ---------------------------------------------------------------------------------------------------
 
@@ -177,6 +183,6 @@ class Written:
         body = self.binder.local("body")
         if self.begun:
             writer.lines.insert(around.line, f"{'    ' * around.depth}{self.list_name} = []")
-        self.line(f"{body} = {self._joined()}")
+        self.line(f"{body} = {self._joined(self.join)}")
         self.pending, self.begun, self.list_name = around.pending, around.begun, around.list_name
         self.pending = [*self.pending, Part("", "", (f"{around.routine}(len({body}))",)), Part("", "", (body,))]

@@ -10,6 +10,7 @@ from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.unit_lanes import named_lanes
+from rosetta_jit.generate.python.borrowed import borrowed
 from rosetta_jit.generate.python.classes import WORDS, classes, names_of
 from rosetta_jit.generate.python.collecting import Collect
 from rosetta_jit.generate.python.encoder import encoder_in_parts
@@ -19,12 +20,13 @@ from rosetta_jit.generate.python.making import Make, arrays_of
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.python.statements import Objects
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
+from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Advance, Const, Direction, Return
 from rosetta_jit.kernel.traits import asks_host
 from rosetta_jit.kernel.walk import statements
-from rosetta_jit.model.types import Ref
+from rosetta_jit.model.types import Bytes, Ref
 from rosetta_jit.startup.dataclass import replace
 
 REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
@@ -32,8 +34,13 @@ REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 
 RUNTIME = Path(__file__).with_name("runtime.py")
 DECIMALS = Path(__file__).with_name("decimals.py")
-VARINTS = Path(__file__).with_name("varints.py")
-LONG_VARINTS = Path(__file__).with_name("long_varints.py")
+MORE = {
+    "_varint(": (Path(__file__).with_name("varints.py"), "_SHORT"),
+    "_several_bytes(": (Path(__file__).with_name("long_varints.py"), "def "),
+    "_long_length(": (Path(__file__).with_name("long_lengths.py"), "def "),
+    "_joined(": (Path(__file__).with_name("long_parts.py"), "_LONG"),
+}
+"""What modules have besides that name such functions: a file, from where its text begins."""
 ARRAYS = Path(__file__).with_name("arrays.py")
 OF_DECIMALS = ("_nearest(", "_shortest(", "_fixed_digits(")
 NO_MEMORY = "the message asks for more memory than its size allows"
@@ -67,12 +74,10 @@ class _Module:
         if any(function in part for function in OF_DECIMALS for part in parts):
             decimals = DECIMALS.read_text("utf-8")
             runtime += f"\n\n\n{decimals[decimals.index('def ') :].rstrip()}"
-        if any("_varint(" in part for part in parts):
-            varints = VARINTS.read_text("utf-8")
-            runtime += f"\n\n\n{varints[varints.index('_SHORT') :].rstrip()}".replace("  # pyright: ignore[reportUnusedFunction]", "")
-        if any("_several_bytes(" in part for part in parts):
-            varints = LONG_VARINTS.read_text("utf-8")
-            runtime += f"\n\n\n{varints[varints.index('def ') :].rstrip()}".replace("  # pyright: ignore[reportUnusedFunction]", "")
+        for use, (path, begin) in MORE.items():
+            if any(use in part for part in parts):
+                more = path.read_text("utf-8")
+                runtime += f"\n\n\n{more[more.index(begin) :].rstrip()}".replace("  # pyright: ignore[reportUnusedFunction]", "")
         if self.unit.numpy:
             arrays = ARRAYS.read_text("utf-8")
             runtime = runtime.replace(
@@ -136,7 +141,7 @@ class _Module:
     # --- decoding --------------------------------------------------------------------------------------------------------------------
 
     def _decoder(self) -> str:
-        kernel, type_ = self.unit.kernels["borrow"], Ref(self.unit.type)
+        kernel, type_ = borrowed(undamaged_kernel(self.unit.kernels["borrow"]), self.unit.layout), Ref(self.unit.type)
         taken = frozenset(stmt.lane for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, Advance))
 
         def made(scope: Scope, _: str) -> str:
@@ -155,7 +160,8 @@ class _Module:
             return Make(self.unit, scope, self.names, taken).value(arrays[lane], self.unit.layout.lanes[lane].element, lane, "")
 
         origins, lanes = self.unit.origins.get("borrow", ()), self._lanes(kernel)
-        objects = Objects(made, row, inner, self.unit.layout, frozenset(arrays), self.unit.numpy, frozenset(self.names.values()))
+        blobs = frozenset(lane for lane, type_ in arrays.items() if isinstance(self.unit.schema.resolve(type_), Bytes))
+        objects = Objects(made, row, inner, self.unit.layout, frozenset(arrays), blobs, self.unit.numpy, frozenset(self.names.values()))
         text, attempts = print_kernel(kernel, lanes, "borrow", self.loads, origins, objects, self.paths, flat=is_flat(kernel, lanes))
         return "\n\n".join([self._sites("borrow"), f"\n{text.rstrip()}", f"\n{self._decode(attempts)}"])
 

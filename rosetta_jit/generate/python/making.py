@@ -36,13 +36,16 @@ class Make:
                 return self.struct(resolved, slot, lane, row)
             case Union(), Variant():
                 return self.union(resolved, slot, lane, row)
-            case Struct(), Span():
-                assert isinstance(type_, Ref)
-                return f"{self.row(type_, slot.lane, self._start(slot, lane, row))} if {self._count(slot, lane, row)} else None"
+            case Struct(name), Span():
+                return self.linked(type_, slot, lane, row, f"{self.names[name]}()")
             case ((String() | Bytes() | Array() | Map()), Span()):
                 return self.sequence(resolved, slot, lane, row)
             case _:
                 raise AssertionError(type_)
+
+    def linked(self, type_: Type, slot: Span, lane: int, row: str, instead: str) -> str:
+        """A message of a type that contains itself; ``instead`` where it has no row: as the value of a map's entry that gives none."""
+        return f"{self.row(type_, slot.lane, self._start(slot, lane, row))} if {self._count(slot, lane, row)} else {instead}"
 
     def _start(self, slot: Span, lane: int, row: str) -> str:
         return self.scope.field(lane, row, slot.offset, "i64")
@@ -59,7 +62,11 @@ class Make:
     def member(self, each: Field, member: Member, slot: Row, lane: int, row: str) -> str:
         """The value of a field of the struct at a slot; it may be absent."""
         if member.presence is None:
-            return self.value(each.type, member.slot, lane, row)
+            match self.unit.schema.resolve(each.type), member.slot:
+                case Struct(), Span() as link:
+                    return self.linked(each.type, link, lane, row, "None")
+                case _:
+                    return self.value(each.type, member.slot, lane, row)
         assert isinstance(each.type, Optional)
         there = self.is_there(member.presence, slot, lane, row)
         return f"({self.value(each.type.value, member.slot, lane, row)}) if {there} else None"
@@ -94,7 +101,8 @@ class Make:
                     return f'{text} if {count} else ""'
                 return self._text("_text", slot, lane, row)
             case Bytes():
-                return self._text("_bytes", slot, lane, row)
+                inside = slot.lane not in self.reserved
+                return f"data[{start} : {start} - 1 - {count}] if {count} else b''" if inside else self._text("_bytes", slot, lane, row)
             case Array() if isinstance(element, Number):
                 if WIDTH[element.scalar] == 1 and element.scalar != "bool":
                     borrowed = self._text("_bytes", slot, lane, row)

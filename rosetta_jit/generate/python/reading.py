@@ -25,6 +25,15 @@ def takes_text(scope: Scope, condition: Expr) -> str | None:
             return None
 
 
+def gathered(scope: Scope, lane: int) -> str:
+    """The text or bytes that is appended to the list of a lane."""
+    if (lane, 0) in scope.direct.texts:
+        return scope.text(lane, 0)
+    at, size = scope.direct.gathered[lane]
+    begin = bare(expression(scope, at))
+    return f"data[{begin} : {begin} + {expression(scope, size)}]"
+
+
 def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at: Expr, size: Expr, order: str) -> str:
     """The list of numbers that lie in the message, or of rows that are numbers, of which ``row`` makes objects."""
     begin, stride = bare(expression(scope, at)), scope.lanes.stride(lane)

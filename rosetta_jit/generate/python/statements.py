@@ -9,29 +9,31 @@ from typing import assert_never
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.origins import Origin, origin_of
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.python.expressions import CODES, Scope, expression, location, view_name
+from rosetta_jit.generate.python.expressions import CODES, Scope, expression, is_small, location, view_name
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
-from rosetta_jit.generate.python.reading import numbers_read, takes_text
+from rosetta_jit.generate.python.reading import gathered, numbers_read, takes_text
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import mul, type_of
 from rosetta_jit.model.layout import Layout
 from rosetta_jit.startup.dataclass import dataclass, field
 
-OF_ANY_SIZE = ("read_varint", "read_element")
-"""Routines for integers of protobuf that often have several bytes: one call reads those that end."""
+OF_SEVERAL_BYTES = {**dict.fromkeys(("read_varint", "read_element", "read_packed"), "_several_bytes"), "read_size": "_long_length"}
+"""Routines for integers of protobuf that often have several bytes, with the function that reads those that end by one call."""
 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
     """A body as a function: its name, and the names of what it needs of the message's lanes and row.
 
-    Of a routine, ``is_mostly_a_byte`` says that its results are a byte and the place behind it, unless that byte is 128 or more.
+    Of a routine, ``is_mostly_a_byte`` says that its results are a byte and the place behind it, unless that byte is 128 or more;
+    ``may_lack`` that this byte may be missing.
     """
 
     name: str
     needs: tuple[str, ...]
     is_mostly_a_byte: bool = False
+    may_lack: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +41,7 @@ class Objects:
     """How a function comes to objects: ``result`` is what a return of success gives at a position.
 
     Of decoders ``row`` is the object of a lane's row, ``inner`` are the lines of functions for rows that contain rows of their own type,
-    and ``arrays`` are the lanes of arrays in the ``layout``. ``numpy``: arrays of numbers are numpy's;
+    ``arrays`` are the lanes of arrays in the ``layout``, and ``blobs`` those of bytes among them. ``numpy``: arrays of numbers are numpy's;
     ``classes`` are the names of classes, which no local hides.
     """
 
@@ -48,6 +50,7 @@ class Objects:
     inner: Callable[[Scope], list[str]] = lambda _: []
     layout: Layout | None = None
     arrays: frozenset[int] = frozenset()
+    blobs: frozenset[int] = frozenset()
     numpy: bool = False
     classes: frozenset[str] = frozenset()
 
@@ -132,6 +135,7 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
             else:
                 _fail_if(function, function.text(folded(nodes.Unary("not", condition))), failure)
         case nodes.Let(name, value) | nodes.Var(name, value) | nodes.Assign(name, value):
+            function.scope.note(name, is_small=isinstance(stmt, nodes.Let) and is_small(value, function.scope.small))
             if name in function.read:
                 text = function.text(value)
                 function.line(f"{function.scope.locals.identifier(name)} = {text}{_origin(function, stmt)}")
@@ -214,7 +218,7 @@ def _effect(function: Function, stmt: nodes.Effect) -> None:
                     f"{scope.struct('<' if nodes.WIDTH[type_] == 1 else order, CODES[type_], 'store')}(data, {where}, {text}){origin}"
                 )
         case nodes.SetField(nodes.Place(lane), _) if lane in scope.direct.gathered:
-            function.line(f"{scope.lanes.rows(lane)}.append({scope.text(lane, 0)}){origin}")
+            function.line(f"{scope.lanes.rows(lane)}.append({gathered(scope, lane)}){origin}")
         case nodes.SetField(place, value):
             target = _target(function, place, value)
             text = function.text(value)
@@ -345,6 +349,10 @@ def _call(function: Function, call: nodes.Call) -> None:
     scope, routine = function.scope, function.routines[call.routine]
     _pass_on(function, routine)
     results = [scope.locals.identifier(result.name) for result in call.results]
+    called = next(each for each in function.kernel.routines if each.name == call.routine)
+    for result, own in zip(call.results, called.results, strict=True):
+        limits = (each.right for each in called.ensures if isinstance(each, nodes.Compare) and (each.op, each.left) == ("le", own))
+        scope.note(result.name, is_small=own.type == "u64" and any(is_small(limit, ()) for limit in limits))
     sites = [f"sites[{each - 1}]" if function.is_routine else str(each) for each in call.sites]
     indices = "indices" if function.is_routine else _tuple([function.text(each) for each in call.indices])
     arguments = ", ".join(["data", "end", _tuple(sites), indices, *routine.needs, *(function.text(each) for each in call.arguments)])
@@ -352,11 +360,11 @@ def _call(function: Function, call: nodes.Call) -> None:
     if routine.is_mostly_a_byte:
         at, (value, after) = expression(scope, call.arguments[0]), results
         least = "" if is_not_negative(call.arguments[0], function.positive) else "0 <= "
-        function.line(f"{value} = data[{bare(at)}] if {least}{at} < end else 128")
+        function.line(f"{value} = data[{bare(at)}]" + (f" if {least}{at} < end else 128" if routine.may_lack else ""))
         function.line(f"{after} = {at} + 1")
         function.line(f"if {value} >= 128:")
-        if call.routine in OF_ANY_SIZE:
-            function.line(f"    {value}, {after} = _several_bytes(data, {bare(at)})")
+        if call.routine in OF_SEVERAL_BYTES:
+            function.line(f"    {value}, {after} = {OF_SEVERAL_BYTES[call.routine]}(data, {bare(at)})")
             function.line(f"if not {after}:")
         bound = f"    {bound}"
     function.line(f"{bound}{routine.name}({arguments})")

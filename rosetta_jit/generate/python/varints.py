@@ -9,6 +9,8 @@ def _varint(number: int) -> bytes:  # pyright: ignore[reportUnusedFunction]
         return _SHORT[number]
     if number < 16384:
         return bytes((number & 127 | 128, number >> 7))
+    if number < 2097152:
+        return bytes((number & 127 | 128, number >> 7 & 127 | 128, number >> 14))
     written = bytearray()
     while number > 127:
         written.append(number & 127 | 128)

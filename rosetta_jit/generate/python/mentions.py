@@ -1,0 +1,67 @@
+"""What the statements of a decoder have to do with lanes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rosetta_jit.kernel import nodes
+from rosetta_jit.kernel.rewrite import locals_in, with_blocks
+from rosetta_jit.kernel.walk import expressions_of, extents_of, subexpressions
+
+
+def places_of(stmt: nodes.Stmt) -> Iterator[nodes.Place]:
+    """Places of lanes that a statement has to do with."""
+    match stmt:
+        case nodes.SetField(place):
+            yield place
+        case nodes.Copy(target, source, _):
+            yield from (each for each in (target, source) if isinstance(each, nodes.Place))
+        case nodes.Fill(nodes.Place() as target, _, _):
+            yield target
+        case nodes.HostCall():
+            yield from (each.address for each in extents_of(stmt) if isinstance(each.address, nodes.Place))
+        case _:
+            pass
+    for expr in expressions_of(stmt):
+        for part in subexpressions(expr):
+            match part:
+                case nodes.Get(_, place) | nodes.IsText(nodes.Place() as place, _) | nodes.Nearest(nodes.Place() as place, _, _):
+                    yield place
+                case _:
+                    pass
+
+
+def changes(stmt: nodes.Stmt, lane: int) -> bool:
+    """Whether a statement takes rows of a lane, or sets them."""
+    match stmt:
+        case nodes.Reserve(of) | nodes.Advance(of) | nodes.Let(_, nodes.Used(of)):
+            return of == lane
+        case nodes.SetField(nodes.Place(of)) | nodes.Copy(nodes.Place(of)) | nodes.Fill(nodes.Place(of)):
+            return of == lane
+        case _:
+            return False
+
+
+def reads_any(stmt: nodes.Stmt, names: set[str]) -> bool:
+    """Whether a statement reads one of some locals."""
+    return any(names & locals_in(expr) for expr in expressions_of(stmt))
+
+
+def blocks_within(block: nodes.Block) -> list[nodes.Block]:
+    """A block and all within it."""
+    found = [block]
+
+    def note(inner: nodes.Block) -> nodes.Block:
+        found.extend(blocks_within(inner))
+        return inner
+
+    for stmt in block:
+        with_blocks(stmt, note)
+    return found
+
+
+def counted_lanes(stmt: nodes.Stmt) -> set[int]:
+    """Lanes whose counts a statement changes or asks for."""
+    found = {stmt.lane} if isinstance(stmt, nodes.Reserve | nodes.Advance) else set[int]()
+    parts = (part for expr in expressions_of(stmt) for part in subexpressions(expr))
+    return found | {part.lane for part in parts if isinstance(part, nodes.Used)}

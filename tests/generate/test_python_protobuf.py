@@ -1,0 +1,198 @@
+"""The quick ways of generated Python with protobuf say what the library says."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.api.options import type_request
+from rosetta_jit.generate.build import generated
+from tests.generate.driver import harmed
+from tests.generate.python import BOTH, answers_as_the_library, module, protobuf
+
+
+def test_short_integers_are_read_without_a_call():
+    """Tags and lengths of one byte, at the end of a message too; and texts of which one is not ASCII."""
+    given = {
+        "encoding": "protobuf",
+        "schema": {"t.proto": 'syntax = "proto3"; package t; message M { repeated string v = 1; int64 n = 2; }'},
+    }
+    request = type_request("decode", "t.M", given)
+    assert re.search(r"= data\[\w+\] if .*\w+ < end else 128\n", generated(request, "python", ("decode",), "unit")["unit.py"])
+    unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    values = [["", "a", "b" * 200], ["é", "", "x"], []]
+    good = [bytes(programs[1](programs[1].holder_type.from_dict({"v": each, "n": -1}))) for each in values]
+    answers_as_the_library(unit, programs, harmed([*good, b"\x0a", b"\x10", b"\x10\x80", b"\x8a\x00\x01a"], 12, "short"))
+    assert [unit.decode(each).v for each in good] == values
+
+
+def test_bools_behind_tags_are_one_of_two_texts():
+    """Those of which each has its own tag, of one byte and of two."""
+    given = protobuf("message M { repeated bool v = 1 [packed = false]; repeated bool far = 40 [packed = false]; int32 n = 2; }")
+    request = type_request("decode", "t.M", given)
+    assert r"[b'\xc0\x02\x01' if each else b'\xc0\x02\x00' for each in far" in generated(request, "python", BOTH, "unit")["unit.py"]
+    unit, encode = module(request), rj.Encoder.of("t.M", **given)
+    for values in ({"v": [True, False, True], "far": [False, True], "n": 3}, {"v": [], "far": [True]}, {}):
+        assert unit.encode(unit.M(**values)) == bytes(encode(encode.holder_type.from_dict(values)))
+
+
+def test_messages_that_contain_their_own_type_are_written_by_functions():
+    """As one, as a list, in a oneof, in a map, in a message between, in a group of their own, and with fields of other lengths."""
+    schema = """
+        message M { string name = 1; sint32 n = 2; repeated M many = 3; M one = 4; oneof which { M first = 5; bool second = 6; }
+            map<string, M> named = 7; repeated Between between = 300; repeated double numbers = 9; Other other = 10; }
+        message Between { fixed32 id = 1; M inner = 2; repeated int32 ids = 3; }
+        message Other { repeated Other others = 1; M back = 2; repeated bool flags = 3 [packed = false]; }
+        message Root { M tree = 1; Other other = 2; int32 n = 3; }
+    """
+    leaf = {"name": "é" * 100, "n": -5, "numbers": [1.5] * 3}
+    between = [{"id": 1, "inner": leaf, "ids": [300, -1]}, {"id": 2}]
+    other = {"others": [{"flags": [True, False]}, {"back": {"n": 7}}], "back": leaf}
+    tree = {"many": [leaf, {"one": leaf}, {"many": [leaf] * 9}], "one": {"one": {}}, "first": leaf, "between": between}
+    values = [{**tree, "other": other, "named": {"a": leaf, "b": {"second": True}}}, leaf, {}]
+    for type_, cases in (("M", values), ("Root", [{"tree": each, "other": other, "n": 4} for each in values])):
+        request = type_request("decode", f"t.{type_}", protobuf(schema))
+        text = generated(request, "python", BOTH, "unit")["unit.py"]
+        assert "_encoded_" in text
+        assert "_size_1" not in text
+        programs = rj.Decoder.of(f"t.{type_}", **protobuf(schema)), rj.Encoder.of(f"t.{type_}", **protobuf(schema))
+        messages = [bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in cases]
+        answers_as_the_library(module(request), programs, harmed(messages, 12, type_))
+
+
+@pytest.mark.parametrize("type_", ["sint32", "sint64", "int32", "int64", "uint64"])
+def test_integers_of_several_bytes(type_):
+    """Packed and behind tags, of one byte to ten, cut off anywhere, and of more than ten."""
+    given = protobuf(f"message M {{ repeated {type_} v = 1; repeated {type_} apart = 2 [packed = false]; {type_} one = 3; }}")
+    request = type_request("decode", "t.M", given)
+    assert "_several_bytes(" in generated(request, "python", BOTH, "unit")["unit.py"]
+    unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    most = 31 if type_.endswith("32") else 63
+    numbers = [sign * (1 << bit) - less for bit in range(most) for sign in (1, -1) for less in (0, 1)]
+    numbers = [each for each in numbers if each >= 0 or type_[0] != "u"]
+    good = [
+        bytes(programs[1](programs[1].holder_type.from_dict({"v": numbers, "apart": numbers[::-1], "one": each}))) for each in numbers[-3:]
+    ]
+    bad = [tag + b"\x80" * count + last for tag in (b"\x10", b"\x18") for count in range(11) for last in (b"", b"\x01", b"\x7f")]
+    packed = [b"\x0a" + bytes([len(each) - 1]) + each[1:] for each in bad]
+    beyond = [b"\x0a\x02\x80\x80\x01\x10\x01", b"\x0a\x03\x01\x80\x80\x01"]
+    answers_as_the_library(unit, programs, harmed(good, 40, type_) + bad + packed + beyond)
+    assert unit.decode(good[0]).v == numbers
+
+
+def test_texts_that_come_one_by_one_are_read_where_they_are_checked():
+    """Of the message, of messages within it, listed and merged, and of those that contain their own type; apart from each other, too."""
+    schema = """
+        message M { repeated string v = 1; repeated S many = 2; S one = 3; map<string, S> named = 4; repeated string w = 20; M inner = 5;
+            string last = 8; }
+        message S { repeated string texts = 1; int32 start = 2; }
+    """
+    given = protobuf(schema)
+    request = type_request("decode", "t.M", given)
+    assert "v.append(v_text)" in generated(request, "python", BOTH, "unit")["unit.py"]
+    unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    texts = ["", "a", "é" * 70, "b" * 200]
+    inner = {"texts": texts, "start": 1}
+    value = {"v": texts, "many": [inner, {"texts": ["c"]}, inner], "one": inner, "w": texts}
+    given_values = ({**value, "inner": {**value, "inner": {"v": texts}}}, {**value, "named": {"d": inner, "e": {"texts": ["f"]}}})
+    one, mapped = (bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in given_values)
+    broken = [one + b"\x0a\x02\xc3", one + b"\x0a\x01\xc3", b"\x0a\x01x\x1a\x03\x0a\x01\xff", b"\x12\x03\x0a\x01\xff"]
+    answers_as_the_library(unit, programs, harmed([one, mapped, one + one, b"\x1a\x03\x0a\x01x" + one], 60, "texts") + broken)
+    assert unit.decode(one + one).v == texts + texts
+    assert unit.decode(one + one).one.texts == texts + texts
+
+
+def test_entries_without_a_value_have_messages_of_their_type():
+    """Types that contain themselves, too, whose values have no row then."""
+    schema = "message M { int32 n = 1; map<string, M> own = 2; map<int32, P> others = 3; } message P { P p = 1; }"
+    given = protobuf(schema)
+    unit, programs = module(type_request("decode", "t.M", given)), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    answers_as_the_library(unit, programs, [b"\x12\x03\x0a\x01a", b"\x12\x00", b"\x1a\x02\x08\x05", b"\x1a\x00"])
+    assert unit.decode(b"\x12\x03\x0a\x01a\x1a\x00") == unit.M(own={"a": unit.M()}, others={0: unit.P()})
+
+
+def test_the_last_entry_of_a_key_stands():
+    """In a message field that comes twice, too, whose maps are merged: a dictionary, unlike the library's rows, has each key once."""
+    schema = "message M { In i = 1; map<string, In> top = 2; } message In { map<string, int32> m = 1; repeated M inner = 2; }"
+    given = protobuf(schema)
+    unit, decode, encode = module(type_request("decode", "t.M", given)), rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given)
+    a1, a2, b3 = (b"\x0a\x05\x0a\x01" + key + b"\x10" + bytes([value]) for key, value in ((b"a", 1), (b"a", 2), (b"b", 3)))
+    for parts, wanted in (((a1 + a2,), {"a": 2}), ((a1, a2), {"a": 2}), ((a2 + b3, a1), {"a": 1, "b": 3})):
+        message = b"".join(b"\x0a" + bytes([len(part)]) + part for part in parts)
+        found = unit.decode(message)
+        assert found.i.m == wanted == dict(decode(message).i.m)
+        assert unit.encode(found) == encode(encode.holder_type.from_dict({"i": {"m": wanted}}))
+        entry = b"\x0a\x01x\x12" + bytes([len(a1)])
+        entries = b"".join(b"\x12" + bytes([len(entry + each)]) + entry + each for each in (a1, b3))
+        assert unit.decode(entries).top == {"x": unit.In({"b": 3})}  # the values of entries are not merged
+
+
+def test_long_messages_of_types_that_contain_themselves():
+    """Their bytes stay in parts until the message is whole: around that length, in lists, maps, oneofs and messages between."""
+    schema = """
+        message M { bytes data = 1; M one = 2; repeated M many = 3; map<string, M> named = 4; oneof which { M first = 5; string text = 6; }
+            Between between = 7; }
+        message Between { M inner = 1; string text = 2; repeated M inners = 3; }
+    """
+    given = protobuf(schema)
+    unit, programs = module(type_request("decode", "t.M", given)), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    deep = {"data": b"end"}
+    for _ in range(60):
+        deep = {"data": bytes(3000), "one": deep}
+    leaves = [{"data": bytes(size)} for size in (0, 10, 32700, 32760, 32768, 40000, 3_000_000)]
+    between = {"inner": leaves[5], "text": "é" * 20000, "inners": leaves[:5]}
+    values = [*leaves, deep, {"many": leaves, "one": leaves[6], "first": {"one": leaves[3], "text": "x" * 50000}}]
+    values += [{"named": {"a": leaves[6], "b": {"between": between}}, "between": between}, {"between": {"inner": {}}}]
+    messages = [bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in values]
+    answers_as_the_library(unit, programs, messages)
+    wrong = unit.M(one=unit.M(data="text" * 20000), data=bytes(50000))
+    for made in (wrong, unit.M(many=[wrong, unit.M(data=7)]), unit.M(many=[unit.M(data=bytes(50000)), 5])):
+        with pytest.raises(unit.EncodeError):
+            unit.encode(made)
+
+
+def test_bytes_that_come_one_by_one_are_appended_where_they_are():
+    """Of the message, in a list apart, and in messages within it, whose lists are merged."""
+    given = protobuf(
+        "message M { repeated bytes v = 1; S one = 2; int32 n = 3; repeated bytes w = 20; } message S { repeated bytes v = 1; }"
+    )
+    request = type_request("decode", "t.M", given)
+    assert "v.append(data[" in generated(request, "python", BOTH, "unit")["unit.py"]
+    unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    values = [b"", b"a", bytes(200), b"\xff" * 20000]
+    good = bytes(programs[1](programs[1].holder_type.from_dict({"v": values, "one": {"v": values}, "n": 1, "w": values})))
+    answers_as_the_library(unit, programs, harmed([good, good + good, b"\x0a\x01a\x18\x01\x0a\x01b"], 60, "bytes"))
+    assert unit.decode(good + good).v == values + values
+    assert unit.decode(good + good).one.v == values + values
+
+
+def test_lengths_of_several_bytes():
+    """Of two to five, those that are too long or too large, and those that end nowhere; of texts, bytes and messages."""
+    given = protobuf("message M { string text = 1; bytes data = 2; S one = 3; repeated S many = 4; } message S { string text = 1; }")
+    unit, programs = module(type_request("decode", "t.M", given)), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    sizes = [127, 128, 129, 16383, 16384, 2097151, 2097152]
+    good = [b"\x12" + unit._varint(size) + bytes(size) for size in sizes] + [b"\x12\x83\x80\x80\x80\x00abc", b"\x0a\x81\x00a"]
+    lengths = [b"\x80" * count + last for count in range(1, 11) for last in (b"", b"\x00", b"\x01", b"\x08", b"\x7f")]
+    answers_as_the_library(
+        unit, programs, good + [tag + each + b"rest" for tag in (b"\x0a", b"\x12", b"\x1a", b"\x22") for each in lengths]
+    )
+
+
+def test_texts_stay_in_the_message_until_they_are_made():
+    """Of messages within others, entries of maps and cases of oneofs: empty ones, those that come again, and those that are no UTF-8."""
+    schema = """
+        message M { string name = 1; S one = 2; repeated S many = 3; map<string, string> names = 4;
+            oneof which { string a = 5; int32 b = 6; } }
+        message S { string text = 1; optional string note = 2; bytes data = 3; }
+    """
+    given = protobuf(schema)
+    text = generated(type_request("decode", "t.M", given), "python", ("decode",), "unit")["unit.py"]
+    assert " _text(" not in text[text.index("def _borrow_1") :]
+    unit, programs = module(type_request("decode", "t.M", given)), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    inner = {"text": "é" * 70, "note": "", "data": b"\xff"}
+    value = {"name": "n", "one": inner, "many": [inner, {}, {"text": "b" * 300}], "names": {"": "x", "k": "", "ü": "v"}, "a": ""}
+    one = bytes(programs[1](programs[1].holder_type.from_dict(value)))
+    answers_as_the_library(unit, programs, harmed([one, one + b"\x0a\x00\x12\x02\x0a\x00", b"\x2a\x01x\x30\x05"], 80, "where"))
+    assert unit.decode(one + b"\x12\x03\x0a\x01z").one == unit.S(text="z", note="", data=b"\xff")
