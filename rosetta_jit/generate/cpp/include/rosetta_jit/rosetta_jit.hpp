@@ -394,6 +394,30 @@ inline std::uint64_t word_at(const unsigned char *bytes) noexcept
     return word;
 }
 
+/* Whether bytes are ASCII, as most texts are: the first ones and the last ones, which may be the same, and those between. */
+inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) noexcept
+{
+    const unsigned char *const text = static_cast<const unsigned char *>(memory) + start;
+    if (size >= 8) {
+        std::uint64_t any = word_at(text + size - 8);
+        std::int64_t at = 0;
+        for (; size - at > 32; at += 32) {
+            any |= word_at(text + at) | word_at(text + at + 8) | word_at(text + at + 16) | word_at(text + at + 24);
+        }
+        for (; size - at > 8; at += 8) {
+            any |= word_at(text + at);
+        }
+        return (any & GOES_ON) == 0;
+    }
+    if (size >= 4) {
+        std::uint32_t first, last;
+        std::memcpy(&first, text, sizeof first);
+        std::memcpy(&last, text + size - 4, sizeof last);
+        return ((first | last) & 0x80808080u) == 0;
+    }
+    return size <= 0 || (text[0] | text[size / 2] | text[size - 1]) < 128;
+}
+
 /* The number of the highest bit that is set; of 0 and 1 it is 0. */
 inline unsigned highest_bit(std::uint64_t number) noexcept
 {
@@ -869,6 +893,8 @@ template <class Number, class Row> constexpr bool are_flags = std::is_same_v<Num
 template <class Container>
 struct has_data : std::bool_constant<is_repeated<Container>::value || shows_data<Container>::value || holds_vector<std::remove_const_t<Container>>::value> {};
 
+constexpr std::size_t SHORT_TEXT = 16; /* below which strings need no memory of their own */
+
 /* Numbers, or the bytes of a text, into a container. One of a fixed length takes as many as it has. */
 template <class Container, class Row> void assign(Container &&target, const Row *rows, std::int64_t count)
 {
@@ -893,10 +919,24 @@ template <class Container, class Row> void assign(Container &&target, const Row 
     }
 }
 
-/* Bytes that nothing has to make room for first. */
+/* A text of another length. One that has no room yet is made anew, which compilers see into. */
+inline void assign_other(std::string &target, const char *first, std::size_t size)
+{
+    if (target.empty() && (size < SHORT_TEXT || size > target.capacity())) {
+        target = std::string(first, size);
+    } else {
+        target.assign(first, size);
+    }
+}
+
+/* Bytes that nothing has to make room for first. A text of the same length, as names have again and again, is written where it is. */
 inline void assign(std::string &target, const unsigned char *bytes, std::int64_t count)
 {
-    target.assign(reinterpret_cast<const char *>(bytes), static_cast<std::size_t>(count));
+    if (target.size() == static_cast<std::size_t>(count)) {
+        copy_few(&target[0], 0, bytes, 0, count);
+    } else {
+        assign_other(target, reinterpret_cast<const char *>(bytes), static_cast<std::size_t>(count));
+    }
 }
 
 template <class Memory> void assign(std::vector<std::uint8_t, Memory> &target, const unsigned char *bytes, std::int64_t count)
