@@ -991,6 +991,19 @@ void assign_texts(Container &target, const Rows &rows, const Span &span, const L
             return;
         }
     }
+    if constexpr (is_repeated<Container>::value) {
+        const std::int64_t there = count_of(target);
+        if (span.count > there) {
+            target.Reserve(static_cast<int>(span.count));
+            for (; index < there; index++) {
+                assign_span(element(target, index), from, texts[index], message);
+            }
+            for (; index < span.count; index++) {
+                assign_span(*target.Add(), from, texts[index], message);
+            }
+            return;
+        }
+    }
     resize_to(target, span.count);
     const std::int64_t count = std::min(span.count, count_of(target)); /* one of a fixed length has as many as it has */
     for (; index < count; index++) {
@@ -1205,6 +1218,21 @@ template <class Row, class Container> struct list_lane<Row, Container, false> : 
 template <class Message, class = void> struct shows_unknown : std::false_type {};
 template <class Message> struct shows_unknown<Message, std::void_t<decltype(std::declval<Message &>().mutable_unknown_fields())>> : std::true_type {};
 
+/* The class that declares a function of an object. */
+template <class Class, class Result, class... Arguments> Class declaring(Result (Class::*)(Arguments...) const);
+
+/* Where a message of protobuf's has what it keeps besides its fields: its base class shows it to those derived from that. */
+template <class Base> struct kept_besides : Base {
+    template <class Self> static auto member(int) -> decltype(&Self::_internal_metadata_) { return &Self::_internal_metadata_; }
+    template <class> static std::nullptr_t member(long) { return nullptr; }
+};
+template <class Message> using base_of = decltype(declaring(&Message::FindInitializationErrors));
+
+template <class Message, class = void> struct says_unknown : std::false_type {};
+template <class Message>
+struct says_unknown<Message, std::void_t<decltype((std::declval<const Message &>().*kept_besides<base_of<Message>>::template member<kept_besides<base_of<Message>>>(0)).have_unknown_fields())>>
+    : std::true_type {};
+
 /* The reflection of a class of protobuf's, for which a message looks each time that it is asked. */
 template <class Message> const auto &reflection_of(const Message &message)
 {
@@ -1219,6 +1247,17 @@ template <class Message> const auto &unknown_fields(const Message &message)
         return message.unknown_fields();
     } else {
         return reflection_of(message).GetUnknownFields(message);
+    }
+}
+
+/* Whether it has some: where the message says so itself, no function of another library is called. */
+template <class Message> bool has_unknown_fields(const Message &message)
+{
+    if constexpr (says_unknown<Message>::value) {
+        using Besides = kept_besides<base_of<Message>>;
+        return (message.*Besides::template member<Besides>(0)).have_unknown_fields();
+    } else {
+        return !unknown_fields(message).empty();
     }
 }
 
