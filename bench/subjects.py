@@ -128,8 +128,17 @@ SEVERAL_VARINTS = {
     f"{SEVERAL} integers of one to five bytes, packed": _integers("rj.PackedIntegers", _UP_TO_FIVE),
     f"{SEVERAL} integers of one to five bytes, behind tags": _integers("rj.Integers", _UP_TO_FIVE),
     f"{SEVERAL} sint32 of mostly three bytes, packed": _integers("rj.PackedSignedIntegers", _ZIGZAG),
+    f"{SEVERAL} integers of one byte or two, packed": _integers("rj.PackedIntegers", _mixed()[:SEVERAL]),
+    f"{SEVERAL} integers of nine bytes, packed": _integers("rj.PackedIntegers", [(1 << 56) + (each << 30) for each in _ZIGZAG]),
+    f"{SEVERAL} negative integers, packed": _integers("rj.PackedIntegers", [(1 << 64) - each - 1 for each in _ZIGZAG]),
 }
 """What control boards and encoders of motors send."""
+_TEXTS = {"schema": {"texts.proto": ANGLES_PROTO.with_name("texts.proto").read_text("utf-8")}}
+_NAMES = b"".join(_field(1, b"joint_%d" % number * (1 + number % 3)) for number in range(50))
+LISTS = {
+    "50 short texts": Subject("rj.Texts", "protobuf", _NAMES, _TEXTS),
+    "50 short byte strings": Subject("rj.Blobs", "protobuf", _NAMES, _TEXTS),
+}
 
 
 def _thing(number: int) -> bytes:

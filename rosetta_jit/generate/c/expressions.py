@@ -58,7 +58,9 @@ def expression(scope: Scope, expr: nodes.Expr) -> str:
             return f"({C_TYPES[type_of(then)]}){chosen}" if nodes.WIDTH[type_of(then)] < 4 else chosen
         case nodes.IsText(address, size):
             memory, start = location(scope, address)
-            return f"{scope.calls('is_text')}({memory}, {start}, {expression(scope, size)})"
+            arguments = f"{memory}, {start}, {expression(scope, size)}"
+            text = f"{scope.calls('is_text')}({arguments})"
+            return f"(rosetta_jit::detail::is_ascii({arguments}) || {text})" if scope.lanes.dialect == "c++" else text
         case nodes.Nearest() | nodes.Digits() | nodes.Scale():
             return _decimal(scope, expr)
         case nodes.Lookup(type_, values, index):

@@ -20,6 +20,7 @@ from rosetta_jit.generate.c.scope import Scope, register_name
 from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.statements import Callable, Function, moved, print_block
 from rosetta_jit.generate.c.support import function_names
+from rosetta_jit.generate.c.varint_loops import called
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
@@ -71,7 +72,8 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Ori
         return Scope(Namespace(words), lanes, support, hidden)
 
     short = _short(kernel) if lanes.dialect == "c++" else frozenset[str]()
-    for routine in kernel.routines:
+    needed = called(kernel) if lanes.dialect == "c++" else frozenset(each.name for each in kernel.routines)
+    for routine in (each for each in kernel.routines if each.name in needed):
         function = Function(scope(), routine.sites, routines, is_routine=True)
         inline = "ROSETTA_JIT_INLINE " if routine.name in short else ""
         routines[routine.name] = _routine(writer, role, kernel.direction, routine, function, inline)

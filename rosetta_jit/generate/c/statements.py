@@ -15,6 +15,7 @@ from rosetta_jit.generate.c.expressions import expression, location, store, writ
 from rosetta_jit.generate.c.positions import NONE, Positions, after_binding, after_require, bound_in, forget, is_position, said_by
 from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.texts import comment
+from rosetta_jit.generate.c.varint_loops import REPLACED, Sized, replaced, rounds_done, rounds_of
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.origins import Origin, described, origin_of
 from rosetta_jit.generate.parentheses import bare
@@ -254,6 +255,11 @@ def _print_nested(function: Function, stmt: nodes.For | nodes.While | nodes.If |
             with function.block(f"for (int64_t {name} = 0; {name} < {bound}; {name}++)"):
                 print_block(function, body)
         case nodes.While(condition, body):
+            rounds = rounds_of(stmt) if scope.lanes.dialect == "c++" else None
+            for line in rounds_done(scope, rounds) if rounds is not None else ():
+                function.line(line)
+            if isinstance(rounds, Sized):
+                return
             with function.block(f"while ({bare(expression(scope, condition))})"):
                 print_block(function, body)
         case nodes.If(condition, then, otherwise):
@@ -291,7 +297,11 @@ def _case(function: Function, label: str, body: nodes.Block) -> None:
 
 def _call(function: Function, call: nodes.Call) -> None:
     """Results come through pointers; what the function returns is the number of its own site that failed, or 0."""
-    scope, routine = function.scope, function.routines[call.routine]
+    scope = function.scope
+    if scope.lanes.dialect == "c++" and call.routine in REPLACED:
+        function.line(replaced(scope, call))
+        return
+    routine = function.routines[call.routine]
     for result in call.results:
         function.line(f"{C_TYPES[result.type]} {scope.locals.identifier(result.name)} = 0;")
     found = (f"&{scope.locals.identifier(result.name)}" for result in call.results)

@@ -214,8 +214,8 @@ class Walk:
         self.depth -= 1
 
     def _texts(self, type_: Array, slot: Span) -> str:
-        """The lane of the texts that a list has, if they are its elements."""
-        element, is_text = self.unit.layout.lanes[slot.lane].element, isinstance(self.unit.schema.resolve(type_.element), String)
+        """The lane of the texts or byte strings that a list has, if they are its elements."""
+        element, is_text = self.unit.layout.lanes[slot.lane].element, isinstance(self.unit.schema.resolve(type_.element), String | Bytes)
         return self.lanes.rows(element.lane) if is_text and isinstance(element, Span) else ""
 
     def row(self, type_: Type, lane: int, index: str, spot: Spot) -> None:

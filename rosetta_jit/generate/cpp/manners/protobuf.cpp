@@ -51,7 +51,7 @@ $at.clear();
 $at[$key]
 
 /* == unknown decode == */
-if (!rosetta_jit::detail::unknown_fields($object).empty()) {
+if (rosetta_jit::detail::has_unknown_fields($object)) {
     rosetta_jit::detail::mutable_unknown_fields($object).Clear();
 }
 if ($row.count > 0) {
@@ -59,7 +59,7 @@ if ($row.count > 0) {
 }
 
 /* == unknown encode == */
-if (!rosetta_jit::detail::unknown_fields($object).empty()) {
+if (rosetta_jit::detail::has_unknown_fields($object)) {
     std::string unknown;
     rosetta_jit::detail::unknown_fields($object).SerializeToString(&unknown);
     rosetta_jit::detail::take_span(to.$lane, $row, unknown);

@@ -383,6 +383,376 @@ inline void copy_few(void *target, std::int64_t to, const void *source, std::int
     }
 }
 
+/* --- protobuf's integers, of which each byte has seven bits and says whether another one follows --- */
+
+constexpr std::uint64_t GOES_ON = 0x8080808080808080u; /* of each of eight bytes */
+
+inline std::uint64_t word_at(const unsigned char *bytes) noexcept
+{
+    std::uint64_t word;
+    std::memcpy(&word, bytes, sizeof word);
+    return word;
+}
+
+/* Whether bytes are ASCII, as most texts are: the first ones and the last ones, which may be the same, and those between. */
+inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) noexcept
+{
+    const unsigned char *const text = static_cast<const unsigned char *>(memory) + start;
+    if (size >= 8) {
+        std::uint64_t any = word_at(text + size - 8);
+        std::int64_t at = 0;
+        for (; size - at > 32; at += 32) {
+            any |= word_at(text + at) | word_at(text + at + 8) | word_at(text + at + 16) | word_at(text + at + 24);
+        }
+        for (; size - at > 8; at += 8) {
+            any |= word_at(text + at);
+        }
+        return (any & GOES_ON) == 0;
+    }
+    if (size >= 4) {
+        std::uint32_t first, last;
+        std::memcpy(&first, text, sizeof first);
+        std::memcpy(&last, text + size - 4, sizeof last);
+        return ((first | last) & 0x80808080u) == 0;
+    }
+    return size <= 0 || (text[0] | text[size / 2] | text[size - 1]) < 128;
+}
+
+/* The number of the highest bit that is set; of 0 and 1 it is 0. */
+inline unsigned highest_bit(std::uint64_t number) noexcept
+{
+#if defined(__GNUC__)
+    return 63u ^ static_cast<unsigned>(__builtin_clzll(number | 1u));
+#else
+    unsigned found = 0;
+    for (; number > 1; number >>= 1) {
+        found++;
+    }
+    return found;
+#endif
+}
+
+/* The number of the lowest bit that is set, where one is. */
+inline unsigned lowest_bit(std::uint64_t number) noexcept
+{
+#if defined(__GNUC__)
+    return static_cast<unsigned>(__builtin_ctzll(number));
+#else
+    unsigned found = 0;
+    for (; (number & 1u) == 0; number >>= 1) {
+        found++;
+    }
+    return found;
+#endif
+}
+
+/* The bytes that a number takes, by its highest bit. */
+inline constexpr std::uint8_t VARINT_SIZES[64] = {1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 5,
+                                                  5, 5, 5, 6, 6, 6, 6, 6, 6, 6, 7, 7, 7, 7, 7, 7, 7, 8, 8, 8, 8, 8, 8, 8, 9, 9, 9, 9, 9, 9, 9, 10};
+
+inline std::int64_t varint_size(std::uint64_t number) noexcept
+{
+    return VARINT_SIZES[highest_bit(number)];
+}
+
+/* The lower seven bits of eight bytes as a number, and a number of 56 bits as such bytes: by halves, quarters, and eighths. */
+inline std::uint64_t bits_joined(std::uint64_t bytes) noexcept
+{
+    bytes -= (bytes & 0x7f007f007f007f00u) >> 1;
+    bytes = (bytes & 0x00003fff00003fffu) | ((bytes & 0x3fff00003fff0000u) >> 2);
+    return (bytes & 0x0fffffffu) | ((bytes & 0x0fffffff00000000u) >> 4);
+}
+
+inline std::uint64_t bits_apart(std::uint64_t number) noexcept
+{
+    number += (number & 0x00fffffff0000000u) * 15u;
+    number += (number & 0x0fffc0000fffc000u) * 3u;
+    return number + (number & 0x3f803f803f803f80u);
+}
+
+/* What is set in the bytes of a number of one to eight bytes, but for the last one. */
+inline constexpr std::uint64_t VARINT_MORE[9] = {
+    0, 0, 0x80, 0x8080, 0x808080, 0x80808080, 0x8080808080, 0x808080808080, 0x80808080808080};
+
+/* Writes a number where there is room for ten bytes, and says how many it has taken. */
+inline std::int64_t write_varint(unsigned char *target, std::uint64_t number) noexcept
+{
+    if (number < std::uint64_t{1} << 56) {
+        const std::int64_t size = varint_size(number);
+        const std::uint64_t word = bits_apart(number) | VARINT_MORE[size];
+        std::memcpy(target, &word, sizeof word);
+        return size;
+    }
+    const std::uint64_t word = bits_apart(number & 0x00ffffffffffffffu) | GOES_ON;
+    const unsigned high = static_cast<unsigned>(number >> 56), last = high >> 7;
+    std::memcpy(target, &word, sizeof word);
+    target[8] = static_cast<unsigned char>(high);
+    target[9] = static_cast<unsigned char>(last);
+    return 9 + static_cast<std::int64_t>(last);
+}
+
+/* The same of a number below 1 << 28, where there is room for four bytes. */
+inline std::int64_t write_varint_of_four(unsigned char *target, std::uint64_t number) noexcept
+{
+    const std::int64_t size = varint_size(number);
+    std::uint32_t word = static_cast<std::uint32_t>(number);
+    word += (word & 0x0fffc000u) * 3u;
+    word += word & 0x3f803f80u;
+    word |= static_cast<std::uint32_t>(VARINT_MORE[size]);
+    std::memcpy(target, &word, sizeof word);
+    return size;
+}
+
+/* And of a number below 1 << 14, where there is room for two bytes. */
+inline std::int64_t write_varint_of_two(unsigned char *target, std::uint64_t number) noexcept
+{
+    const unsigned low = static_cast<unsigned>(number), more = low >= 128u ? 1u : 0u;
+    const std::uint16_t both = static_cast<std::uint16_t>(low + (low & 0x3f80u) + (more << 7));
+    std::memcpy(target, &both, sizeof both);
+    return 1 + static_cast<std::int64_t>(more);
+}
+
+/* The bytes that numbers take from `number` on; `value` says which they are. */
+template <class Value> ROSETTA_JIT_INLINE std::int64_t size_of_varints(std::int64_t &number, std::int64_t count, Value value)
+{
+    std::int64_t size = 0;
+    for (; count - number >= 4; number += 4) {
+        size += varint_size(value(number)) + varint_size(value(number + 1)) + varint_size(value(number + 2)) + varint_size(value(number + 3));
+    }
+    for (; number < count; number++) {
+        size += varint_size(value(number));
+    }
+    return size;
+}
+
+/* The same of bools, which take a byte each. */
+template <class Value> std::int64_t size_of_flags(std::int64_t number, std::int64_t count, Value) noexcept
+{
+    return count - number;
+}
+
+/* Writes those numbers as long as there is room; it says where, and which one is next. Of four numbers the largest says how they are written. */
+template <class Value>
+ROSETTA_JIT_INLINE std::int64_t write_varints(unsigned char *bytes, std::int64_t end, std::int64_t at, std::int64_t &number, std::int64_t count, Value value)
+{
+    for (; count - number >= 4; number += 4) {
+        const std::uint64_t each[4] = {value(number), value(number + 1), value(number + 2), value(number + 3)};
+        const std::uint64_t all = each[0] | each[1] | each[2] | each[3];
+        unsigned char *const target = bytes + at;
+        std::int64_t size = 4;
+        if (all < 128u && end - at >= 4) {
+            const std::uint32_t four = static_cast<std::uint32_t>(each[0] | each[1] << 8 | each[2] << 16 | each[3] << 24);
+            std::memcpy(target, &four, sizeof four);
+        } else if (all < 1u << 14 && end - at >= 8) {
+            size = write_varint_of_two(target, each[0]);
+            size += write_varint_of_two(target + size, each[1]);
+            size += write_varint_of_two(target + size, each[2]);
+            size += write_varint_of_two(target + size, each[3]);
+        } else if (all < 1u << 28 && end - at >= 16) {
+            size = write_varint_of_four(target, each[0]);
+            size += write_varint_of_four(target + size, each[1]);
+            size += write_varint_of_four(target + size, each[2]);
+            size += write_varint_of_four(target + size, each[3]);
+        } else if (end - at >= 40) {
+            size = write_varint(target, each[0]);
+            size += write_varint(target + size, each[1]);
+            size += write_varint(target + size, each[2]);
+            size += write_varint(target + size, each[3]);
+        } else {
+            break;
+        }
+        at += size;
+    }
+    for (; number < count; number++) {
+        std::uint64_t rest = value(number);
+        if (end - at >= 10) {
+            at += rest < 128u ? (bytes[at] = static_cast<unsigned char>(rest), 1) : write_varint(bytes + at, rest);
+            continue;
+        }
+        if (varint_size(rest) > end - at) {
+            break;
+        }
+        for (; rest >= 128u; rest >>= 7) {
+            bytes[at++] = static_cast<unsigned char>(rest | 128u);
+        }
+        bytes[at++] = static_cast<unsigned char>(rest);
+    }
+    return at;
+}
+
+/* Bytes as bools: 1 for all but 0. */
+inline void copy_flags(void *target, const void *rows, std::int64_t count) noexcept
+{
+    unsigned char *const to = static_cast<unsigned char *>(target);
+    const unsigned char *const from = static_cast<const unsigned char *>(rows);
+    std::int64_t done = 0;
+    for (; count - done >= 8; done += 8) {
+        const std::uint64_t eight = word_at(from + done);
+        const std::uint64_t set = (((eight & ~GOES_ON) + ~GOES_ON) | eight) >> 7 & 0x0101010101010101u;
+        std::memcpy(to + done, &set, sizeof set);
+    }
+    for (; done < count; done++) {
+        to[done] = from[done] != 0 ? 1 : 0;
+    }
+}
+
+/* Writes bools as long as there is room. */
+inline std::int64_t write_flags(unsigned char *bytes, std::int64_t end, std::int64_t at, std::int64_t &number, std::int64_t count, const std::uint8_t *rows) noexcept
+{
+    const std::int64_t several = std::min(count - number, end - at);
+    if (several > 0) {
+        copy_flags(bytes + at, rows + number, several);
+        number += several;
+        at += several;
+    }
+    return at;
+}
+
+constexpr std::int64_t FEW_BYTES = 32; /* of an array whose integers are not worth to be counted */
+
+/* How many integers end between two places of a message; 0 where it is not worth to count them. */
+inline std::int64_t count_of_varints(const unsigned char *bytes, std::int64_t at, std::int64_t stop, std::int64_t end) noexcept
+{
+    if (stop - at < FEW_BYTES || stop > end || at < 1) {
+        return 0;
+    }
+    std::int64_t count = 0;
+    while (stop - at >= 8) {
+        std::uint64_t each = 0; /* a byte for each of the eight */
+        for (const std::int64_t last = std::min(stop - 7, at + 255 * 8); at < last; at += 8) {
+            each += (~word_at(bytes + at) & GOES_ON) >> 7;
+        }
+        const std::uint64_t pairs = (each & 0x00ff00ff00ff00ffu) + (each >> 8 & 0x00ff00ff00ff00ffu);
+        count += static_cast<std::int64_t>((pairs * 0x0001000100010001u) >> 48);
+    }
+    for (; at < stop; at++) {
+        count += bytes[at] < 128u ? 1 : 0;
+    }
+    return count;
+}
+
+/* Which of up to 64 bytes end an integer: a bit each. There are as many whole words. */
+inline std::uint64_t last_bytes(const unsigned char *bytes, std::int64_t size) noexcept
+{
+    std::uint64_t found = 0;
+    for (std::int64_t at = 0; at < size; at += 8) {
+        found |= (((~word_at(bytes + at) & GOES_ON) * 0x0002040810204081u) >> 56) << at;
+    }
+    return size < 64 ? found & ((std::uint64_t{1} << size) - 1) : found;
+}
+
+/* The same where all have a number of bytes. */
+inline constexpr std::uint64_t ALIKE[8] = {
+    0xffffffffffffffff, 0xaaaaaaaaaaaaaaaa, 0x4924924924924924, 0x8888888888888888,
+    0x0842108421084210, 0x0820820820820820, 0x4081020408102040, 0x8080808080808080,
+};
+/* The bits of an integer of a number of bytes. */
+inline constexpr std::uint64_t VARINT_BITS[8] = {
+    0x7f, 0x7f7f, 0x7f7f7f, 0x7f7f7f7f, 0x7f7f7f7f7f, 0x7f7f7f7f7f7f, 0x7f7f7f7f7f7f7f, 0x7f7f7f7f7f7f7f7f,
+};
+
+/* Reads integers of one number of bytes each, whose words are in the message. */
+template <class Row, class Number> void read_alike(const unsigned char *bytes, std::int64_t width, std::int64_t count, Row *rows, Number number)
+{
+    std::int64_t each = 0;
+    switch (width) {
+    case 1:
+        for (; count - each >= 8; each += 8) {
+            const std::uint64_t word = word_at(bytes + each);
+            rows[each] = static_cast<Row>(number(word & 255u));
+            rows[each + 1] = static_cast<Row>(number(word >> 8 & 255u));
+            rows[each + 2] = static_cast<Row>(number(word >> 16 & 255u));
+            rows[each + 3] = static_cast<Row>(number(word >> 24 & 255u));
+            rows[each + 4] = static_cast<Row>(number(word >> 32 & 255u));
+            rows[each + 5] = static_cast<Row>(number(word >> 40 & 255u));
+            rows[each + 6] = static_cast<Row>(number(word >> 48 & 255u));
+            rows[each + 7] = static_cast<Row>(number(word >> 56));
+        }
+        for (; each < count; each++) {
+            rows[each] = static_cast<Row>(number(std::uint64_t{bytes[each]}));
+        }
+        return;
+    case 2:
+        for (; count - each >= 4; each += 4) {
+            const std::uint64_t word = word_at(bytes + 2 * each) & ~GOES_ON, four = word - ((word & 0x7f007f007f007f00u) >> 1);
+            rows[each] = static_cast<Row>(number(four & 0x3fffu));
+            rows[each + 1] = static_cast<Row>(number(four >> 16 & 0x3fffu));
+            rows[each + 2] = static_cast<Row>(number(four >> 32 & 0x3fffu));
+            rows[each + 3] = static_cast<Row>(number(four >> 48));
+        }
+        for (; each < count; each++) {
+            const std::uint64_t low = bytes[2 * each], high = bytes[2 * each + 1];
+            rows[each] = static_cast<Row>(number((low & 127u) | high << 7));
+        }
+        return;
+    case 3:
+    case 4:
+        for (; each < count; each++) {
+            const std::uint64_t four = word_at(bytes + width * each) & VARINT_BITS[width - 1], pairs = four - ((four & 0x7f007f00u) >> 1);
+            rows[each] = static_cast<Row>(number((pairs & 0x3fffu) | (pairs >> 2 & 0x0fffc000u)));
+        }
+        return;
+    default:
+        for (; each < count; each++) {
+            rows[each] = static_cast<Row>(number(bits_joined(word_at(bytes + width * each) & VARINT_BITS[width - 1])));
+        }
+    }
+}
+
+/* Reads the integers of an array as `count_of_varints` has counted them, and says how many. It stops before an integer that is too long, and
+   eight bytes before the message's end. `number` says what an integer stands for. */
+template <class Row, class Number>
+std::int64_t read_varints(const unsigned char *bytes, std::int64_t &at, std::int64_t stop, std::int64_t end, Row *rows, Number number)
+{
+    const std::int64_t limit = std::min(stop, end - 8);
+    Row *next = rows;
+    std::int64_t start = at, block = at; /* of the integer at hand, and of the bytes that are looked at */
+    if (bytes[at - 1] >= 128u) {
+        return 0;
+    }
+    while (block < limit) {
+        const std::int64_t size = std::min<std::int64_t>(64, limit - block);
+        const std::uint64_t inside = ~std::uint64_t{0} >> (64 - size);
+        std::uint64_t last = last_bytes(bytes + block, size);
+        const std::uint64_t more = ~last & inside;
+        const std::int64_t width = last == 0 ? 64 : lowest_bit(last) + 1;
+        if (start == block && width <= 8 && last == (ALIKE[width - 1] & inside)) {
+            const std::int64_t count = size / width;
+            read_alike(bytes + block, width, count, next, number);
+            next += count;
+            start = block + count * width;
+            block = size < 64 ? limit : start;
+            continue;
+        }
+        if ((more & (more << 1 | (start < block ? 1u : 0u))) == 0 && block - start < 2) {
+            for (; last != 0; last &= last - 1) {
+                const std::int64_t ends = block + lowest_bit(last);
+                const std::uint64_t before = bytes[ends - 1], byte = bytes[ends], longer = (before >> 7) * 127u;
+                *next++ = static_cast<Row>(number(byte * (longer + 1u) + (before & longer)));
+                start = ends + 1;
+            }
+        }
+        for (; last != 0; last &= last - 1) {
+            const std::int64_t ends = block + lowest_bit(last), longer = ends - start;
+            std::uint64_t value = word_at(bytes + start);
+            if (longer < 8) {
+                value = bits_joined(value & VARINT_BITS[longer]);
+            } else if (longer < 10) {
+                value = bits_joined(value & VARINT_BITS[7]) | std::uint64_t{bytes[start + 8] & 127u} << 56;
+                value |= longer == 9 ? std::uint64_t{bytes[ends]} << 63 : 0;
+            } else {
+                at = start;
+                return next - rows;
+            }
+            *next++ = static_cast<Row>(number(value));
+            start = ends + 1;
+        }
+        block += size;
+    }
+    at = start;
+    return next - rows;
+}
+
 /* --- containers --- */
 
 template <class Container, class = void> struct is_repeated : std::false_type {};
@@ -516,9 +886,14 @@ constexpr bool same_numbers = std::is_same_v<One, Other> ||
                               (sizeof(One) == sizeof(Other) && std::is_integral_v<One> && std::is_integral_v<Other> &&
                                !std::is_same_v<One, bool> && !std::is_same_v<Other, bool>);
 
+/* Whether rows are the bytes of bools, which are read where they lie. */
+template <class Number, class Row> constexpr bool are_flags = std::is_same_v<Number, bool> && std::is_same_v<Row, std::uint8_t> && sizeof(bool) == 1;
+
 /* Whether the elements lie one behind the other: those of vector<bool> do not. */
 template <class Container>
 struct has_data : std::bool_constant<is_repeated<Container>::value || shows_data<Container>::value || holds_vector<std::remove_const_t<Container>>::value> {};
+
+constexpr std::size_t SHORT_TEXT = 16; /* below which strings need no memory of their own */
 
 /* Numbers, or the bytes of a text, into a container. One of a fixed length takes as many as it has. */
 template <class Container, class Row> void assign(Container &&target, const Row *rows, std::int64_t count)
@@ -534,16 +909,34 @@ template <class Container, class Row> void assign(Container &&target, const Row 
             }
             return;
         }
+        if constexpr (are_flags<Number, Row>) {
+            copy_flags(data_of(target), rows, count);
+            return;
+        }
     }
     for (std::int64_t index = 0; index < count; index++) {
         set(element(target, index), rows[index]);
     }
 }
 
-/* Bytes that nothing has to make room for first. */
+/* A text of another length. One that has no room yet is made anew, which compilers see into. */
+inline void assign_other(std::string &target, const char *first, std::size_t size)
+{
+    if (target.empty() && (size < SHORT_TEXT || size > target.capacity())) {
+        target = std::string(first, size);
+    } else {
+        target.assign(first, size);
+    }
+}
+
+/* Bytes that nothing has to make room for first. A text of the same length, as names have again and again, is written where it is. */
 inline void assign(std::string &target, const unsigned char *bytes, std::int64_t count)
 {
-    target.assign(reinterpret_cast<const char *>(bytes), static_cast<std::size_t>(count));
+    if (target.size() == static_cast<std::size_t>(count)) {
+        copy_few(&target[0], 0, bytes, 0, count);
+    } else {
+        assign_other(target, reinterpret_cast<const char *>(bytes), static_cast<std::size_t>(count));
+    }
 }
 
 template <class Memory> void assign(std::vector<std::uint8_t, Memory> &target, const unsigned char *bytes, std::int64_t count)
@@ -598,6 +991,19 @@ void assign_texts(Container &target, const Rows &rows, const Span &span, const L
             return;
         }
     }
+    if constexpr (is_repeated<Container>::value) {
+        const std::int64_t there = count_of(target);
+        if (span.count > there) {
+            target.Reserve(static_cast<int>(span.count));
+            for (; index < there; index++) {
+                assign_span(element(target, index), from, texts[index], message);
+            }
+            for (; index < span.count; index++) {
+                assign_span(*target.Add(), from, texts[index], message);
+            }
+            return;
+        }
+    }
     resize_to(target, span.count);
     const std::int64_t count = std::min(span.count, count_of(target)); /* one of a fixed length has as many as it has */
     for (; index < count; index++) {
@@ -642,6 +1048,10 @@ template <class Lane, class Span, class Container> void take_span(Lane &to, Span
             }
             return;
         }
+        if constexpr (are_flags<Number, Row>) {
+            copy_flags(rows, data_of(from), span.count);
+            return;
+        }
     }
     for (const auto &each : from) {
         put(*rows++, each);
@@ -654,7 +1064,7 @@ template <class Lane, class Span, class Container> void show_span(Lane &to, Span
     using Row = std::remove_reference_t<decltype(*to.rows)>;
     if constexpr (has_data<const Container>::value) {
         using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(from))>>;
-        if constexpr (same_numbers<Number, Row>) {
+        if constexpr (same_numbers<Number, Row> || are_flags<Number, Row>) {
             span = {0, count_of(from)};
             to.show(reinterpret_cast<const Row *>(data_of(from)), span.count);
             return;
@@ -808,6 +1218,21 @@ template <class Row, class Container> struct list_lane<Row, Container, false> : 
 template <class Message, class = void> struct shows_unknown : std::false_type {};
 template <class Message> struct shows_unknown<Message, std::void_t<decltype(std::declval<Message &>().mutable_unknown_fields())>> : std::true_type {};
 
+/* The class that declares a function of an object. */
+template <class Class, class Result, class... Arguments> Class declaring(Result (Class::*)(Arguments...) const);
+
+/* Where a message of protobuf's has what it keeps besides its fields: its base class shows it to those derived from that. */
+template <class Base> struct kept_besides : Base {
+    template <class Self> static auto member(int) -> decltype(&Self::_internal_metadata_) { return &Self::_internal_metadata_; }
+    template <class> static std::nullptr_t member(long) { return nullptr; }
+};
+template <class Message> using base_of = decltype(declaring(&Message::FindInitializationErrors));
+
+template <class Message, class = void> struct says_unknown : std::false_type {};
+template <class Message>
+struct says_unknown<Message, std::void_t<decltype((std::declval<const Message &>().*kept_besides<base_of<Message>>::template member<kept_besides<base_of<Message>>>(0)).have_unknown_fields())>>
+    : std::true_type {};
+
 /* The reflection of a class of protobuf's, for which a message looks each time that it is asked. */
 template <class Message> const auto &reflection_of(const Message &message)
 {
@@ -822,6 +1247,17 @@ template <class Message> const auto &unknown_fields(const Message &message)
         return message.unknown_fields();
     } else {
         return reflection_of(message).GetUnknownFields(message);
+    }
+}
+
+/* Whether it has some: where the message says so itself, no function of another library is called. */
+template <class Message> bool has_unknown_fields(const Message &message)
+{
+    if constexpr (says_unknown<Message>::value) {
+        using Besides = kept_besides<base_of<Message>>;
+        return (message.*Besides::template member<Besides>(0)).have_unknown_fields();
+    } else {
+        return !unknown_fields(message).empty();
     }
 }
 

@@ -1,0 +1,142 @@
+"""Packed integers of protobuf in generated C++: many are read and written at once, and each as the library does it."""
+
+from __future__ import annotations
+
+import random
+import re
+import shutil
+import subprocess
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.api.options import type_request
+from rosetta_jit.generate.build import generated
+from rosetta_jit.generate.cpp.language import INCLUDE
+from tests.generate import cpp
+from tests.generate.driver import answers, harmed
+from tests.generate.test_cpp import BOTH, QUICK, same
+
+SCALARS = ("int32", "int64", "uint32", "uint64", "sint32", "sint64", "bool", "Open")
+FIELDS = "".join(f"repeated {scalar} f{number} = {number}; " for number, scalar in enumerate(SCALARS, 1))
+SCHEMA = (
+    'syntax = "proto3"; package t; enum Open { NONE = 0; SOME = 3; } '
+    f"message N {{ repeated int64 f1 = 1; }} message M {{ {FIELDS} N n = 16; repeated N more = 17; }}"
+)
+COMPILERS = {"g++": ("-O1", *QUICK[1:]), "clang++": ("-O2",)}
+WIDEST = 10
+
+
+def varint(value: int, width: int = 0) -> bytes:
+    """A varint, of ``width`` bytes where that is more than it needs."""
+    written = bytearray()
+    while value > 127 or len(written) + 1 < width:
+        written.append(value & 127 | 128)
+        value >>= 7
+    return bytes([*written, value])
+
+
+def of_width(chance: random.Random, width: int) -> bytes:
+    """An integer whose varint has a number of bytes; rarely more than it needs, as no writer has it but all readers take it."""
+    most = min(1 << 7 * width, 1 << 64)
+    value = chance.randrange(most >> 7 if width > 1 else 0, most)
+    return varint(value if chance.random() < 0.99 else 1, width)
+
+
+def packed(chance: random.Random, field: int) -> bytes:
+    """An array: its integers all have one width, or several that change from one to the next or after a while."""
+    count, widest = chance.choice((0, 1, 3, 4, 5, 20, 64, 65, 130, 300)), chance.randint(1, WIDEST)
+    match chance.randrange(4):
+        case 0:
+            widths = [widest] * count
+        case 1:
+            widths = [chance.randint(1, widest) for _ in range(count)]
+        case 2:
+            widths = [1 + (number // 30) % widest for number in range(count)]
+        case _:
+            widths = [chance.choice((1, 2)) for _ in range(count)]
+    body = b"".join(of_width(chance, each) for each in widths)
+    return varint(field << 3 | 2) + varint(len(body)) + body
+
+
+def message(chance: random.Random) -> bytes:
+    fields = [packed(chance, chance.randint(1, len(SCALARS))) for _ in range(chance.randint(1, 3))]
+    inner = packed(chance, 1)
+    nested = b"\x82\x01" + varint(len(inner)) + inner if chance.random() < 0.3 else b""
+    another = b"\x8a\x01" + varint(len(inner)) + inner if chance.random() < 0.3 else b""
+    return b"".join([*fields, nested, another, *([b"\xc0\x02\x05"] if chance.random() < 0.3 else [])])
+
+
+@cpp.needs_cpp
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_arrays_of_all_widths_and_kinds(compiler, tmp_path):
+    if shutil.which(compiler) is None:
+        pytest.skip(f"{compiler} is not installed")
+    options = {"encoding": "protobuf", "schema": {"t.proto": SCHEMA}}
+    request = type_request("decode", "t.M", options)
+    name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "unit"))
+    chance = random.Random(compiler)
+    good = [message(chance) for _ in range(300)]
+    messages = [*good, *harmed(good[:100], 4, compiler)]
+    found = answers(cpp.program(tmp_path, name, compiler=compiler, options=COMPILERS[compiler]), messages)
+    assert {line.split()[0] for line in found} >= {"ok", "truncated", "varint"}
+    same(found, rj.Decoder.of("t.M", **options), rj.Encoder.of("t.M", **options), messages)
+
+
+def test_loops_are_recognised():
+    """Each of the arrays is counted, read, measured and written by the functions of the shared header."""
+    schema = f'syntax = "proto3"; package t; enum Open {{ NONE = 0; }} message A {{ {FIELDS} }}'
+    request = type_request("decode", "t.A", {"encoding": "protobuf", "schema": {"t.proto": schema}})
+    text = generated(request, "cpp", BOTH, "unit")["unit.cpp"]
+    integers = len(SCALARS) - 1
+    for function in ("count_of_varints", "read_varints"):
+        assert text.count(f"detail::{function}(") == integers + 1, function
+    for function in ("size_of_varints", "write_varints"):
+        assert text.count(f"detail::{function}(") == integers, function
+    assert text.count("detail::write_flags(") == text.count("detail::size_of_flags(") == 1
+    assert "varint_size(" not in text.replace("detail::varint_size(", "")
+    assert not re.search("_of_varints|write_varints", generated(request, "c", BOTH, "unit")["unit.c"])
+
+
+BORDERS = """
+#include <rosetta_jit/rosetta_jit.hpp>
+#include <vector>
+using namespace rosetta_jit::detail;
+static unsigned long long slow(unsigned char *to, std::uint64_t number) {
+    unsigned long long size = 0;
+    for (; number >= 128; number >>= 7) to[size++] = static_cast<unsigned char>(number | 128);
+    to[size++] = static_cast<unsigned char>(number);
+    return size;
+}
+int main() {
+    std::vector<std::uint64_t> numbers;
+    for (int bit = 0; bit < 64; bit++) {
+        for (int more = -2; more < 3; more++) numbers.push_back((std::uint64_t{1} << bit) + static_cast<std::uint64_t>(more));
+    }
+    for (const std::uint64_t each : numbers) {
+        unsigned char wanted[10] = {}, found[10] = {};
+        const auto size = slow(wanted, each);
+        if (varint_size(each) != static_cast<std::int64_t>(size)) return 1;
+        if (write_varint(found, each) != varint_size(each) || std::memcmp(found, wanted, size) != 0) return 2;
+        if (each < 1u << 28 && (write_varint_of_four(found, each) != varint_size(each) || std::memcmp(found, wanted, size) != 0)) return 3;
+        if (each < 1u << 14 && (write_varint_of_two(found, each) != varint_size(each) || std::memcmp(found, wanted, size) != 0)) return 4;
+        for (std::int64_t room = 0; room < 45; room++) { // no byte beyond the room, and all that fits
+            std::vector<unsigned char> exact(static_cast<std::size_t>(room));
+            std::int64_t number = 0;
+            const std::int64_t at = write_varints(exact.data(), room, 0, number, 4, [&](std::int64_t) { return each; });
+            if (number != std::min<std::int64_t>(4, room / varint_size(each)) || at != number * varint_size(each)) return 5;
+            for (std::int64_t one = 0; one < number; one++) {
+                if (std::memcmp(exact.data() + one * varint_size(each), wanted, size) != 0) return 6;
+            }
+        }
+    }
+    return 0;
+}
+"""
+
+
+@cpp.needs_cpp
+def test_numbers_at_the_borders_of_all_widths(tmp_path):
+    (tmp_path / "borders.cpp").write_text(BORDERS)
+    subprocess.run(["g++", *cpp.STRICT, *COMPILERS["g++"], f"-I{INCLUDE}", "borders.cpp", "-o", "borders"], cwd=tmp_path, check=True)
+    subprocess.run([tmp_path / "borders"], check=True)
