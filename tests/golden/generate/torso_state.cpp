@@ -404,7 +404,7 @@ void fill(const torso_state_holder &from, const unsigned char *bytes, const tors
     static_cast<void>(bytes);
     static_cast<void>(row);
     static_cast<void>(target);
-    if (!rosetta_jit::detail::unknown_fields(target).empty()) {
+    if (rosetta_jit::detail::has_unknown_fields(target)) {
         rosetta_jit::detail::mutable_unknown_fields(target).Clear();
     }
     if (row.unknown.count > 0) {
@@ -418,7 +418,7 @@ void collect(const Source &source, torso_state_source &to, torso_state_JointAngl
     static_cast<void>(source);
     static_cast<void>(to);
     static_cast<void>(row);
-    if (!rosetta_jit::detail::unknown_fields(source).empty()) {
+    if (rosetta_jit::detail::has_unknown_fields(source)) {
         std::string unknown;
         rosetta_jit::detail::unknown_fields(source).SerializeToString(&unknown);
         rosetta_jit::detail::take_span(to.unknown, row.unknown, unknown);
