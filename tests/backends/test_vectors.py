@@ -5,17 +5,22 @@ from __future__ import annotations
 import math
 import re
 import struct
+from dataclasses import replace
 
 import pytest
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm import function as llvm
+from rosetta_jit.kernel.ir import Routine
 from rosetta_jit.kernel.nodes import (
     Advance,
     Assign,
     Binary,
+    Call,
+    Compare,
     Const,
     Convert,
+    Expect,
     Get,
     Let,
     Load,
@@ -26,6 +31,7 @@ from rosetta_jit.kernel.nodes import (
     Return,
     SetField,
     Unary,
+    Used,
     Var,
 )
 from rosetta_jit.kernel.nodes import Store as StoreIn
@@ -117,6 +123,7 @@ def test_the_same_bits_as_one_by_one(name, count):
     doubles = singles | {8: [4, 4], 11: [4, 4, 2], 18: [4, 4, 4, 4, 2]}  # 32 bytes at most
     wanted = (singles if stride == 4 else doubles)[count]
     assert sizes(made) == wanted
+    assert text_of(made).count("load double") == count - sum(wanted)
     for shift in range(0, len(NUMBERS), 5):
         numbers = [NUMBERS[(shift + at) % len(NUMBERS)] for at in range(count)]
         for message in (struct.pack(f"<{count}d", *numbers), b"", struct.pack(f"<{count}d", *numbers)[:-1]):
@@ -152,7 +159,9 @@ NOT_TOGETHER = {
     "computed differently": decoder(4, lambda number, at: Binary("mul" if at % 2 else "add", number, HALF)),
     "with room between them": decoder(4, single, stride=8),
     "by a function of a library": decoder(4, lambda number, _: Unary("sin", Binary("mul", number, HALF))),
-    "only copied": decoder(4, lambda number, _: number),
+    "the rest of a division": decoder(4, lambda number, _: Binary("rem", number, HALF)),
+    "the larger of two": decoder(4, lambda number, _: Binary("max", number, HALF)),
+    "only copied": decoder(4, lambda number, at: number if at < 3 else Binary("mul", number, HALF)),
     "what is not known before": decoder(
         4,
         lambda number, _: Binary("mul", number, local("f64", "scale")),
@@ -210,6 +219,59 @@ def test_locals_that_others_ask_for_stay():
     assert sizes(made) == [2]
     message = struct.pack("<2d", 1.5, 2.5)
     assert outcome("llvm", made, message, rows(made)) == outcome("interpreter", made, message, rows(made))
+
+
+def test_a_number_that_all_are_computed_with_is_read_once():
+    scale = Let("scale", Binary("mul", Load("f64", BEGIN), HALF))
+    made = decoder(8, lambda number, _: Convert("f32", Binary("div", number, local("f64", "scale"))), stride=4, between=(scale,))
+    assert sizes(made) == [8]
+    assert text_of(made).count("load double") == 1
+    message = struct.pack("<8d", *NUMBERS[2:10])
+    assert outcome("llvm", made, message, rows(made)) == outcome("interpreter", made, message, rows(made))
+
+
+def test_numbers_of_other_types_are_read_one_by_one():
+    """Floats and integers side by side, of the same size, that all become doubles."""
+    types = ("f32", "i32", "f32", "i32")
+    loads = [Let(f"n{at}", Load(type_, add(BEGIN, index(4 * at)))) for at, type_ in enumerate(types)]
+    stores = [SetField(Place(0, ROW, 8 * at), Convert("f64", local(type_, f"n{at}"))) for at, type_ in enumerate(types)]
+    made = kernel((row_fits(), Require(BEGIN, index(16), failure(0)), *loads, *stores, Return(add(BEGIN, index(16)))), strides=(32,))
+    assert sizes(made) == []
+    message = struct.pack("<fifi", 1.5, 7, -2.5, -9)
+    result = outcome("llvm", made, message, rows(made))
+    assert result == outcome("interpreter", made, message, rows(made))
+    assert struct.unpack("<4d", result[2][0][:32]) == (1.5, 7.0, -2.5, -9.0)
+
+
+def test_a_message_is_read_before_it_is_written():
+    loads = [Let(f"n{at}", Load("f64", add(BEGIN, index(8 * at)))) for at in range(2)]
+    stores = [StoreIn(add(BEGIN, index(8 * at)), Binary("mul", local("f64", f"n{1 - at}"), HALF)) for at in range(2)]
+    again = [SetField(Place(0, ROW, 8 * at), Binary("mul", local("f64", f"n{at}"), HALF)) for at in range(2)]
+    body = (row_fits(), Require(BEGIN, index(16), failure(0)), *loads, *stores, *again, Return(add(BEGIN, index(16))))
+    made = kernel(body, strides=(16,), direction="encode")
+    assert sizes(made) == []
+    message = struct.pack("<2d", 1.5, 5.0)
+    assert outcome("llvm", made, message, rows(made)) == outcome("interpreter", made, message, rows(made))
+
+
+def test_a_row_behind_those_in_use_is_read_where_it_stands():
+    """Between the reads and the stores more rows come in use."""
+    reads = [Let(f"n{at}", Get("f64", Place(2, add(Used(1), index(at))))) for at in range(2)]
+    stores = [SetField(Place(0, ROW, 8 * at), Binary("mul", local("f64", f"n{at}"), HALF)) for at in range(2)]
+    room = Expect(Compare("lt", add(Used(1), index(3)), Used(2)), failure(1))
+    body = (row_fits(), Reserve(1, index(1)), room, *reads, Advance(1, index(1)), *stores, Return(BEGIN))
+    made = kernel(body, strides=(16, 1, 8))
+    assert sizes(made) == []
+
+
+def test_nothing_is_moved_across_what_a_routine_does():
+    routine = Routine("waits", (), (local("i64", "none"),), (Let("none", Const("i64", 0)),), (), (), ())
+    loads = [Let(f"n{at}", Load("f64", add(BEGIN, index(8 * at)))) for at in range(2)]
+    stores = [SetField(Place(0, ROW, 8 * at), Binary("mul", local("f64", f"n{at}"), HALF)) for at in range(2)]
+    call = Call("waits", (), (local("i64", "waited"),), ())
+    body = (row_fits(), Require(BEGIN, index(16), failure(0)), *loads, call, *stores, Return(add(BEGIN, index(16))))
+    made = kernel(body, strides=(16,))
+    assert sizes(replace(made, routines=(routine,))) == []
 
 
 def test_squares_of_squares_are_followed_once():
