@@ -21,9 +21,10 @@ from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, StoredExit, constant, state_word
 from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.series import begin_rows, end_rows
+from rosetta_jit.backends.llvm.usual import without_row
 from rosetta_jit.backends.printing import counted_lanes, emptied_lanes, statements
 from rosetta_jit.kernel.ir import Kernel, Routine
-from rosetta_jit.kernel.nodes import Block, Call, Capacity, Compare, Const, Expect, Expr, For, HostCall, Require, Stmt, While
+from rosetta_jit.kernel.nodes import Block, Call, Expect, Expr, For, HostCall, Require, Stmt, While
 from rosetta_jit.kernel.state import (
     CAPACITY,
     ERROR_INDICES,
@@ -37,9 +38,7 @@ from rosetta_jit.kernel.state import (
     USED,
     lane_word,
 )
-from rosetta_jit.kernel.terms import BEGIN, ROW
 from rosetta_jit.kernel.traits import are_straight_and_compute
-from rosetta_jit.startup.dataclass import replace
 
 SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
 ARGUMENTS = ("buffer", "begin", "end", "state", "row")
@@ -55,9 +54,6 @@ MANY_STATEMENTS = 512
 
 UNUSUAL = -1 << 63
 """What a kernel's first body gives where the next one is to be asked: no place in a message, and the number of no failure."""
-
-NOWHERE = Const("i64", -1)
-"""The place of a failure that is told only where there is no other."""
 
 OFTEN = 16
 """Calls from which on a tiny routine stays a function if it begins with a call: that is made anyway."""
@@ -91,36 +87,12 @@ def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, ha
         _attempt(function, kernel, 0, routines, following)
     else:
         usual.attributes.add("alwaysinline")
-        known, row = _without_row(kernel)
+        known, row = without_row(kernel)
         _attempt(usual, known, 0, routines, constant(UNUSUAL))
         _usual_or_next(function, kernel, row, usual, following)
     if whole:
         definitions.define(module)
     return _behind_check(module, kernel, function, name) if kernel.hidden else function
-
-
-def _without_row(kernel: Kernel) -> tuple[Kernel, Expect | None]:
-    """The kernel whose first body takes it that the holder has the row, and the check that this was.
-
-    It stays where a failure before it may be told instead, as one without a place never is.
-    """
-    body, place = kernel.bodies[0], 0
-    while place < len(body) and _fails(body[place], NOWHERE) and not _asks_for_row(body[place]):
-        place += 1
-    row = body[place] if place < len(body) else None
-    if not isinstance(row, Expect) or not _asks_for_row(row):
-        return kernel, None
-    return replace(kernel, bodies=(body[:place] + body[place + 1 :], *kernel.bodies[1:])), row
-
-
-def _asks_for_row(stmt: Stmt) -> bool:
-    """Whether a statement is the check that the holder has the row."""
-    return _fails(stmt, BEGIN) and isinstance(stmt, Expect) and stmt.condition == Compare("lt", ROW, Capacity(0))
-
-
-def _fails(stmt: Stmt, at: Expr) -> bool:
-    """Whether a statement is a check whose failure tells a place, and nothing besides."""
-    return isinstance(stmt, Expect) and stmt.failure.at == at and not stmt.failure.indices
 
 
 def _usual_or_next(function: ir.Function, kernel: Kernel, row: Expect | None, usual: ir.Function, following: ir.Function) -> None:
