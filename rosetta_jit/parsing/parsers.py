@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 SUFFIX = ".tables"
 
-LAYOUT = "1"
+LAYOUT = "2"
 """Of the tables; part of their digest."""
 
 

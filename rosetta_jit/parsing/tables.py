@@ -10,10 +10,12 @@ start, end                  the first state, and the one behind the whole text
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING, Any, cast
 
 from lark import Lark
 from lark.lark import PostLex
+from lark.lexer import PatternStr
 from lark.parsers.lalr_analysis import Shift
 
 if TYPE_CHECKING:
@@ -66,12 +68,25 @@ class _KeptTokens(PostLex):
 
 def _lexer(lexer: Any) -> dict[str, Any]:
     """One pattern of all tokens, in the order in which they are tried; words that are kinds of their own are told apart behind it."""
-    scanner: Any = lexer.scanner
-    (pattern,) = (each.pattern for each in scanner._mres)  # noqa: SLF001 - lark has no other way to ask
+    scanner: Any = lexer.scanner  # lark has no other way to ask
     words: dict[str, dict[str, str]] = {}
     for kind, unless in lexer.callback.items():
         words[kind] = dict(sorted((each.pattern.value, each.name) for each in unless.scanner.terminals))
-    return {"pattern": pattern, "ignored": sorted(lexer.ignore_types), "words": words}
+    groups: list[str] = []
+    for is_literal, run in groupby(scanner.terminals, _is_literal):
+        terminals = list(run)
+        if is_literal and len(terminals) > 1:
+            kind = f"__LITERAL_{len(words)}"
+            words[kind] = {each.pattern.value: each.name for each in terminals}
+            groups.append(f"(?P<{kind}>{'|'.join(each.pattern.to_regexp() for each in terminals)})")
+        else:
+            groups += [f"(?P<{each.name}>{each.pattern.to_regexp()})" for each in terminals]
+    return {"pattern": "|".join(groups), "ignored": sorted(lexer.ignore_types), "words": words}
+
+
+def _is_literal(terminal: Any) -> bool:
+    """Whether a terminal is a text, as signs and words are: a group for each of them would take most of the time to compile the pattern."""
+    return isinstance(terminal.pattern, PatternStr) and not terminal.pattern.flags
 
 
 def _reached(states: Mapping[Any, Mapping[str, tuple[Any, Any]]], start: Any) -> dict[Any, int]:

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 OPTIONS = frozenset(("frozen", "slots", "eq", "repr", "weakref_slot"))
 _OWN = frozenset(("__init__", "__eq__", "__hash__", "__repr__", "__setattr__", "__delattr__", "__getstate__", "__setstate__"))
 _FIELDS = "__dataclass_fields__"
-_DESCRIBED = (_FIELDS, "__dataclass_params__")
-"""Where the standard library keeps what it knows of a class."""
 MISSING: Any = object()
 
 
@@ -67,42 +65,51 @@ if not TYPE_CHECKING:
 
 
 def _made(plain: type[Any], options: Mapping[str, bool]) -> type[Any]:
-    own, said = vars(plain), {name: str(each) for name, each in plain.__annotations__.items()}
-    inherits = any(hasattr(base, _FIELDS) for base in plain.__bases__)
-    if inherits or not _OWN.isdisjoint(own) or any("InitVar" in each for each in said.values()):
+    own, said = vars(plain), plain.__annotations__
+    if _is_special(plain):
         return _standard(plain, options)
     if not plain.__doc__:
         plain.__doc__ = plain.__name__  # else the standard library writes the signature there, for which it imports and asks `inspect`
-    fields = {name: _field(own.get(name, MISSING)) for name, each in said.items() if not each.startswith("ClassVar")}
+    fields = {name: _field(own.get(name, MISSING)) for name, each in said.items() if not str(each).startswith("ClassVar")}
     names: dict[str, Any] = {}
-    kept = {name: each for name, each in own.items() if name not in fields and name not in ("__dict__", "__weakref__")}
-    described = {name: _Described(name, plain, options) for name in _DESCRIBED}
-    slots = {"__slots__": (*fields, "__weakref__") if options.get("weakref_slot") else tuple(fields), "__qualname__": plain.__qualname__}
-    methods = _methods(fields, options, _init(fields, names, has_post_init=hasattr(plain, "__post_init__")))
+    given = {name: each for name, each in own.items() if name not in fields and name not in _OF_EACH_CLASS}
+    given["__slots__"] = (*fields, "__weakref__") if options.get("weakref_slot") else (*fields,)
+    given["__qualname__"] = plain.__qualname__
+    given["__init__"] = _init(fields, names, has_post_init=hasattr(plain, "__post_init__"))
+    given["__declared__"] = Declared(plain, options, fields)
+    given |= _DESCRIBED
+    _add_methods(given, fields, options)
     kind: Any = type(plain)
-    made: Any = kind(plain.__name__, plain.__bases__, {**kept, **slots, **methods, **described})
+    made: Any = kind(plain.__name__, plain.__bases__, given)
     for number, (name, each) in enumerate(fields.items()):
         store = getattr(made, name).__set__
         names[f"set{number}"] = store if each.default_factory is MISSING else _made_anew(store, each.default_factory)
-    for each in described.values():
-        each.made = made
     return made
 
 
-def _methods(fields: Mapping[str, Field], options: Mapping[str, bool], init: Callable[..., None]) -> dict[str, Any]:
-    """All that a class gets; given to it at once, because a class that is changed tells all that have looked at it."""
-    given = tuple(name for name, each in fields.items() if each.init)
-    methods: dict[str, Any] = {"__init__": init, "__match_args__": given, "__replace__": _replace(given)}
+def _is_special(plain: type[Any]) -> bool:
+    """Whether a class inherits fields, or brings what is to be made, or values of which no field is made."""
+    if plain.__bases__ != (object,) and any(hasattr(base, _FIELDS) for base in plain.__bases__):
+        return True
+    return not _OWN.isdisjoint(vars(plain)) or any("InitVar" in str(each) for each in plain.__annotations__.values())
+
+
+def _add_methods(given: dict[str, Any], fields: Mapping[str, Field], options: Mapping[str, bool]) -> None:
+    """All that a class gets, given to it at once, because a class that is changed tells all that have looked at it."""
+    if all(each is _PLAIN for each in fields.values()):
+        parameters = compared = tuple(fields)
+    else:
+        parameters = tuple([name for name, each in fields.items() if each.init])
+        compared = tuple([name for name, each in fields.items() if each.compare])
+    values = _values(parameters)
+    given["__match_args__"], given["__replace__"] = parameters, _replace(parameters, values)
     if options.get("repr", True):
-        methods["__repr__"] = _repr(tuple(name for name, each in fields.items() if each.repr))
+        given["__repr__"] = _repr
     if options.get("eq", True):
-        values = _values(tuple(name for name, each in fields.items() if each.compare))
-        methods |= {"__eq__": _eq(values), "__hash__": _hash(values) if options.get("frozen") else None}
+        values = values if compared == parameters else _values(compared)
+        given["__eq__"], given["__hash__"] = _eq(values), _hash(values) if options.get("frozen") else None
     if options.get("frozen"):
-        state = tuple(fields)
-        methods |= {"__setattr__": _refuse_to_set, "__delattr__": _refuse_to_delete}
-        methods |= {"__getstate__": _state(state), "__setstate__": _set_state(state)}
-    return methods
+        given |= _FROZEN
 
 
 def _field(default: Any) -> Field:
@@ -124,26 +131,43 @@ def _standard(plain: type[Any], options: Mapping[str, Any]) -> type[Any]:
     return dataclasses.dataclass(**options)(plain)
 
 
+class Declared:
+    """What a class was made of: as it was written, with which options, and its fields by their names."""
+
+    __slots__ = ("fields", "options", "plain")
+
+    def __init__(self, plain: type[Any], options: Mapping[str, bool], fields: Mapping[str, Field]) -> None:
+        self.plain, self.options, self.fields = plain, options, fields
+
+
 class _Described:
     """What the standard library knows of a class, worked out when somebody asks.
 
     `replace` and `fields` ask of many classes, for the fields alone: no method has to be compiled for that.
     """
 
-    __slots__ = ("_name", "_options", "_plain", "made")
+    __slots__ = ("_name",)
 
-    def __init__(self, name: str, plain: type[Any], options: Mapping[str, bool]) -> None:
-        self._name, self._plain, self.made = name, plain, plain
-        self._options = options
+    def __init__(self, name: str) -> None:
+        self._name = name
 
-    def __get__(self, instance: object, owner: type[Any] | None = None) -> Any:
+    def __get__(self, instance: object, owner: type[Any]) -> Any:
+        made = next(each for each in owner.__mro__ if "__declared__" in vars(each))
+        declared: Declared = vars(made)["__declared__"]
         if self._name == _FIELDS:
-            described = _standard(self._plain, {"init": False, "repr": False, "eq": False, "match_args": False})
+            described = _standard(declared.plain, {"init": False, "repr": False, "eq": False, "match_args": False})
         else:
-            described = _standard(type(self._plain.__name__, (), {}), self._options)
+            described = _standard(type(made.__name__, (), {}), declared.options)
         found = getattr(described, self._name)
-        setattr(self.made, self._name, found)
+        setattr(made, self._name, found)
         return found
+
+
+_DESCRIBED = {name: _Described(name) for name in (_FIELDS, "__dataclass_params__")}
+"""Where the standard library keeps what it knows of a class."""
+
+_OF_EACH_CLASS = ("__dict__", "__weakref__")
+"""What every class without slots has of its own."""
 
 
 def _init(fields: Mapping[str, Field], names: dict[str, Any], *, has_post_init: bool) -> Callable[..., None]:
@@ -189,10 +213,14 @@ def _stores(kinds: tuple[tuple[bool, bool], ...], *, has_post_init: bool) -> Cod
     return made_by["__init__"].__code__
 
 
-def _replace(names: tuple[str, ...]) -> Callable[..., Any]:
+def _replace(names: tuple[str, ...], values: Callable[[Any], tuple[Any, ...]]) -> Callable[..., Any]:
     def __replace__(self: Any, /, **changes: Any) -> Any:  # noqa: N807 - what it becomes
-        values = [changes.pop(name) if name in changes else getattr(self, name) for name in names]
-        return self.__class__(*values, **changes)
+        made = list(values(self))
+        for name in changes:
+            if name not in names:
+                return self.__class__(*made, **changes)  # which says what is wrong
+            made[names.index(name)] = changes[name]
+        return self.__class__(*made)
 
     return __replace__
 
@@ -218,11 +246,9 @@ def _hash(values: Callable[[Any], tuple[Any, ...]]) -> Callable[[Any], int]:
     return __hash__
 
 
-def _repr(names: tuple[str, ...]) -> Callable[[Any], str]:
-    def __repr__(self: Any) -> str:  # noqa: N807 - what it becomes
-        return f"{self.__class__.__qualname__}({', '.join(f'{name}={getattr(self, name)!r}' for name in names)})"
-
-    return __repr__
+def _repr(self: Any) -> str:
+    names = [name for name, each in self.__declared__.fields.items() if each.repr]
+    return f"{self.__class__.__qualname__}({', '.join([f'{name}={getattr(self, name)!r}' for name in names])})"
 
 
 def _refuse_to_set(self: Any, name: str, value: object) -> None:  # noqa: ARG001 - whatever they are
@@ -237,16 +263,14 @@ def _refuse_to_delete(self: Any, name: str) -> None:  # noqa: ARG001 - whichever
     raise FrozenInstanceError(f"cannot delete field {name!r}")
 
 
-def _state(names: tuple[str, ...]) -> Callable[[Any], list[Any]]:
-    def __getstate__(self: Any) -> list[Any]:  # noqa: N807 - what it becomes
-        return [getattr(self, name) for name in names]
-
-    return __getstate__
+def _state(self: Any) -> list[Any]:
+    return [getattr(self, name) for name in self.__declared__.fields]
 
 
-def _set_state(names: tuple[str, ...]) -> Callable[[Any, list[Any]], None]:
-    def __setstate__(self: Any, state: list[Any]) -> None:  # noqa: N807 - what it becomes
-        for name, value in zip(names, state, strict=True):
-            object.__setattr__(self, name, value)
+def _set_state(self: Any, state: list[Any]) -> None:
+    for name, value in zip(self.__declared__.fields, state, strict=True):
+        object.__setattr__(self, name, value)
 
-    return __setstate__
+
+_FROZEN = {"__setattr__": _refuse_to_set, "__delattr__": _refuse_to_delete, "__getstate__": _state, "__setstate__": _set_state}
+"""What frozen classes have in common."""

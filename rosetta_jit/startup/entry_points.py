@@ -53,17 +53,23 @@ def may_be_offered(group: str) -> bool:
 def _is_named_in(folder: str, group: bytes) -> bool:
     if folder.lower().endswith(".egg") or os.path.isfile(folder):  # noqa: PTH113 - hundreds of them, at each start
         return True
+    return group in _entry_points_in(folder)
+
+
+@cache
+def _entry_points_in(folder: str) -> bytes:
+    """What all packages in a folder offer; several groups are looked for in it."""
     try:
         with os.scandir(folder) as entries:
             described = [each.path for each in entries if each.name.lower().endswith((".dist-info", ".egg-info"))]
     except OSError:
-        return False
-    return any(_is_said(f"{each}/entry_points.txt", group) for each in described)
+        return b""
+    return b"\n".join([_text_of(f"{each}/entry_points.txt") for each in described])
 
 
-def _is_said(file: str, group: bytes) -> bool:
+def _text_of(file: str) -> bytes:
     try:
-        with open(file, "rb") as entry_points:  # noqa: PTH123 - hundreds of them, at each start
-            return group in entry_points.read()
+        with open(os.open(file, os.O_RDONLY), "rb", buffering=0) as entry_points:
+            return entry_points.read()
     except OSError:
-        return False
+        return b""

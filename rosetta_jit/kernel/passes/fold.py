@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from rosetta_jit.kernel import arithmetic
 from rosetta_jit.kernel.arithmetic import FLOATS, Value, limits
 from rosetta_jit.kernel.nodes import Binary, Compare, Comparison, Const, Convert, Expr, Fits, Local, Scalar, Select, Unary
 from rosetta_jit.kernel.terms import add, type_of
+from rosetta_jit.kernel.walk import operands
 
 COMMUTATIVE = frozenset({"add", "mul", "and", "or", "xor"})
 OPPOSITE: dict[str, Comparison] = {"eq": "ne", "ne": "eq", "lt": "ge", "ge": "lt", "gt": "le", "le": "gt"}
@@ -76,10 +78,15 @@ def _select(expr: Select) -> Expr:
             return expr
 
 
+_OF_WHOLE_NUMBERS = nullcontext()
+"""Operations on them have no warnings that would have to be kept quiet, which takes longer than the operation."""
+
+
 def _computed(expr: Expr) -> Expr:
     """The value of an operation on constants, unless it breaks an obligation or is a NaN."""
+    quiet = np.errstate(all="ignore") if any(type_of(each) in FLOATS for each in operands(expr)) else _OF_WHOLE_NUMBERS
     try:
-        with np.errstate(all="ignore"):
+        with quiet:
             value = _value(expr)
     except AssertionError:
         return expr
