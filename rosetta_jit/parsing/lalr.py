@@ -110,13 +110,10 @@ class Rule:
     def built(self, parts: list[Any]) -> Tree | Token:
         """The tree of its parts."""
         children = parts if self.kept is None else _kept(parts, self.kept)
-        if self.is_thin and len(children) == 1:
-            built = children[0]
-            if len(parts) == 1:
-                return built
-        else:
-            built = Tree(self.data, children)
-        return _placed(built, parts) if isinstance(built, Tree) else built
+        if not (self.is_thin and len(children) == 1):
+            return _placed(Tree(self.data, children), parts)
+        built = children[0]
+        return built if len(parts) == 1 or type(built) is Token else _placed(built, parts)
 
 
 def _kept(parts: list[Any], kept: Sequence[tuple[int, bool]]) -> list[Any]:
@@ -135,23 +132,17 @@ def _placed(tree: Tree, parts: list[Any]) -> Tree:
     """The tree with its places: its own are the first that it gets; as a thin rule's only part it stands for all of that text."""
     start, end, before, behind = tree.places
     for part in parts:
-        if (found := _start(part)) != NOWHERE:
+        found = part.places[2] if type(part) is Tree else part.start_pos
+        if found != NOWHERE:
             before = found
             break
     for part in reversed(parts):
-        if (found := _end(part)) != NOWHERE:
+        found = part.places[3] if type(part) is Tree else part.end_pos
+        if found != NOWHERE:
             behind = found
             break
     tree.places = (before if start == NOWHERE else start, behind if end == NOWHERE else end, before, behind)
     return tree
-
-
-def _start(part: Tree | Token) -> int:
-    return part.places[2] if isinstance(part, Tree) else part.start_pos
-
-
-def _end(part: Tree | Token) -> int:
-    return part.places[3] if isinstance(part, Tree) else part.end_pos
 
 
 class Grammar:
@@ -191,19 +182,15 @@ class Grammar:
             found = self._states[state] = _row(self.plain["states"][state], self.plain["symbols"])
         return found
 
-    def settled(self, below: int, state: int, kind: str) -> int:
-        """The state above another one once rules that are no more than their only part are complete before a kind of token."""
-        key = below, state, kind
-        found = self._settled.get(key)
-        if found is None:
-            while (action := self.actions(state).get(kind, 0)) < 0 and self.rule(action).is_its_part:
-                state = self.actions(below)[self.rule(action).name]
-            found = self._settled[key] = state
+    def step(self, below: int, state: int, kind: str) -> tuple[int, int | None]:
+        """What to do before a kind of token in a state above another one: the state once rules that are no more than their only part are
+        complete, and its action; None if the token does not fit."""
+        asked, action = (below, state, kind), self.actions(state).get(kind)
+        while below != NOWHERE and action is not None and action < 0 and self.rules[~action].is_its_part:
+            state = self.actions(below)[self.rules[~action].name]
+            action = self.actions(state).get(kind)
+        found = self.steps[asked] = state, action
         return found
-
-    def rule(self, action: int) -> Rule:
-        """The rule that an action says is complete."""
-        return self._rules[~action]
 
     @cached_property
     def _pattern(self) -> re.Pattern[str]:
@@ -214,11 +201,13 @@ class Grammar:
         return frozenset(self.plain["ignored"])
 
     @cached_property
-    def _rules(self) -> tuple[Rule, ...]:
+    def rules(self) -> tuple[Rule, ...]:
+        """By the complements of the actions that say they are complete."""
         return tuple(Rule(*each) for each in self.plain["rules"])
 
     @cached_property
-    def _settled(self) -> dict[tuple[int, int, str], int]:
+    def steps(self) -> dict[tuple[int, int, str], tuple[int, int | None]]:
+        """What `step` has been asked."""
         return {}
 
     @cached_property
@@ -264,16 +253,15 @@ class Parser:
     def _reduce(self, token: Token) -> int:
         """Make trees of what is complete before a token; the state behind the token then, or the last one at the end."""
         grammar, states, values = self.grammar, self.states, self.values
-        last, kind = grammar.plain["end"], token.type
+        rules, steps, last, kind = grammar.rules, grammar.steps, grammar.plain["end"], token.type
         while True:
-            if len(states) > 1:
-                states[-1] = grammar.settled(states[-2], states[-1], kind)
-            action = grammar.actions(states[-1]).get(kind)
+            below = states[-2] if len(states) > 1 else NOWHERE
+            states[-1], action = steps.get((below, states[-1], kind)) or grammar.step(below, states[-1], kind)
             if action is None:
                 raise UnexpectedTokenError(token)
             if action >= 0:
                 return action
-            rule = grammar.rule(action)
+            rule = rules[~action]
             first = len(values) - rule.size
             built = rule.built(values[first:])
             del values[first:], states[first + 1 :]
@@ -288,7 +276,7 @@ class Parser:
             action = self.grammar.actions(states[-1]).get(kind)
             if action is None or action >= 0:
                 return action is not None
-            rule = self.grammar.rule(action)
+            rule = self.grammar.rules[~action]
             del states[len(states) - rule.size :]
             states.append(self.grammar.actions(states[-1])[rule.name])
             if states[-1] == self.grammar.plain["end"] and kind == END:

@@ -9,6 +9,7 @@ start, end                  the first state, and the one behind the whole text
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, cast
@@ -78,10 +79,17 @@ def _lexer(lexer: Any) -> dict[str, Any]:
         if is_literal and len(terminals) > 1:
             kind = f"__LITERAL_{len(words)}"
             words[kind] = {each.pattern.value: each.name for each in terminals}
-            groups.append(f"(?P<{kind}>{'|'.join(each.pattern.to_regexp() for each in terminals)})")
+            groups.append(f"(?P<{kind}>{_alternatives([each.pattern.value for each in terminals])})")
         else:
             groups += [f"(?P<{each.name}>{each.pattern.to_regexp()})" for each in terminals]
     return {"pattern": "|".join(groups), "ignored": sorted(lexer.ignore_types), "words": words}
+
+
+def _alternatives(texts: Sequence[str]) -> str:
+    """A pattern of several texts, in their order; the signs at the end as one set."""
+    first = next((at for at in range(len(texts)) if all(len(each) == 1 for each in texts[at:])), len(texts))
+    signs = "".join(map(re.escape, texts[first:]))
+    return "|".join([*map(re.escape, texts[:first]), *([f"[{signs}]"] if signs else [])])
 
 
 def _is_literal(terminal: Any) -> bool:
