@@ -21,6 +21,7 @@ from rosetta_jit.kernel.proof.loops import ZERO, Guess, Loop, Made, bounds, need
 from rosetta_jit.kernel.proof.obligations import UnprovenError, demand, oblige
 from rosetta_jit.kernel.proof.scope import Scope, Typed, entry
 from rosetta_jit.kernel.proof.symbolic import condition, evaluate, integer, linear
+from rosetta_jit.kernel.routines import called_routines, named_lanes
 from rosetta_jit.kernel.shape import shape_error
 from rosetta_jit.startup.dataclass import dataclass, field
 
@@ -94,22 +95,34 @@ def check_shape(kernel: ir.Kernel) -> None:
 
 def _proven_routines(kernel: ir.Kernel, record: Record | None = None) -> Mapping[str, ir.Routine]:
     """The routines of a kernel of sound shape, proven."""
-    for number, routine in enumerate(kernel.routines):
+    known: dict[str, ir.Routine] = {}
+    for routine in kernel.routines:
         try:
             if record is None:
-                _prove_routine(kernel.strides, routine, kernel.routines[:number])
+                called = tuple(known[each] for each in called_routines(routine.body))
+                _prove_routine(_strides_of(kernel.strides, (routine, *called)), routine, called)
             else:
                 record.begin(f"routine {routine.name}", routine.sites)
-                _routine(kernel.strides, routine, kernel.routines[:number], record)
+                _routine(kernel.strides, routine, tuple(known.values()), record)
         except UnprovenError as error:
             raise VerificationError(f"kernel {kernel.name}, routine {routine.name}: {error}") from error
-    return {routine.name: routine for routine in kernel.routines}
+        known[routine.name] = routine
+    return known
+
+
+def _strides_of(strides: tuple[int, ...], routines: tuple[ir.Routine, ...]) -> tuple[int, ...]:
+    """The strides that a proof of routines depends on: rows of lanes that they do not name have no bytes, in which nothing is proven.
+
+    So one proof holds for kernels of many holders.
+    """
+    named = {lane for routine in routines for lane in named_lanes(routine)}
+    return tuple(stride if lane in named else 0 for lane, stride in enumerate(strides[: max(named, default=-1) + 1]))
 
 
 @lru_cache(maxsize=MAX_PROOFS)
-def _prove_routine(strides: tuple[int, ...], routine: ir.Routine, before: tuple[ir.Routine, ...]) -> None:
-    """Prove a routine, which calls those before it. No pass changes one, so that a proof holds for all rounds of all passes."""
-    _routine(strides, routine, before, None)
+def _prove_routine(strides: tuple[int, ...], routine: ir.Routine, called: tuple[ir.Routine, ...]) -> None:
+    """Prove a routine, which calls others. No pass changes one, so that a proof holds for all rounds of all passes."""
+    _routine(strides, routine, called, None)
 
 
 def _routine(strides: tuple[int, ...], routine: ir.Routine, before: tuple[ir.Routine, ...], record: Record | None) -> None:
