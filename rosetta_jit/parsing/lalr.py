@@ -184,7 +184,8 @@ class Grammar:
 
     def step(self, below: int, state: int, kind: str) -> tuple[int, int | None]:
         """What to do before a kind of token in a state above another one: the state once rules that are no more than their only part are
-        complete, and its action; None if the token does not fit."""
+        complete, and its action; None if the token does not fit.
+        """
         asked, action = (below, state, kind), self.actions(state).get(kind)
         while below != NOWHERE and action is not None and action < 0 and self.rules[~action].is_its_part:
             state = self.actions(below)[self.rules[~action].name]

@@ -216,10 +216,10 @@ def _stores(kinds: tuple[tuple[bool, bool], ...], *, has_post_init: bool) -> Cod
 def _replace(names: tuple[str, ...], values: Callable[[Any], tuple[Any, ...]]) -> Callable[..., Any]:
     def __replace__(self: Any, /, **changes: Any) -> Any:  # noqa: N807 - what it becomes
         made = list(values(self))
-        for name in changes:
+        for name, each in changes.items():
             if name not in names:
                 return self.__class__(*made, **changes)  # which says what is wrong
-            made[names.index(name)] = changes[name]
+            made[names.index(name)] = each
         return self.__class__(*made)
 
     return __replace__

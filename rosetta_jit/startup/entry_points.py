@@ -69,7 +69,7 @@ def _entry_points_in(folder: str) -> bytes:
 
 def _text_of(file: str) -> bytes:
     try:
-        with open(os.open(file, os.O_RDONLY), "rb", buffering=0) as entry_points:
+        with open(file, "rb", buffering=0) as entry_points:  # noqa: PTH123 - hundreds of them, at each start
             return entry_points.read()
     except OSError:
         return b""

@@ -8,7 +8,8 @@ import pytest
 from llvmlite import ir
 
 from rosetta_jit.backends.entry.link import llvm_text
-from rosetta_jit.backends.llvm.function import MANY, emit
+from rosetta_jit.backends.llvm.function import emit
+from rosetta_jit.backends.llvm.routines import MANY
 from rosetta_jit.kernel.nodes import Compare, Const, Expect, For, Load, Local, Require, Return
 from rosetta_jit.kernel.proof.verify import verify
 from rosetta_jit.kernel.terms import BEGIN, END, add, index

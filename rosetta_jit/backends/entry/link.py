@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from string import Template
@@ -26,6 +26,7 @@ from llvmlite import binding, ir
 from rosetta_jit.backends.entry.program import NEXT_CALL, Options, Program
 from rosetta_jit.backends.llvm import definitions, support
 from rosetta_jit.backends.llvm import function as llvm
+from rosetta_jit.backends.llvm.routines import common_routine
 from rosetta_jit.kernel.entries import SYMBOLS, EntryName
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.state import ERROR_SITE, USED, lane_word, state_words
@@ -214,8 +215,19 @@ def _surroundings(module: binding.ModuleRef, program: Program) -> Iterator[bytes
     around = _surrounding_texts(program)
     if around:
         yield _entries(*around)
-    wanted = {each.name for each in module.functions if each.is_declaration} & set(support.SIGNATURES)
-    yield from map(_support, sorted(wanted))
+    yield from map(_shared, sorted(_wanted({each.name for each in module.functions if each.is_declaration})))
+
+
+def _wanted(declared: Iterable[str]) -> set[str]:
+    """The functions that programs share, among those that a module declares, and those that they call themselves."""
+    wanted, waiting = set[str](), [*declared]
+    while waiting:
+        name = waiting.pop()
+        routine = common_routine(name)
+        if name not in wanted and (routine is not None or name in support.SIGNATURES):
+            wanted.add(name)
+            waiting += () if routine is None else routine.declares
+    return wanted
 
 
 @cache
@@ -224,7 +236,11 @@ def _entries(*texts: str) -> bytes:
 
 
 @cache
-def _support(name: str) -> bytes:
+def _shared(name: str) -> bytes:
+    """The object file of a function that programs share."""
+    routine = common_routine(name)
+    if routine is not None:
+        return kept("routine", routine.text, lambda: object_of([routine.text], (name,), thorough=False))
     return kept("support", name, lambda: object_of([definitions.text((name,))], (name,)))
 
 

@@ -105,6 +105,19 @@ class Exit:
     block: ir.Block
     phis: tuple[ir.PhiInstr, ...]
 
+    @staticmethod
+    def new(entry: ir.IRBuilder, name: str, values: int) -> Exit:
+        """An empty one, for so many values."""
+        block = entry.function.append_basic_block(name)
+        builder = ir.IRBuilder(block)
+        return Exit(block, tuple(builder.phi(I64) for _ in range(values)))
+
+    def drop(self) -> None:
+        """No edge leads here: a block without edges cannot have phis."""
+        for phi in self.phis:
+            self.block.instructions.remove(phi)
+        ir.IRBuilder(self.block).unreachable()
+
     def enter(self, builder: ir.IRBuilder, values: Sequence[ir.Value]) -> None:
         """End the builder's block with a jump here; values that are not given are 0."""
         for phi, value in zip(self.phis, (*values, *[constant(0)] * (len(self.phis) - len(values))), strict=True):
@@ -135,6 +148,10 @@ class StoredExit:
         self._store(builder, self.words, values)
         builder.branch(self.block if through is None else through)
         self.is_reached = True
+
+    def drop(self) -> None:
+        """No edge leads here."""
+        ir.IRBuilder(self.block).unreachable()
 
     def enter_with_indices(self, builder: ir.IRBuilder, indices: Sequence[ir.Value]) -> None:
         """The same where the site and the offset are stored before."""
@@ -310,6 +327,17 @@ class Frame:
             value = builder.load(state_word(builder, hidden, lane_word(lane - self.own_lanes, word) - LANES), typ=type_, align=8, name=name)
             return value if word == ADDRESS else builder.udiv(value, constant(self.strides[lane]))
         return builder.load(state_word(builder, self.parameters.state, lane_word(lane, word)), typ=type_, align=8, name=name)
+
+
+def new_function(module: ir.Module, signature: ir.FunctionType, name: str, arguments: Sequence[str]) -> ir.Function:
+    """An empty function whose first arguments are the message and the holder's state."""
+    function = ir.Function(module, signature, name)
+    function.attributes.add("nounwind")
+    function.args[0].add_attribute("noalias")  # the message and the lanes never overlap
+    function.args[3].add_attribute("noalias")
+    for argument, each in zip(function.args, arguments, strict=True):
+        argument.name = each
+    return function
 
 
 def state_word(builder: ir.IRBuilder, state: ir.Value, word: int | ir.Value) -> ir.Value:

@@ -8,23 +8,21 @@ after another, and what a failure and a success write to the holder's state.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm import checks as llvm_checks
 from rosetta_jit.backends.llvm import definitions
-from rosetta_jit.backends.llvm import stmt as llvm_stmt
 from rosetta_jit.backends.llvm.alike import found
-from rosetta_jit.backends.llvm.expr import expression
-from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, StoredExit, constant, state_word
+from rosetta_jit.backends.llvm.frame import COLD, I64, POINTER, Exit, Frame, Parameters, StoredExit, constant, new_function, state_word
 from rosetta_jit.backends.llvm.lines import Lines
+from rosetta_jit.backends.llvm.routines import Printed, routines_of
 from rosetta_jit.backends.llvm.series import begin_rows, end_rows
 from rosetta_jit.backends.llvm.usual import without_row
 from rosetta_jit.backends.printing import counted_lanes, emptied_lanes, statements
-from rosetta_jit.kernel.ir import Kernel, Routine
-from rosetta_jit.kernel.nodes import Block, Call, Expect, Expr, For, HostCall, Require, Stmt, While
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Block, Call, Expect, Expr, HostCall, Require, Stmt
 from rosetta_jit.kernel.state import (
     CAPACITY,
     ERROR_INDICES,
@@ -43,23 +41,11 @@ from rosetta_jit.kernel.traits import are_straight_and_compute
 SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
 ARGUMENTS = ("buffer", "begin", "end", "state", "row")
 
-MANY = 64
-"""Calls of a routine from which on it stays a function: LLVM takes more than linear time on what it inlines."""
-
-SEVERAL = 4
-"""The same for a routine that loops whatever it is given: the rounds cost more than the call, and LLVM makes vectors of each loop."""
-
 MANY_STATEMENTS = 512
 """Statements of a body from which on its failures are so many that each stores what it reports."""
 
 UNUSUAL = -1 << 63
 """What a kernel's first body gives where the next one is to be asked: no place in a message, and the number of no failure."""
-
-OFTEN = 16
-"""Calls from which on a tiny routine stays a function if it begins with a call: that is made anyway."""
-
-TINY, SHORT = 8, 24
-"""Statements up to which a routine is part of its callers: if it does not loop, and if its callers are not many."""
 
 
 def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, has_usual: bool = False) -> ir.Function:
@@ -70,16 +56,16 @@ def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, ha
     Parameters
     ----------
     whole
-        Whether the functions of `support` that the kernel calls are defined, too, or only declared. The next kernel of one that goes on is
-        declared in any case.
+        Whether common routines and the functions of `support` that the kernel calls are defined, too, or only declared. The next kernel of
+        one that goes on is declared in any case.
     has_usual
         Whether the first body of several is a function for others, too, to be put into what calls it: `NAME.usual`, which gives `UNUSUAL`
         where `NAME.next` is to be asked. Who calls it knows that the holder has the row.
     """
-    routines = _routines(module, kernel, name)
+    routines = routines_of(module, kernel, name, whole=whole)
     inside = f"{name}.inside" if kernel.hidden else name
-    usual = _function(module, SIGNATURE, f"{name}.usual", ARGUMENTS) if has_usual and len(kernel.bodies) > 1 else None
-    function = _function(module, SIGNATURE, inside, ARGUMENTS)
+    usual = new_function(module, SIGNATURE, f"{name}.usual", ARGUMENTS) if has_usual and len(kernel.bodies) > 1 else None
+    function = new_function(module, SIGNATURE, inside, ARGUMENTS)
     following = _following(module, kernel, 1, f"{inside}.next", routines)
     if following is not None and usual is not None:
         following.linkage = following.calling_convention = ""  # others call it, which keep little
@@ -120,49 +106,11 @@ def _usual_or_next(function: ir.Function, kernel: Kernel, row: Expect | None, us
     builder.ret(builder.call(following, function.args))
 
 
-def _routines(module: ir.Module, kernel: Kernel, name: str) -> Mapping[str, ir.Function | Routine]:
-    """What calls of routines become: functions of the module, or their statements."""
-    calls, routines = _calls(kernel), dict[str, "ir.Function | Routine"]()
-    for routine in kernel.routines:
-        if _is_in_place(routine, calls[routine.name]):
-            routines[routine.name] = routine
-            continue
-        function = routines[routine.name] = _routine(module, kernel, routine, f"{name}.{routine.name}", routines)
-        if calls[routine.name] >= _many(routine):
-            function.attributes.add("noinline")
-    return routines
-
-
-def _calls(kernel: Kernel) -> Counter[str]:
-    """How often each routine will be called in what is printed."""
-    calls = Counter(each.routine for body in kernel.bodies for each in statements(body) if isinstance(each, Call))
-    for routine in reversed(kernel.routines):  # which call those before them
-        times = calls[routine.name] if _is_in_place(routine, calls[routine.name]) else 1
-        for each in statements(routine.body):
-            if isinstance(each, Call):
-                calls[each.routine] += times
-    return calls
-
-
-def _is_in_place(routine: Routine, calls: int) -> bool:
-    """Whether a routine is printed where it is called. LLVM could do that, but would have results and failures to take apart again."""
-    parts = statements(routine.body)
-    if calls >= OFTEN and isinstance(routine.body[0], Call):
-        return False
-    is_tiny = len(parts) <= TINY and not any(isinstance(each, For | While) for each in parts)
-    return is_tiny or (len(parts) <= SHORT and calls < _many(routine))
-
-
-def _many(routine: Routine) -> int:
-    """Calls from which on a routine stays a function."""
-    return SEVERAL if any(isinstance(each, For | While) for each in routine.body) else MANY
-
-
 def _behind_check(module: ir.Module, kernel: Kernel, inside: ir.Function, name: str) -> ir.Function:
     """The function that makes sure of the hidden lanes first: where there are too few, GROW for the last one."""
     inside.linkage = "internal"
     inside.attributes.add("alwaysinline")
-    function = _function(module, SIGNATURE, name, ARGUMENTS)
+    function = new_function(module, SIGNATURE, name, ARGUMENTS)
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     state = function.args[3]
     count = builder.load(state_word(builder, state, HIDDEN_COUNT), typ=I64, align=8)
@@ -177,55 +125,11 @@ def _behind_check(module: ir.Module, kernel: Kernel, inside: ir.Function, name: 
     return function
 
 
-def _function(module: ir.Module, signature: ir.FunctionType, name: str, arguments: Sequence[str]) -> ir.Function:
-    """An empty function whose first arguments are the message and the holder's state."""
-    function = ir.Function(module, signature, name)
-    function.attributes.add("nounwind")
-    function.args[0].add_attribute("noalias")  # the message and the lanes never overlap
-    function.args[3].add_attribute("noalias")
-    for argument, each in zip(function.args, arguments, strict=True):
-        argument.name = each
-    return function
-
-
-def _routine(module: ir.Module, kernel: Kernel, routine: Routine, name: str, routines: Mapping[str, ir.Function | Routine]) -> ir.Function:
-    """A routine as a function that returns 0 and the results, or the number of the failure and its offset."""
-    outcome = ir.LiteralStructType([I64] * (1 + max(1, len(routine.results))))
-    signature = ir.FunctionType(outcome, [POINTER, I64, I64, POINTER, *(LLVM_TYPES[each.type] for each in routine.parameters)])
-    function = _function(module, signature, name, ("buffer", "begin", "end", "state", *(each.name for each in routine.parameters)))
-    function.linkage = "internal"
-    entry = Lines(function.append_basic_block("entry"))
-    first = function.append_basic_block("body")
-    parameters = Parameters(*function.args[:4], row=constant(0))
-    done, failed = _exit(entry, "done", len(routine.results)), _exit(entry, "failed", 2)
-    lanes, emptied = (kernel.strides, kernel.lanes), emptied_lanes(kernel)
-    frame = Frame(module, entry, entry.beside(first), parameters, *lanes, {}, done, failed, emptied, routines)
-    frame.locals.update(zip(("begin", "end"), function.args[1:3], strict=True))
-    frame.locals.update(zip((each.name for each in routine.parameters), function.args[4:], strict=True))
-    llvm_stmt.block(frame, routine.body)
-    frame.done.enter(frame.builder, [expression(frame, each) for each in routine.results])
-    entry.branch(first)
-    _give(frame.done, outcome, (constant(0), *frame.done.phis))
-    if failed.is_reached:
-        _give(failed, outcome, failed.phis)
-    else:
-        _drop(failed)
-    return function
-
-
-def _give(target: Exit, outcome: ir.LiteralStructType, values: Sequence[ir.Value]) -> None:
-    builder = ir.IRBuilder(target.block)
-    whole: ir.Value = ir.Constant(outcome, None)
-    for number, value in enumerate(values):
-        whole = builder.insert_value(whole, value, number)
-    builder.ret(whole)
-
-
 def _attempt(
     function: ir.Function,
     kernel: Kernel,
     number: int,
-    routines: Mapping[str, ir.Function | Routine],
+    routines: Printed,
     otherwise: ir.Function | ir.Constant | None,
 ) -> None:
     """One of the bodies. What has failed so far stands in the state.
@@ -237,7 +141,7 @@ def _attempt(
     """
     entry, first = Lines(function.append_basic_block("entry")), function.append_basic_block("body")
     body, is_first = kernel.bodies[number], number == 0
-    done, failed = _exit(entry, "done", 1), _failed(entry, kernel, function.args[3], is_first=is_first)
+    done, failed = Exit.new(entry, "done", 1), _failed(entry, kernel, function.args[3], is_first=is_first)
     parameters, lanes, emptied = Parameters(*function.args), (kernel.strides, kernel.lanes), emptied_lanes(kernel)
     frame = Frame(function.module, entry, entry.beside(first), parameters, *lanes, {}, done, failed, emptied, routines)
     frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
@@ -251,7 +155,7 @@ def _attempt(
     _finish(frame, counted)
     entry.branch(first)
     if not failed.is_reached:
-        _drop(failed)
+        failed.drop()
         return
     builder = ir.IRBuilder(failed.block)
     site = _record(builder, parameters.state, failed, is_first=is_first)
@@ -264,9 +168,7 @@ def _attempt(
             builder.ret(otherwise)
 
 
-def _following(
-    module: ir.Module, kernel: Kernel, number: int, name: str, routines: Mapping[str, ir.Function | Routine]
-) -> ir.Function | None:
+def _following(module: ir.Module, kernel: Kernel, number: int, name: str, routines: Printed) -> ir.Function | None:
     """The function of the bodies from one on, or of the next kernel, which others define; None behind the last one.
 
     Each body has a function of its own, so that those behind the first take no part in what it keeps in registers.
@@ -281,7 +183,7 @@ def _following(
 
 def _of_next(module: ir.Module, name: str) -> ir.Function:
     """A function that goes on where another one failed. It saves the registers that it uses, so that those that call it need not."""
-    function = _function(module, SIGNATURE, name, ARGUMENTS)
+    function = new_function(module, SIGNATURE, name, ARGUMENTS)
     function.attributes.add("noinline")
     function.calling_convention = "preserve_mostcc"
     return function
@@ -292,18 +194,12 @@ def _width(kernel: Kernel) -> int:
     return min(INDEX_WORDS, max((_index_count(body) for body in kernel.bodies), default=0))
 
 
-def _exit(entry: ir.IRBuilder, name: str, values: int) -> Exit:
-    block = entry.function.append_basic_block(name)
-    builder = ir.IRBuilder(block)
-    return Exit(block, tuple(builder.phi(I64) for _ in range(values)))
-
-
 def _failed(entry: ir.IRBuilder, kernel: Kernel, state: ir.Value, *, is_first: bool) -> Exit | StoredExit:
     """Where the failures of a body lead to."""
     if is_first and len(statements(kernel.bodies[0])) >= MANY_STATEMENTS:
         words = tuple(state_word(entry, state, word) for word in _words(2 + _width(kernel)))
         return StoredExit(entry.function.append_basic_block("failed"), words)
-    return _exit(entry, "failed", 2 + _width(kernel))
+    return Exit.new(entry, "failed", 2 + _width(kernel))
 
 
 def _words(count: int) -> tuple[int, ...]:
@@ -311,17 +207,10 @@ def _words(count: int) -> tuple[int, ...]:
     return ERROR_SITE, ERROR_OFFSET, *range(ERROR_INDICES, ERROR_INDICES + count - 2)
 
 
-def _drop(target: Exit | StoredExit) -> None:
-    """A block that no edge leads to cannot have phis."""
-    for phi in target.phis if isinstance(target, Exit) else ():
-        target.block.instructions.remove(phi)
-    ir.IRBuilder(target.block).unreachable()
-
-
 def _finish(frame: Frame, lanes: Sequence[int]) -> None:
     """Success: only now do used lengths count."""
     if not frame.done.is_reached:
-        _drop(frame.done)
+        frame.done.drop()
         return
     builder = ir.IRBuilder(frame.done.block)
     if frame.rows is not None:
