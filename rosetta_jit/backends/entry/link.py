@@ -7,8 +7,8 @@ The object exports, beside each kernel as `kernel` (and `size`, of an encoder, a
     bridge            call many
 
 A program is made of two modules. *Its own* has the kernels, and, where the first of them is short, the usual call, so that LLVM puts the
-kernel into it; a bridge's has all. *The surroundings* have the rest, which is the same for many programs: compiled once a machine, they are
-kept in the cache.
+kernel into it; a bridge's has all. *The surroundings* have the rest, which is the same for many programs: compiled once a machine, it is
+kept in the cache. So are functions that kernels share: those of `llvm.support`, and common routines (`llvm.routines`).
 """
 
 from __future__ import annotations
