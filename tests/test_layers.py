@@ -23,7 +23,7 @@ LANGUAGE = {
 LANGUAGE |= {"language", "language.algebra", "language.laws"}
 KERNEL = {"kernel", "kernel.proof", "kernel.passes"}
 LOWERS = REPORTS | LANGUAGE | {"model", "wire", "kernel", "lowering"}
-LOWERING = {"lowering", "lowering.codec", "lowering.texts", "lowering.rules", "lowering.staging", "lowering.lower"}
+LOWERING = {"lowering", "lowering.codec", "lowering.texts", "lowering.rules", "lowering.staging", "lowering.mapped", "lowering.lower"}
 BACKENDS = {"backends", "backends.llvm", "backends.numba", "backends.python", "backends.entry"}
 RUNTIME = {"runtime", "runtime.limits", "runtime.code", "runtime.cache", "runtime.functions"}
 RUNTIME |= {"runtime.attributes", "runtime.holder", "runtime.holder.objects", "runtime.looks", "runtime.arrow"}
@@ -86,12 +86,13 @@ MAY_IMPORT = {
     "kernel.proof": {"kernel"},
     "kernel.passes": {"kernel", "kernel.proof"},
     "lowering": LOWERS,
-    "lowering.codec": LOWERS,
+    "lowering.codec": LOWERS - LANGUAGE,
     "lowering.texts": LOWERS,
     "lowering.colours": LOWERS | {"lowering.texts"},
     "lowering.rules": LOWERS | {"lowering.codec", "lowering.texts"},
     "lowering.staging": LOWERS | {"lowering.codec"},
-    "lowering.lower": LOWERS | LOWERING,
+    "lowering.mapped": LOWERS | LOWERING - {"lowering.lower"},
+    "lowering.lower": (LOWERS - LANGUAGE) | {"lowering.codec", "lowering.mapped"},
     "backends": {"kernel"},
     "backends.llvm": {"backends", "kernel"},
     "backends.numba": {"backends.llvm", "kernel"},

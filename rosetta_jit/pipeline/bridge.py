@@ -87,8 +87,8 @@ class BridgeBuild:
     def kernels(self) -> tuple[Kernel, ...]:
         """Proven kernels: the decoder, what measures, the encoder."""
         decode, encode = self.halves
-        before = len(decode.types.state.initial)
-        every = before + len(encode.types.state.initial)
+        before = decode.types.registers
+        every = before + encode.types.registers
         writes, size = (with_registers_behind(kernel, before, every) for kernel in encode.kernels)
         return (*(replace(kernel, registers=every) for kernel in decode.kernels), size, writes)
 

@@ -14,8 +14,7 @@ from rosetta_jit.backends.backend import Backend
 from rosetta_jit.backends.installed import backend_named
 from rosetta_jit.backends.installed import installed as installed_backends
 from rosetta_jit.catalogue import pipeline as words
-from rosetta_jit.catalogue import wires
-from rosetta_jit.errors import MappingError, SchemaError
+from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework
 from rosetta_jit.frameworks.installed import GROUP as FRAMEWORKS
 from rosetta_jit.kernel.host import UserFunction
@@ -24,12 +23,8 @@ from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError
 from rosetta_jit.kernel.traits import LARGE, LARGE_WITHOUT_RULES, HostUse, use_of_host
-from rosetta_jit.language.check.mapping import Checked, check
 from rosetta_jit.language.imports.search import Reading, SearchPath
-from rosetta_jit.language.installed import GROUP as FUNCTIONS
-from rosetta_jit.language.parse.mapping import parse as parse_mapping
-from rosetta_jit.language.typed import Rule
-from rosetta_jit.lowering.lower import Mapped, lower
+from rosetta_jit.lowering.lower import lower
 from rosetta_jit.lowering.writer import References, TooManyStatementsError
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.serial import to_plain
@@ -38,7 +33,6 @@ from rosetta_jit.pipeline.declared import declared_types, files_of, of_a_size, r
 from rosetta_jit.pipeline.kept_state import kept_of
 from rosetta_jit.pipeline.recent import recently
 from rosetta_jit.pipeline.request import ByteOrder, GivenFunction, Request
-from rosetta_jit.pipeline.stages import Made, shown
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.pipeline.user_functions import called_functions, check_compiled, check_given
 from rosetta_jit.runtime.cache.kernels import digest_file
@@ -54,11 +48,11 @@ from rosetta_jit.wire.codec import Encoding, Rare
 
 if TYPE_CHECKING:
     from rosetta_jit.backends.entry.program import Options
-    from rosetta_jit.pipeline import checked_mapping
-    from rosetta_jit.pipeline import wires as several_wires
+    from rosetta_jit.language.check.mapping import Checked
+    from rosetta_jit.pipeline import checked_mapping, mapped, stages
     from rosetta_jit.pipeline.checked_mapping import CheckedMapping
 else:
-    checked_mapping, several_wires = late("rosetta_jit.pipeline", "checked_mapping", "wires")
+    checked_mapping, mapped, stages = late("rosetta_jit.pipeline", "checked_mapping", "mapped", "stages")
 
 
 class Build:
@@ -83,15 +77,12 @@ class Build:
         return recently(self.request, self.sources, self._checked)
 
     def _checked(self) -> Checked:
-        source = self.sources.search.open(self.request.mapping or "")
-        self.sources.reading.record(source.name, None, source)
-        readers, parameters = readers_of(self.request), json.loads(self.request.parameters)
-        return check(parse_mapping(source), readers, self.sources.search, self.sources.reading, parameters)
+        return mapped.checked(self.request, self.sources)
 
     @cached_property
     def types(self) -> Types:
         request = self.request
-        types = _mapped_types(self) if request.mapping is not None else of_a_size(request, self._declared())
+        types = mapped.types_of(request, self.checked) if request.mapping is not None else of_a_size(request, self._declared())
         check_given(request, types.functions)
         return types
 
@@ -153,11 +144,11 @@ class Build:
 
     def _lowered(self, direction: Literal["decode", "encode", "size"]) -> Kernel:
         types, request = self.types, self.request
-        mapped = None if types.rules is None else self._mapped(types.rules)
+        rules = None if types.rules is None else mapped.between(types, self._layout(types.wire))
         borrow = request.borrow or self.references is not None
         encoding, goes_on = (self.encoding, False) if self.rare is None else (self.encoding.usual, True)
         try:
-            kernel = lower(encoding, self.layout, direction, name=types.wire.name, mapped=mapped, borrow=borrow, references=self.references)
+            kernel = lower(encoding, self.layout, direction, name=types.wire.name, mapped=rules, borrow=borrow, references=self.references)
         except TooManyStatementsError as error:
             raise report(self.request, words.too_many_statements(self._span, str(error))) from error
         return replace(kernel, goes_on=goes_on)
@@ -166,11 +157,6 @@ class Build:
     def _span(self) -> Span | None:
         """The place to show for errors of the program as a whole."""
         return self.types.wire.span if self.types.rules is None else self.checked.mapping.wire_span
-
-    def _mapped(self, rules: tuple[Rule, ...]) -> Mapped:
-        types = self.types
-        ends = Ref(types.holder.name), Ref(types.wire.name)
-        return Mapped(rules, types.schema, *ends, self._layout(types.wire), registers=len(types.state.initial), share=types.share)
 
     def _choices(self, framework: Framework, encoding: str) -> Choices:
         """The choices that the encoding offers and the request makes."""
@@ -299,7 +285,7 @@ class Build:
 
     def stage(self, stage: str) -> str:
         """What the program became, as text."""
-        return shown(cast("Made", self), stage)  # its properties are made once
+        return stages.shown(cast("stages.Made", self), stage)  # its properties are made once
 
     def files(self) -> dict[str, str | None]:
         """The digests of all files that the program depends on."""
@@ -308,7 +294,7 @@ class Build:
     @cached_property
     def offered(self) -> tuple[str, ...]:
         """The files of installed packages whose frameworks and functions this program may use: what is kept of it depends on them."""
-        functions = files_of_offered(FUNCTIONS) if self.request.mapping is not None else ()
+        functions = mapped.files_of_functions() if self.request.mapping is not None else ()
         return (*files_of_offered(FRAMEWORKS), *functions)
 
 
@@ -344,26 +330,7 @@ def check_mapping(
     known = [name for each in readers.frameworks.values() for name in each.encodings]
     if encoding is not None and encoding not in known:
         raise report(request, words.no_encoding(encoding, known))
-    return checked_mapping.CheckedMapping(check(parse_mapping(search.open(path)), readers, search, reading, parameters))
-
-
-def _mapped_types(build: Build) -> Types:
-    request = build.request
-    checked = build.checked
-    rules = checked.unpack if request.direction == "decode" else checked.pack
-    if rules is None or not rules:
-        raise MappingError((words.no_rules(checked.mapping.wire_span, request.direction),))
-    if checked.mapping.wires:
-        return several_wires.types_of_wire(checked, request, _both(checked), rules)
-    if request.wire is not None:
-        span = checked.mapping.wire_span
-        raise MappingError((wires.unknown(span, request.wire, ()) if request.wire else wires.single(span),))
-    return Types(checked.holder.root, checked.wire.root, _both(checked), rules, checked.functions, checked.state)
-
-
-def _both(checked: Checked) -> Schema:
-    holder, wire = checked.holder.schema, checked.wire.schema
-    return Schema({**holder.types, **wire.types}, constants={**holder.constants, **wire.constants})
+    return checked_mapping.CheckedMapping(mapped.checked_source(search.open(path), readers, search, reading, parameters))
 
 
 def plain_site(site: Site) -> list[Any]:

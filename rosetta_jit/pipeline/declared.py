@@ -10,19 +10,21 @@ from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.installed import Readers, installed
-from rosetta_jit.language.imports.declarations import UNITS_SUFFIX
-from rosetta_jit.language.imports.search import Reading, SearchPath, refusal
+from rosetta_jit.language.imports.search import UNITS_SUFFIX, Reading, SearchPath, refusal
 from rosetta_jit.model.expansion import excess
 from rosetta_jit.model.serial import from_plain
 from rosetta_jit.model.types import Array, Declaration, Map, Optional, Schema, String, Struct, Type, Union, same_name
-from rosetta_jit.pipeline.similar_types import similar_types
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.source import Source
 from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
+    from rosetta_jit.pipeline import similar_types
     from rosetta_jit.pipeline.request import Request
+else:
+    similar_types = Late("rosetta_jit.pipeline.similar_types")
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +69,7 @@ def declared_types(request: Request, files: Files) -> Types:
     found = [each for name, each in schema.types.items() if isinstance(each, Struct) and same_name(name, request.type or "")]
     if not found:
         why = [each for name, each in schema.left_out.items() if same_name(name, request.type or "")]
-        near = () if request.imports or files.texts else similar_types(request.type or "", readers_of(request), files.search)
+        near = () if request.imports or files.texts else similar_types.similar_types(request.type or "", readers_of(request), files.search)
         raise SchemaError(tuple(why) or (words.unknown_type(request.type or "", (*schema.types, *near)),))
     return Types(found[0], found[0], schema, None)
 

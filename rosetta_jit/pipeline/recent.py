@@ -8,31 +8,35 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from rosetta_jit.frameworks.installed import installed
-from rosetta_jit.language.function import Function
-from rosetta_jit.language.installed import offered
 from rosetta_jit.pipeline.limits import MAX_RECENT, MAX_RECENT_BYTES
 from rosetta_jit.pipeline.request import Request, here
 from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Framework
+    from rosetta_jit.language import installed as functions
+    from rosetta_jit.language.function import Function
     from rosetta_jit.pipeline.declared import Files
+else:
+    functions = Late("rosetta_jit.language.installed")
 
 _Said = TypeVar("_Said")
 
 
 @dataclass(frozen=True, slots=True)
 class _Recent:
-    """What was made of some files, by which frameworks and functions of installed packages."""
+    """What was made of some files, by which frameworks and, of a mapping, functions of installed packages."""
 
     said: object
     files: Files
     frameworks: Mapping[str, Framework]
-    functions: tuple[Function, ...]
+    functions: tuple[Function, ...] | None
 
     def holds(self) -> bool:
         """Whether the same would be made of the files as they are now."""
-        return self.frameworks is installed() and self.functions is offered() and self.files.are_unchanged()
+        is_extended_as_before = self.functions is None or self.functions is functions.offered()
+        return self.frameworks is installed() and is_extended_as_before and self.files.are_unchanged()
 
 
 _recent: OrderedDict[Hashable, _Recent] = OrderedDict()
@@ -53,7 +57,7 @@ def recently(request: Request, files: Files, say: Callable[[], _Said]) -> _Said:
         return cast("_Said", known.said)
     said = say()
     if files.reading.size_bytes <= MAX_RECENT_BYTES:
-        _recent[question] = _Recent(said, files, installed(), offered())
+        _recent[question] = _Recent(said, files, installed(), None if request.mapping is None else functions.offered())
         _recent.move_to_end(question)
         while len(_recent) > MAX_RECENT:
             _recent.popitem(last=False)

@@ -11,13 +11,16 @@ from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.host import UserFunction
 from rosetta_jit.kernel.nodes import HostCall, Scalar
-from rosetta_jit.language.uses import Signature
-from rosetta_jit.lowering.rules.scalars import scalar_type
 from rosetta_jit.runtime.code.allowed import ALLOWED
 from rosetta_jit.runtime.code.object_file import undefined_symbols
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
+    from rosetta_jit.language.uses import Signature
+    from rosetta_jit.lowering.rules import scalars
     from rosetta_jit.pipeline.request import Request
+else:
+    scalars = Late("rosetta_jit.lowering.rules.scalars")
 
 
 def check_given(request: Request, declared: Mapping[str, Signature]) -> None:
@@ -39,8 +42,8 @@ def called_functions(request: Request, declared: Mapping[str, Signature], calls:
 
 def _user_function(signature: Signature, function: object) -> UserFunction:
     assert callable(function)
-    parameters: tuple[Scalar, ...] = tuple(scalar_type(each) for each in signature.parameters)
-    return UserFunction(signature.name, function, parameters, scalar_type(signature.result))
+    parameters: tuple[Scalar, ...] = tuple(scalars.scalar_type(each) for each in signature.parameters)
+    return UserFunction(signature.name, function, parameters, scalars.scalar_type(signature.result))
 
 
 def check_compiled(functions: Iterable[UserFunction], declared: Mapping[str, Signature]) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.language.check import mapping as checking
-from rosetta_jit.pipeline import build
+from rosetta_jit.pipeline import mapped
 from rosetta_jit.pipeline.limits import MAX_RECENT
 
 TYPE = "float64 v\n"
@@ -30,7 +30,7 @@ def checks(monkeypatch):
         checked.append(mapping)
         return checking.check(mapping, *arguments)
 
-    monkeypatch.setattr(build, "check", check)
+    monkeypatch.setattr(mapped, "check", check)
     return checked
 
 

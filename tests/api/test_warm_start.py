@@ -155,3 +155,32 @@ def test_a_compile_imports_of_the_compiler_what_the_mapping_needs(tmp_path):
     environment = {**os.environ, "ROSETTA_JIT_CACHE": "off"}
     ran = subprocess.run([sys.executable, "-c", UNUSED], env=environment, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert ran.stdout.split() == []
+
+
+TYPES = """
+import sys
+import rosetta_jit as rj
+encoding, type, name, text = sys.argv[1:]
+for make in (rj.Decoder, rj.Encoder):
+    make.of(type, encoding=encoding, schema={name: text})
+rooms = ("language", "lowering.mapped", "lowering.rules", "functions")
+loaded = [name.removeprefix("rosetta_jit.") for name in sys.modules if name.startswith("rosetta_jit.")]
+print(*[name for name in loaded if name.startswith(tuple(f"{room}." for room in rooms)) or name in rooms])
+"""
+
+
+@pytest.mark.parametrize(
+    ("encoding", "type_", "name", "text"),
+    [
+        ("ros1", "a/One", "a/msg/One.msg", "float64 x\nstring[] names\n"),
+        ("cdr", "a/msg/One", "a/msg/One.msg", "float64 x\nstring[] names\n"),
+        ("lcm", "a.One", "a.lcm", "package a; struct One { double x; string name; }"),
+        ("protobuf", "a.One", "a.proto", 'syntax = "proto3"; package a; message One { double x = 1; repeated string names = 2; }'),
+        ("yarp4", "one", "one.bottle-schema", '"one" (("x" :double) ("name" :string))'),
+    ],
+)
+def test_a_type_without_a_mapping_imports_no_language(encoding, type_, name, text):
+    """Only where files are searched for: a third of what a first program takes would be the import of the rest."""
+    environment = {**os.environ, "ROSETTA_JIT_CACHE": "off"}
+    ran = subprocess.run([sys.executable, "-c", TYPES, encoding, type_, name, text], env=environment, check=True, capture_output=True, text=True)
+    assert set(ran.stdout.split()) <= {"language", "language.limits", "language.imports", "language.imports.search"}

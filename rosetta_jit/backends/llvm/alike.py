@@ -11,19 +11,19 @@ from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.backends.llvm.outline import Outline, Slot, is_number
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Assign, Block, Call, Const, Copy, Expr, Fill, For, If, Local, Reserve, Scalar, Stmt, Switch, While
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
 from rosetta_jit.kernel.walk import blocks_of, flat, parts_of
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.startup.late import Late
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
-    from rosetta_jit.backends.llvm import alike_names
+    from rosetta_jit.backends.llvm import alike_names, outline
     from rosetta_jit.backends.llvm.alike_names import Carried
+    from rosetta_jit.backends.llvm.outline import Outline, Slot
 else:
-    alike_names = Late("rosetta_jit.backends.llvm.alike_names")
+    alike_names, outline = late("rosetta_jit.backends.llvm", "alike_names", "outline")
 
 MANY = 512
 """Statements of a body from which on series are looked for: below, LLVM takes no time worth mentioning."""
@@ -87,6 +87,10 @@ class Found:
         """What a block is made of."""
         return self.blocks.get(id(block), block)
 
+    def cases(self, switch: Switch) -> tuple[Cases, ...]:
+        """The cases of a switch that are alike."""
+        return self.switches.get(id(switch), ())
+
 
 NOTHING = Found({}, {})
 
@@ -125,7 +129,7 @@ class _Look:
         self.strides, self.own_lanes = kernel.strides, kernel.lanes
 
     def outline(self, stmt: Stmt) -> Outline:
-        return Outline(stmt, self.strides, self.own_lanes)
+        return outline.Outline(stmt, self.strides, self.own_lanes)
 
     def parts(self, block: Block) -> tuple[Stmt | Series, ...] | None:
         """The statements of a block, with series in their places; None if there are none."""
@@ -160,7 +164,7 @@ class _Look:
 
     def cases(self, switch: Switch) -> tuple[Cases, ...]:
         """The cases of a switch that are alike, where they are many, or of very many statements."""
-        alike = dict["Hashable", list[tuple[int, "Block", list[Slot]]]]()
+        alike = dict["Hashable", list[tuple[int, "Block", list["Slot"]]]]()
         kinds = [tuple(map(type, body)) for _, body in switch.cases]
         times = Counter(kinds)
         for (number, body), kind in zip(switch.cases, kinds, strict=True):
@@ -303,7 +307,7 @@ def _stated(
     numbers = iter([at for at, slot in enumerate(slots) if slot.kind == "number"])
 
     def changed(expr: Expr) -> Expr:
-        if not (isinstance(expr, Const) and is_number(expr)):
+        if not (isinstance(expr, Const) and outline.is_number(expr)):
             return with_operands(expr, changed)
         number = found.get(("number", at := next(numbers), int(expr.value)))
         if number is None:

@@ -11,17 +11,22 @@ begins: to make one load of several, LLVM goes through all that stands between t
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
-from rosetta_jit.backends.llvm import vectors
 from rosetta_jit.backends.llvm.frame import F32, F64, I32, I64, Frame, Variable, forgotten
-from rosetta_jit.backends.llvm.outline import FIXED
 from rosetta_jit.kernel.nodes import Block, Expect, Fill, If, Let, Load, Require, Return, SetField, Stmt, Store
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.walk import expressions_of
+from rosetta_jit.startup.late import late
+
+if TYPE_CHECKING:
+    from rosetta_jit.backends.llvm import outline, vectors
+else:
+    outline, vectors = late("rosetta_jit.backends.llvm", "outline", "vectors")
 
 OFTEN = 64
 """Checks of one value from which on it is another one."""
@@ -45,8 +50,9 @@ def body(frame: Frame, statements: Block, *, in_vectors: bool = False) -> None:
     stores = 0
     many = sum(isinstance(each, Expect | If) for each in statements) > OFTEN
     parts = llvm_stmt.parts(frame, statements)
+    print_part: Callable[[Frame, Any], None] = vectors.print_part if in_vectors else llvm_stmt.print_part
     for part in _in_stretches(vectors.joined(statements, parts, frame.strides) if in_vectors else parts):
-        llvm_stmt.print_part(frame, part)
+        print_part(frame, part)
         stores += isinstance(part, SetField | Store)
         if stores == STORES and not frame.builder.block.is_terminated:
             frame.builder.asm(ANY_MEMORY, "", "~{memory}", [], side_effect=True)
@@ -66,7 +72,7 @@ def _in_stretches(parts: Sequence[vectors.Part]) -> Iterator[vectors.Part]:
         return
     loads, stretch, stores = dict[str, Let](), list["Stmt"](), 0
     for part in straight:
-        if isinstance(part, Let) and isinstance(part.value, Load) and locals_in(part.value) <= FIXED:
+        if isinstance(part, Let) and isinstance(part.value, Load) and locals_in(part.value) <= outline.FIXED:
             loads[part.name] = part
             continue
         stretch.append(part)

@@ -9,6 +9,7 @@ after another, and what a failure and a success write to the holder's state.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
@@ -18,7 +19,6 @@ from rosetta_jit.backends.llvm.alike import found
 from rosetta_jit.backends.llvm.frame import COLD, I64, POINTER, Exit, Frame, Parameters, StoredExit, constant, new_function, state_word
 from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.routines import Printed, routines_of
-from rosetta_jit.backends.llvm.series import begin_rows, end_rows
 from rosetta_jit.backends.llvm.usual import without_row
 from rosetta_jit.backends.printing import counted_lanes, emptied_lanes, statements
 from rosetta_jit.kernel.ir import Kernel
@@ -37,6 +37,12 @@ from rosetta_jit.kernel.state import (
     lane_word,
 )
 from rosetta_jit.kernel.traits import are_straight_and_compute
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.backends.llvm import series
+else:
+    series = Late("rosetta_jit.backends.llvm.series")
 
 SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
 ARGUMENTS = ("buffer", "begin", "end", "state", "row")
@@ -148,7 +154,7 @@ def _attempt(
     counted = counted_lanes(kernel, body)
     frame.alike, frame.counting = found(kernel, body), bool(counted)
     if frame.alike and counted:
-        begin_rows(frame, kernel.direction)
+        series.begin_rows(frame, kernel.direction)
     llvm_checks.body(frame, body, in_vectors=is_first and are_straight_and_compute((kernel,)))
     if not frame.builder.block.is_terminated:
         frame.builder.unreachable()  # verified: every path that gets here has ended in a Return before
@@ -214,7 +220,7 @@ def _finish(frame: Frame, lanes: Sequence[int]) -> None:
         return
     builder = ir.IRBuilder(frame.done.block)
     if frame.rows is not None:
-        end_rows(frame, lanes)
+        series.end_rows(frame, lanes)
         return
     for lane in lanes:
         word = state_word(builder, frame.parameters.state, lane_word(lane, USED))

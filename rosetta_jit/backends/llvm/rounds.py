@@ -8,20 +8,24 @@ switch: whoever decodes the fields of a message in the order in which they were 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.frame import I64, Frame, Variable, forgotten
-from rosetta_jit.backends.llvm.series import print_cases
 from rosetta_jit.backends.printing import statements
 from rosetta_jit.kernel.nodes import Assign, Block, Const, Expect, If, Local, Switch, Var, While
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
+    from rosetta_jit.backends.llvm import series
+
     Printer = Callable[[Frame, Block], None]
+else:
+    series = Late("rosetta_jit.backends.llvm.series")
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +88,9 @@ def print_switch(frame: Frame, rounds: Rounds, end: ir.Block, over: ir.Block, bl
     other, ways = frame.block("default"), Ways({number: frame.block(f"case{number}") for number, _ in rounds.switch.cases}, end, over)
     value = builder.load(_variable(frame, rounds.case).slot, typ=I64)
     switch = builder.switch(value, other)
-    alike = print_cases(frame, rounds.switch, switch, block, lambda body: _leave(frame, rounds, body, ways, block), ways.cases)
+    alike: Container[int] = ()
+    if frame.alike.cases(rounds.switch):
+        alike = series.print_cases(frame, rounds.switch, switch, block, lambda body: _leave(frame, rounds, body, ways, block), ways.cases)
     for number, body in rounds.switch.cases:
         if number in alike:
             continue

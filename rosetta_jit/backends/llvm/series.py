@@ -77,7 +77,7 @@ def print_cases(
     They begin in blocks of their own, or in ``blocks``.
     """
     builder, known = frame.builder, set[int]()
-    for cases in frame.alike.switches.get(id(switch), ()):
+    for cases in frame.alike.cases(switch):
         shared = frame.block("alike")
         builder.position_at_end(shared)
         index = builder.phi(I64)

@@ -25,23 +25,20 @@ from rosetta_jit.backends.llvm.expr import (
 )
 from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Frame, StoredExit, Variable, constant, forgotten
 from rosetta_jit.backends.llvm.growth import reserve
-from rosetta_jit.backends.llvm.series import print_cases, print_series
 from rosetta_jit.backends.llvm.sites import site_of
-from rosetta_jit.backends.llvm.vectors import Wide, print_wide
 from rosetta_jit.kernel import ir as kernel
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
 from rosetta_jit.kernel.traits import looks_closer
 from rosetta_jit.startup.dataclass import replace
-from rosetta_jit.startup.late import Late
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
-    from rosetta_jit.backends.llvm import host
+    from rosetta_jit.backends.llvm import host, series
     from rosetta_jit.backends.llvm import rounds as rounds_of_switch
 else:
-    host = Late("rosetta_jit.backends.llvm.host")
-    rounds_of_switch = Late("rosetta_jit.backends.llvm.rounds")
+    host, series, rounds_of_switch = late("rosetta_jit.backends.llvm", "host", "series", "rounds")
 
 MANY_CASES = 64
 ANY_SITE = -1
@@ -61,14 +58,12 @@ def parts(frame: Frame, statements: nodes.Block) -> Sequence[nodes.Stmt | Series
     return frame.alike.parts(statements)
 
 
-def print_part(frame: Frame, part: nodes.Stmt | Series | Wide) -> None:
+def print_part(frame: Frame, part: nodes.Stmt | Series) -> None:
     """Print a part of a block, unless one before it has ended it."""
     if frame.builder.block.is_terminated:
         return
     if isinstance(part, Series):
-        print_series(frame, part, block)
-    elif isinstance(part, Wide):
-        print_wide(frame, part)
+        series.print_series(frame, part, block)
     else:
         _statement(frame, part)
 
@@ -329,7 +324,7 @@ def _switch(frame: Frame, statement: nodes.Switch) -> None:
     builder, value = frame.builder, expression(frame, statement.value)
     other, behind = frame.block("default"), frame.block("after")
     switch = builder.switch(value, other)
-    alike = print_cases(frame, statement, switch, block, lambda _: builder.branch(behind))
+    alike = series.print_cases(frame, statement, switch, block, lambda _: builder.branch(behind)) if frame.alike.cases(statement) else ()
     for number, body in _shuffled(tuple(case for case in statement.cases if case[0] not in alike)):
         case = frame.block(f"case{number}")
         switch.add_case(ir.Constant(value.type, number), case)

@@ -15,6 +15,7 @@ from itertools import pairwise
 
 from llvmlite import ir
 
+from rosetta_jit.backends.llvm import stmt as llvm_stmt
 from rosetta_jit.backends.llvm.alike import Series
 from rosetta_jit.backends.llvm.expr import (
     FLOAT_BINARY,
@@ -245,7 +246,15 @@ def _follow(places: Sequence[tuple[int | nodes.Order, nodes.Expr, int]], kind: n
 # --- printing ------------------------------------------------------------------------------------------------------------
 
 
-def print_wide(frame: Frame, wide: Wide) -> None:
+def print_part(frame: Frame, part: Part) -> None:
+    """Print a part of a block, unless one before it has ended it."""
+    if not isinstance(part, Wide):
+        llvm_stmt.print_part(frame, part)
+    elif not frame.builder.block.is_terminated:
+        _print_wide(frame, part)
+
+
+def _print_wide(frame: Frame, wide: Wide) -> None:
     """Print the store of a vector."""
     first, value = wide.first, _value(frame, wide.value, {})
     if isinstance(first, nodes.Store):

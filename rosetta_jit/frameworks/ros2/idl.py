@@ -7,15 +7,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.omg.idl import parse as parse_declarations
 from rosetta_jit.frameworks.ros import Dialect, Gathered, Interface, Rule, gathered, schema_of
 from rosetta_jit.frameworks.ros.sections import HEADER, SEPARATOR
-from rosetta_jit.frameworks.ros2.adapter import idl_text, with_messages
 from rosetta_jit.frameworks.ros2.empty import DUMMY
 from rosetta_jit.model.types import Bool, Field, Float, Int, Schema, String
 from rosetta_jit.parsing.idl import Load
 from rosetta_jit.source import Source
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.frameworks.omg import idl as omg
+    from rosetta_jit.frameworks.ros2 import adapter
+else:
+    adapter = Late("rosetta_jit.frameworks.ros2.adapter")
+    omg = Late("rosetta_jit.frameworks.omg.idl")
 
 SCALARS = {
     "bool": Bool("bool"),
@@ -85,9 +92,9 @@ ROS2 = Dialect(
 
 def as_idl(found: Gathered, source: Source, load: Load) -> Schema:
     """All messages as rosidl would write them in `.idl` files, which can include others, and the `.idl` files of the text itself."""
-    texts = {f"{each.name}.idl": idl_text(each, ROS2) for each in found.definitions} | dict(in_order(found.files))
+    texts = {f"{each.name}.idl": adapter.idl_text(each, ROS2) for each in found.definitions} | dict(in_order(found.files))
     root = Source(f"{source.name}.idl", "".join(f'#include "{name}"\n' for name in texts))
-    return parse_declarations(root, with_messages(load, ROS2, texts))
+    return omg.parse(root, adapter.with_messages(load, ROS2, texts))
 
 
 def parse(source: Source, load: Load) -> Schema:
@@ -124,7 +131,7 @@ def parse_idl(source: Source, load: Load) -> Schema:
     """
     if is_concatenated(source.text):
         return parse(source, load)
-    return parse_declarations(source, with_messages(load, ROS2))
+    return omg.parse(source, adapter.with_messages(load, ROS2))
 
 
 NO_NAMES = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)|\"(?:[^\"\\]|\\.)*(?:\"|\Z)", re.DOTALL)

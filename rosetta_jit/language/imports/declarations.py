@@ -9,7 +9,7 @@ from rosetta_jit.catalogue import suggestions
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError, ReportError
 from rosetta_jit.language.imports.mappings import MAPPING_SUFFIX
-from rosetta_jit.language.imports.search import Reading, SearchPath, refusal
+from rosetta_jit.language.imports.search import UNITS_SUFFIX, Reading, SearchPath, refusal
 from rosetta_jit.model.mapping import Import, Mapping
 from rosetta_jit.model.types import Array, Declaration, Enum, Map, NamedConstant, Optional, Ref, Schema, Struct, Type, Union
 from rosetta_jit.parsing.idl import FrontEnds
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from rosetta_jit.language.parse.unit_file import UnitFile
 else:
     unit_file = Late("rosetta_jit.language.parse.unit_file")
-
-UNITS_SUFFIX = ".units"
 
 
 @dataclass(frozen=True, slots=True)

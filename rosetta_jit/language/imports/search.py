@@ -25,6 +25,9 @@ from rosetta_jit.startup.sha import sha256
 
 ENVIRONMENT_VARIABLE = "ROSETTA_JIT_PATH"
 
+UNITS_SUFFIX = ".units"
+"""Of files that say of fields which units they have, beside those that declare them."""
+
 
 @dataclass(frozen=True, slots=True)
 class Lookup:
