@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, cast
 
 from llvmlite import ir
 
@@ -50,7 +50,7 @@ def body(frame: Frame, statements: Block, *, in_vectors: bool = False) -> None:
     stores = 0
     many = sum(isinstance(each, Expect | If) for each in statements) > OFTEN
     parts = llvm_stmt.parts(frame, statements)
-    print_part: Callable[[Frame, Any], None] = vectors.print_part if in_vectors else llvm_stmt.print_part
+    print_part = cast("Callable[[Frame, vectors.Part], None]", vectors.print_part if in_vectors else llvm_stmt.print_part)
     for part in _in_stretches(vectors.joined(statements, parts, frame.strides) if in_vectors else parts):
         print_part(frame, part)
         stores += isinstance(part, SetField | Store)
