@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -57,6 +58,36 @@ def joints_mapping(count: int, folder: Path) -> Path:
         f"unpack-rules:\n  len(.angles) = {count}\n{rules}\n\npack-rules:\n{back}\n"
     )
     return path
+
+
+def _declared(count: int, text: str) -> str:
+    return "".join(text.format(number=number, next=number + 1) for number in range(count))
+
+
+def _ros(encoding: str, name: str) -> Callable[[int], tuple[str, dict[str, object]]]:
+    def made(count: int) -> tuple[str, dict[str, object]]:
+        return f"{name}{count}", {"encoding": encoding, "schema": {f"{name}{count}.msg": _declared(count, "float64 a{number}\n")}}
+
+    return made
+
+
+def _lcm(count: int) -> tuple[str, dict[str, object]]:
+    text = f"package bench; struct Ten{count} {{ {_declared(count, 'double a{number}; ')}}}"
+    return f"bench.Ten{count}", {"encoding": "lcm", "schema": {"ten.lcm": text}}
+
+
+def _protobuf(count: int) -> tuple[str, dict[str, object]]:
+    text = f'syntax = "proto3"; package bench; message Ten{count} {{ {_declared(count, "double a{number} = {next}; ")} }}'
+    return f"bench.Ten{count}", {"encoding": "protobuf", "schema": {"ten.proto": text}}
+
+
+def _yarp(count: int) -> tuple[str, dict[str, object]]:
+    fields = _declared(count, '("a{number}" :double) ')
+    return f"bench.ten{count}", {"encoding": "yarp4", "schema": {"ten.bottle-schema": f'"bench.ten{count}" ({fields})'}}
+
+
+TYPES = {"ROS 1": _ros("ros1", "bench/Ten"), "ROS 2": _ros("cdr", "bench/msg/Ten"), "LCM": _lcm, "protobuf": _protobuf, "YARP": _yarp}
+"""Types of so many doubles, and how they are declared to a decoder, by framework."""
 
 
 def _angles(count: int) -> list[float]:

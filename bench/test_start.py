@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from bench.figures import Comparison, Figure, Series, Spread, ratio
-from bench.messages import joints_mapping
+from bench.messages import TYPES, joints_mapping
 from bench.processes import run, took_s
 
 FIRST_DECODE = """
@@ -47,6 +47,16 @@ for mapping in sys.argv[1:]:
     started = time.process_time()
     import rosetta_jit as rj
     rj.Decoder(mapping, encoding="yarp3")
+    print(1000 * (time.process_time() - started))
+"""
+
+TYPES_COMPILE = """
+import json, sys, time
+import numpy, llvmlite.binding
+for type, options in map(json.loads, sys.argv[1:]):
+    started = time.process_time()
+    import rosetta_jit as rj
+    rj.Decoder.of(type, **options)
     print(1000 * (time.process_time() - started))
 """
 
@@ -99,16 +109,29 @@ def test_compile(tmp_path, effort, record, fields, aim_ms):
     record(f"first compile in a process, {fields} fields", Spread.of(first), None, "ms", f"{said}; least {min(first):.0f} ms")
     record(f"next compile in a process, {fields} fields", Spread.of(next_), None, "ms", f"least {min(next_):.0f} ms, aim {aim_ms} ms")
     run("-c", COMPILES, other, ROSETTA_JIT_CACHE_DIR=str(tmp_path / "cache"))
-    known = [_after_others(tmp_path / "cache", tmp_path / f"cache{each}", mapping) for each in range(rounds)]
+    known = [_after_others(tmp_path / "cache", tmp_path / f"cache{each}", mapping)[0] for each in range(rounds)]
     what = f"first compile in a process, {fields} fields, on a machine that has compiled others"
     record(what, Spread.of(known), None, "ms", f"{said}; least {min(known):.0f} ms")
 
 
-def _after_others(cache, copied, mapping):
-    """Milliseconds to compile a mapping beside what a cache has, in a copy of it: the cache has it from then on."""
+@pytest.mark.parametrize("framework", TYPES)
+def test_compile_type(tmp_path, effort, record, framework):
+    """The same of types without a mapping, for which nothing of the language is imported, on a machine that has compiled others."""
+    *others, first, following = (json.dumps(TYPES[framework](count)) for count in (12, 13, 10, 11))
+    cache = tmp_path / "cache"
+    run("-c", TYPES_COMPILE, *others, ROSETTA_JIT_CACHE_DIR=str(cache))
+    rounds = range(3 if effort.quick else 7)
+    runs = [_after_others(cache, tmp_path / f"cache{each}", first, following, program=TYPES_COMPILE) for each in rounds]
+    for number, which in enumerate(("first", "next")):
+        took = [each[number] for each in runs]
+        record(f"{which} compile in a process, {framework} type of 10 fields", Spread.of(took), None, "ms", f"least {min(took):.0f} ms")
+
+
+def _after_others(cache, copied, *arguments, program=COMPILES):
+    """Milliseconds of each compile beside what a cache has, in a copy of it: the cache has it from then on."""
     shutil.copytree(cache, copied)
     copied.chmod(0o700)
-    return float(run("-c", COMPILES, mapping, ROSETTA_JIT_CACHE_DIR=str(copied)))
+    return [float(each) for each in run("-c", program, *arguments, ROSETTA_JIT_CACHE_DIR=str(copied)).split()]
 
 
 @pytest.mark.parametrize("backend", ["numba", "llvm"])
