@@ -10,6 +10,7 @@ from llvmlite import ir
 
 import rosetta_jit as rj
 from rosetta_jit.backends.entry import link
+from rosetta_jit.backends.llvm import routines
 from rosetta_jit.backends.llvm.function import emit
 from rosetta_jit.backends.llvm.routines import SHORT, common_routine
 from rosetta_jit.kernel.ir import Routine, Site
@@ -136,3 +137,13 @@ def test_one_is_compiled_once(monkeypatch, tmp_path):
     routines = [name for exported in compiled for name in exported if name.startswith("rosetta_")]
     assert sorted(routines) == sorted({*routines})
     assert len(routines) == 2
+
+
+def test_few_are_remembered(monkeypatch):
+    """What a program has declared is known until it is linked, however many others there were."""
+    monkeypatch.setattr(routines, "MAX_COMMON", 2)
+    seen = [symbols(calling(long(Let("more", Get("i64", Place(1, index(row))))))) for row in range(4)]
+    assert len(set().union(*seen)) == 4
+    assert [common_routine(*each) is None for each in seen] == [True, True, False, False]
+    assert symbols(calling(long(Let("more", Get("i64", Place(1, index(0))))))) == seen[0]
+    assert common_routine(*seen[0]) is not None

@@ -16,7 +16,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable, Iterator, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING, Unpack
@@ -69,6 +69,9 @@ ALONE = ("any_decode.ll",)
 
 FUNCTIONS = ("kernel", "size", "write")
 """The names of a program's kernels: what decodes or encodes; to encode, what measures; of a bridge, what encodes what was decoded."""
+
+MAX_SHARED = 128
+"""Object files of shared functions that a process remembers."""
 
 REST_SYMBOLS = ("any_call", NEXT_CALL)
 """What the usual call leaves to others."""
@@ -235,7 +238,7 @@ def _entries(*texts: str) -> bytes:
     return kept("entries", "\n".join(texts), lambda: object_of(texts, (*SYMBOLS["encode"], *REST_SYMBOLS), thorough=False))
 
 
-@cache
+@lru_cache(maxsize=MAX_SHARED)
 def _shared(name: str) -> bytes:
     """The object file of a function that programs share."""
     routine = common_routine(name)

@@ -35,8 +35,8 @@ OFTEN = 16
 TINY, SHORT = 8, 24
 """Statements up to which a routine is part of its callers: if it does not loop, and if its callers are not many."""
 
-MAX_COMMON = 256
-"""Common routines that a process remembers."""
+MAX_COMMON = 128
+"""Common routines that a process remembers, of some KB each. They differ by the number of the lane for notes."""
 
 Printed = Mapping[str, "ir.Function | Routine"]
 """What calls of a kernel's routines become, by their names: calls of functions, or the routine's statements."""
@@ -134,13 +134,13 @@ def _give(target: Exit, outcome: ir.Type, values: Sequence[ir.Value]) -> None:
 
 # --- common routines ---------------------------------------------------------------------------------------------------
 
-_printed: dict[str, Common] = {}
-"""Those that programs of this process have declared, by their symbols."""
+_declared: dict[str, Common] = {}
+"""Those that programs of this process have declared of late, by their symbols."""
 
 
 def common_routine(symbol: str) -> Common | None:
     """The common routine of a symbol; None if it stands for something else."""
-    return _printed.get(symbol)
+    return _declared.get(symbol)
 
 
 def _common_routines(kernel: Kernel) -> dict[str, Common]:
@@ -156,6 +156,10 @@ def _common_routines(kernel: Kernel) -> dict[str, Common]:
         elif len(statements(routine.body)) > SHORT:
             below = _below(called, known)
             common[routine.name] = _common(routine, tuple(each for each in kernel.routines if each.name in below), strides, kernel.lanes)
+    for each in common.values():
+        _declared.setdefault(each.symbol, each)
+    while len(_declared) > MAX_COMMON:
+        _declared.pop(next(iter(_declared)), None)
     return common
 
 
@@ -180,5 +184,4 @@ def _common(routine: Routine, below: tuple[Routine, ...], strides: tuple[int, ..
     text = str(module)
     symbol = f"rosetta_{routine.name}_{sha256(text.encode()).hexdigest()[:16]}"
     declares = frozenset(each.name for each in module.functions if not each.blocks)
-    made = _printed[symbol] = Common(symbol, text.replace(function.get_reference(), f'@"{symbol}"'), declares)
-    return made
+    return Common(symbol, text.replace(function.get_reference(), f'@"{symbol}"'), declares)
