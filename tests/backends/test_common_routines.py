@@ -141,7 +141,7 @@ def test_one_is_compiled_once(monkeypatch, tmp_path):
 
 def test_few_are_remembered(monkeypatch):
     """What a program has declared is known until it is linked, however many others there were."""
-    monkeypatch.setattr(routines, "MAX_COMMON", 2)
+    monkeypatch.setattr(routines, "MAX_COMMON", 1)
     seen = [symbols(calling(long(Let("more", Get("i64", Place(1, index(row))))))) for row in range(4)]
     assert len(set().union(*seen)) == 4
     assert [common_routine(*each) is None for each in seen] == [True, True, False, False]

@@ -158,7 +158,7 @@ def _common_routines(kernel: Kernel) -> dict[str, Common]:
             common[routine.name] = _common(routine, tuple(each for each in kernel.routines if each.name in below), strides, kernel.lanes)
     for each in common.values():
         _declared.setdefault(each.symbol, each)
-    while len(_declared) > MAX_COMMON:
+    while len(_declared) > MAX_COMMON + len(common):
         _declared.pop(next(iter(_declared)), None)
     return common
 
