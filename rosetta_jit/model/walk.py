@@ -172,7 +172,13 @@ def _with_indices(place: Field | List, change: Callable[[Expr], Expr]) -> Field 
 
 def with_indices(path: Path, change: Callable[[Expr], Expr]) -> Path:
     """A path with its indices changed."""
+    if INDEXED.isdisjoint(map(type, path.steps)):
+        return path
     return renewed(path, steps=changed(path.steps, lambda step: _with_indices_in(step, change)))
+
+
+INDEXED = frozenset((Index, Keyed, Slice))
+"""The steps that have expressions in them; most paths have none."""
 
 
 def _with_indices_in(step: Step, change: Callable[[Expr], Expr]) -> Step:

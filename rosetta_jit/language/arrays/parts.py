@@ -46,10 +46,10 @@ def open_parts(expr: Expr) -> Iterator[Expr]:
 
 def is_reduction(expr: Expr) -> bool:
     """Whether an expression makes one value of many."""
-    if not (isinstance(expr, Call) and len(expr.arguments) == 1 and any(map(is_many, parts(expr.arguments[0])))):
+    if not (isinstance(expr, Call) and len(expr.arguments) == 1):
         return False
     function = written(expr.function)
-    return function is not None and function.reduction is not None
+    return function is not None and function.reduction is not None and any(map(is_many, parts(expr.arguments[0])))
 
 
 def is_many(expr: Expr) -> bool:
