@@ -74,6 +74,7 @@ class Build:
     @cached_property
     def checked(self) -> Checked:
         """The mapping, with the parameters of the request."""
+        imported("rosetta_jit.pipeline.mapped")
         return recently(self.request, self.sources, self._checked)
 
     def _checked(self) -> Checked:

@@ -177,7 +177,7 @@ def _below(called: Sequence[str], known: Mapping[str, Routine]) -> set[str]:
 @lru_cache(maxsize=MAX_COMMON)
 def _common(routine: Routine, below: tuple[Routine, ...], strides: tuple[int, ...], lanes: int) -> Common:
     """A routine that calls others, as a module of its own, for kernels of so many lanes of the holder's."""
-    around = Kernel(routine.name, "size", strides, (routine.body,), (), below, hidden=len(strides) - lanes)
+    around = Kernel(routine.name, "size", strides, (routine.body,), (), below, hidden=len(strides) - lanes)  # which empties no lane
     module = ir.Module("routine")
     printed = routines_of(module, around, "routine", whole=False)
     function = _define(_empty(module, routine, "routine"), around, routine, printed)
