@@ -196,3 +196,105 @@ def test_texts_stay_in_the_message_until_they_are_made():
     one = bytes(programs[1](programs[1].holder_type.from_dict(value)))
     answers_as_the_library(unit, programs, harmed([one, one + b"\x0a\x00\x12\x02\x0a\x00", b"\x2a\x01x\x30\x05"], 80, "where"))
     assert unit.decode(one + b"\x12\x03\x0a\x01z").one == unit.S(text="z", note="", data=b"\xff")
+
+
+def test_long_messages_within_others_are_not_copied_by_each():
+    """Texts and bytes of any length, within messages, entries of maps, and messages that contain their own type."""
+    schema = """
+        message Leaf { string text = 1; bytes raw = 2; int32 n = 3; repeated string texts = 4; }
+        message Flat { Leaf one = 1; repeated Leaf many = 2; map<string, Leaf> named = 3; map<string, bytes> raws = 4; string last = 5; }
+        message Root { Flat a = 1; repeated Flat b = 2; Chain c = 3; string text = 4; }
+        message Chain { Chain next = 1; string text = 2; bytes raw = 3; map<string, Chain> named = 4; map<string, string> texts = 5; }
+        message Only { Only next = 1; string text = 2; }
+    """
+    long = [{"text": each * size, "raw": b"r" * size, "n": 1, "texts": ["", each * size]} for each in "aé" for size in (10, 9000, 70000)]
+    flat = {
+        "one": long[2],
+        "many": long,
+        "named": {"a" * 9000: long[1], "b": long[0]},
+        "raws": {"x" * 9000: b"y" * 9000},
+        "last": "z" * 9000,
+    }
+    chain = {"text": "a" * 9000, "texts": {"k" * 9000: "v" * 9000, "": ""}}
+    for _ in range(5):
+        chain = {"next": chain, "text": "é" * 9000, "raw": b"b" * 9000, "named": {"n" * 9000: {"text": "t" * 9000}}}
+    only = {"text": "only" * 5000}
+    cases = {
+        "Flat": [flat, {}],
+        "Root": [{"a": flat, "b": [flat], "c": chain, "text": "r" * 9000}],
+        "Chain": [chain],
+        "Only": [only, {"next": only}],
+    }
+    for type_, values in cases.items():
+        request = type_request("decode", f"t.{type_}", protobuf(schema))
+        unit, encode, decode = (
+            module(request),
+            rj.Encoder.of(f"t.{type_}", **protobuf(schema)),
+            rj.Decoder.of(f"t.{type_}", **protobuf(schema)),
+        )
+        for each in values:
+            message = bytes(encode(encode.holder_type.from_dict(each)))
+            assert unit.encode(unit.decode(message)) == message
+            assert bytes(encode(decode(message))) == message
+    made = module(type_request("decode", "t.Flat", protobuf(schema)))
+    for wrong in ({"raw": "s" * 9000}, {"text": b"s" * 9000}, {"raw": [0] * 9000}, {"texts": [None]}, {"raw": None}):
+        with pytest.raises(made.EncodeError, match="range"):
+            made.encode(made.Flat(one=made.Leaf(**wrong)))
+    recursive = module(type_request("decode", "t.Only", protobuf(schema)))
+    for wrong in (b"s" * 9000, None, 5):
+        with pytest.raises(recursive.EncodeError, match="range"):
+            recursive.encode(recursive.Only(text=wrong))
+
+
+def test_fields_with_their_default_are_left_out_and_looked_at():
+    """A number that its field cannot hold is refused, whatever it is equal to; -0.0 is written, and a float that is 0 in 32 bits is not."""
+    given = protobuf(
+        "message In { sint32 z = 1; float f = 2; bool b = 3; } message M { int32 a = 1; uint64 u = 2; float f = 3; double d = 4; "
+        "bool b = 5; sint64 z = 6; fixed32 x = 7; In one = 8; repeated In many = 9; string s = 10; }"
+    )
+    request = type_request("decode", "t.M", given)
+    unit, encode = module(request), rj.Encoder.of("t.M", **given)
+    inner = [{}, {"z": -1}, {"f": -0.0}, {"b": True}, {"z": -(2**31), "f": 1.5}]
+    whole = {"a": -(2**31), "u": 2**64 - 1, "f": 0.5, "d": 1e-300, "b": True, "z": -(2**63), "x": 2**32 - 1, "s": "é"}
+    for values in ({}, {"f": -0.0, "d": -0.0}, {"f": 1e-60}, whole, {"many": inner, "one": inner[1]}, {"one": {}}):
+        made = {
+            name: [unit.In(**each) for each in value] if name == "many" else unit.In(**value) if name == "one" else value
+            for name, value in values.items()
+        }
+        assert unit.encode(unit.M(**made)) == bytes(encode(encode.holder_type.from_dict(values)))
+    for name in ("a", "u", "z", "x"):
+        for wrong in (0.0, "", None, [], 2**64, -(2**63) - 1, "1"):
+            with pytest.raises(unit.EncodeError, match="range"):
+                unit.encode(unit.M(**{name: wrong}))
+    for wrong in ({"f": "", "d": 0}, {"d": None}, {"d": ""}):
+        with pytest.raises(unit.EncodeError, match="range"):
+            unit.encode(unit.M(**wrong))
+
+
+def test_texts_and_cases_of_messages_are_read_where_they_are_checked():
+    """Fields that come twice, are cut, or are no UTF-8; a case that is left for another one, and comes back empty."""
+    given = protobuf(
+        "message In { int32 a = 1; string s = 2; bool b = 3; } message M { string s = 1; optional string o = 2; In in = 3; "
+        "oneof c { string t = 4; In i = 5; bool f = 6; In j = 7; bytes r = 8; } repeated In many = 9; }"
+    )
+    request = type_request("decode", "t.M", given)
+    text = generated(request, "python", BOTH, "unit")["unit.py"]
+    assert "message = bytearray(" not in text
+    assert "m_s_text = data[" in text
+    unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    text_, inner = b"\x0a\x02ab", b"\x08\x05\x12\x01x\x18\x01"
+    cases = [b"\x22\x01t", b"\x2a" + bytes([len(inner)]) + inner, b"\x2a\x00", b"\x30\x01", b"\x3a\x02\x08\x07", b"\x42\x01r", b"\x22\x00"]
+    other = [
+        b"\x12\x00",
+        b"\x12\x02\xc3\xa9",
+        b"\x1a\x03\x12\x01y",
+        b"\x1a\x00",
+        b"\x1a\x02\x08\x09",
+        b"\x4a\x03\x12\x01m",
+        text_,
+        b"\x0a\x01c",
+    ]
+    good = [*cases, *other, *(one + two for one in cases for two in cases), *(one + two for one in other for two in other)]
+    good += [one + two + three for one in cases for two in cases[1:5] for three in cases]
+    bad = [b"\x0a\x01\xff", b"\x12\x02\xc3", b"\x1a\x03\x12\x01\x80", b"\x22\x01\xc3", b"\x2a\x03\x12\x01\xff", b"\x2a\x04\x12\x03a"]
+    answers_as_the_library(unit, programs, [*good, *bad, *(each[:-1] for each in good), *(one + two for one in cases for two in bad)])

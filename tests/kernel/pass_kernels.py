@@ -60,6 +60,14 @@ I8 = mul(i64("i"), 8)
 THERE = Binary("add", BEGIN, I8)
 WIDE = Binary("add", BEGIN, mul(i64("i"), 16))
 ELEMENT = Binary("add", i64("start_1"), i64("i"))
+
+
+def two_fields(type_, first, second):
+    """Rows of two fields that lie end to end, from two places of the message."""
+    fields = (SetField(Place(1, ELEMENT), Load(type_, first)), SetField(Place(1, ELEMENT, 8), Load(type_, second)))
+    return each_round(need(WIDE, 16, 4, i64("i")), *fields, strides=(64, 16))
+
+
 COUNTED = (
     ROW_EXISTS,
     need(BEGIN, 1),
@@ -145,24 +153,9 @@ PASSED = {
             Return(BEGIN),
         )
     ),
-    "fields that lie end to end on both sides": each_round(
-        need(WIDE, 16, 4, i64("i")),
-        SetField(Place(1, ELEMENT), Load("i64", WIDE)),
-        SetField(Place(1, ELEMENT, 8), Load("i64", add(WIDE, 8))),
-        strides=(64, 16),
-    ),
-    "fields that lie the other way round": each_round(
-        need(WIDE, 16, 4, i64("i")),
-        SetField(Place(1, ELEMENT), Load("i64", add(WIDE, 8))),
-        SetField(Place(1, ELEMENT, 8), Load("i64", WIDE)),
-        strides=(64, 16),
-    ),
-    "fields with a gap between them": each_round(
-        need(WIDE, 16, 4, i64("i")),
-        SetField(Place(1, ELEMENT), Load("i32", WIDE)),
-        SetField(Place(1, ELEMENT, 8), Load("i32", add(WIDE, 8))),
-        strides=(64, 16),
-    ),
+    "fields that lie end to end on both sides": two_fields("i64", WIDE, add(WIDE, 8)),
+    "fields that lie the other way round": two_fields("i64", add(WIDE, 8), WIDE),
+    "fields with a gap between them": two_fields("i32", WIDE, add(WIDE, 8)),
     "what a branch has found out": kernel(
         (
             ROW_EXISTS,

@@ -32,11 +32,14 @@ def _are_same(left: Any, right: Any) -> bool:
 
 
 def _array(dtype: "np.dtype[Any]", data: Any, count: int, at: int, copy: bool) -> "npt.NDArray[Any]":
-    """Numbers that lie in bytes, as this machine has them: a copy, or a view that cannot be written to where that can be."""
+    """Numbers that lie in bytes as this machine has them: a copy, or a view that cannot be written to."""
     found: npt.NDArray[Any] = np.ndarray(count, dtype, data, at)
-    if dtype.isnative:
-        return found.copy() if copy else found
-    return found.astype(dtype.type)
+    return found.copy() if copy else found
+
+
+def _few(numbers: Any) -> Any:
+    """Few numbers as Python's, which are packed together with those around them."""
+    return numbers.tolist() if type(numbers) is np.ndarray and numbers.dtype.kind not in "mM" else numbers
 
 
 def _raw(dtype: "np.dtype[Any]", numbers: Any, is_bool: bool = False) -> bytes:

@@ -15,6 +15,7 @@ from collections.abc import Collection
 from typing import cast
 
 from rosetta_jit.generate.cleared import offsets_of, slots_of
+from rosetta_jit.generate.python.bools import bools_read
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.mentions import blocks_within, changes, counted_lanes, places_of, reads_any
@@ -35,8 +36,9 @@ class Direct:
 
     ``whole`` are lanes that are read by one call, ``appended`` those whose rows are appended to a list, ``loops`` the variables of the
     loops that do so; ``elements`` are the places of rows that are locals, by lane; ``texts`` are the spans of texts that are decoded where
-    they are checked, by lane and offset, with the place and size of the check. ``gathered`` are lanes of texts and
-    of bytes, with the place and size of one in the message: it is appended where a statement sets where it starts.
+    they are checked, by lane and offset, with the place and size of the check: ``late`` are those of them that may not come.
+    ``gathered`` are lanes of texts and of bytes, with the place and size of one in the message: it is appended where a statement sets where
+    it starts.
     """
 
     whole: set[int] = field(default_factory=set[int])
@@ -47,6 +49,7 @@ class Direct:
         default_factory=dict[tuple[int, int], "tuple[nodes.Expr, nodes.Expr]"]
     )
 
+    late: set[tuple[int, int]] = field(default_factory=set[tuple[int, int]])
     gathered: dict[int, tuple[nodes.Expr, nodes.Expr]] = field(default_factory=dict[int, "tuple[nodes.Expr, nodes.Expr]"])
 
     def text_at(self, at: nodes.Expr, size: nodes.Expr) -> tuple[int, int] | None:
@@ -65,6 +68,7 @@ def direct(
     found.arrays(found.block, nodes.Place(0, index(0)))
     for inner in blocks_within(found.block):
         found.texts(inner)
+        found.texts_of_message(inner)
     return found.rewritten(found.block), found.direct
 
 
@@ -131,6 +135,19 @@ class _Search:
         if begin.place.offset in slots:
             self.direct.texts[row.lane, begin.place.offset] = at, size
             self.instead[id(begin)] = self.instead[id(end)] = ()
+
+    def texts_of_message(self, block: nodes.Block) -> None:
+        """The texts that a block within another, which may not come, sets in the message's row."""
+        known = {*self.direct.texts}
+        for stmt in block:
+            match stmt:
+                case nodes.Expect(nodes.IsText(nodes.Wire(at), size), _) if self.checks[at, size] == 1 and not self.direct.text_at(
+                    at, size
+                ):
+                    self._text(block, nodes.Place(0, index(0)), at, size)
+                case _:
+                    pass
+        self.direct.late |= {*self.direct.texts} - known
 
     def _sets(self, block: nodes.Block, row: nodes.Place, value: nodes.Expr) -> list[nodes.SetField]:
         """The one statement, if it is one, that sets a field of the row to a value, and that has to do with the field."""
@@ -226,8 +243,8 @@ class _Search:
                 self.instead[id(outer)] = (copy,)
             case nodes.SetField() as last if isinstance(element, Number):
                 loop = next((each for each in block if isinstance(each, nodes.For) and each.body and each.body[-1] is last), None)
-                found = None if loop is None else turned(loop)
-                if loop is None or found is None or loop.count != count or found[0] != nodes.Place(lane, start):
+                first = None if loop is None else _first_row(loop)
+                if loop is None or loop.count != count or first != nodes.Place(lane, start):
                     return False
             case _:
                 return False
@@ -264,6 +281,14 @@ class _Search:
         self.direct.loops[loop.variable] = lane
         self.arrays(loop.body, nodes.Place(lane, row))
         return True
+
+
+def _first_row(loop: nodes.For) -> nodes.Place | None:
+    """The first row of the lane that a loop fills, if that can be read by one call."""
+    if (found := turned(loop)) is not None:
+        return found[0]
+    bools = bools_read(loop)
+    return None if bools is None else bools.first
 
 
 def _checks(stmt: nodes.Stmt, at: nodes.Expr, size: nodes.Expr) -> bool:

@@ -5,14 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Namespace, Writer
+from rosetta_jit.generate.python.bools import with_stored_bools
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.functions import words_of
 from rosetta_jit.generate.python.object_rows import ObjectScope
 from rosetta_jit.generate.python.parts import Parts
 from rosetta_jit.generate.python.positions import NotInParts, Sum, without_places, without_positions
 from rosetta_jit.generate.python.presence import is_behind_message, without_lengths
+from rosetta_jit.generate.python.printed import Function, Objects
 from rosetta_jit.generate.python.recursive_rows import RowBody, row_function, without_work_list
-from rosetta_jit.generate.python.statements import Function, Objects
 from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import Unit
@@ -58,8 +59,7 @@ def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str,
     scope.numpy = unit.numpy
     body, rows = without_work_list(undamaged(reached(kernel.bodies[0]), kernel.sites), unit.layout)
     parts = _parts(unit, kernel, scope, body, written, depth=2)
-    if unit.layout.recursive:
-        parts.join, parts.join_all = "_joined", "_whole"
+    parts.has_long = bool(unit.layout.recursive)
     parts.binder.bind(0, index(0), "target", Ref(unit.type), unit.layout.root)
     parts.block(parts.body)
     called, pending, inner = set[str](), set(parts.called), dict[int, str]()
@@ -86,7 +86,7 @@ def _scope(kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], loads: set[str]
 
 
 def _parts(unit: Unit, kernel: Kernel, scope: ObjectScope, block: Block, written: dict[str, str], depth: int) -> Parts:
-    body = without_positions(counted(without_lengths(block, kernel.sites, scope.lanes.own)))
+    body = with_stored_bools(without_positions(counted(without_lengths(block, kernel.sites, scope.lanes.own))))
     objects = Objects(lambda _, __: "message")
     function = Function(scope, kernel, kernel.sites, {}, unit.origins.get("encode", ()), objects, writer=Writer(depth=depth))
     function.read = read_names(without_places(body))
@@ -114,7 +114,7 @@ def _row(unit: Unit, kernel: Kernel, scope: ObjectScope, of: tuple[int, str, Row
     lane, struct, row = of
     scope.numpy = unit.numpy
     parts = _parts(unit, kernel, scope, (*row.block, Return(row.end)), written, depth=1)
-    parts.join = parts.join_all = "_joined"
+    parts.result = "_joined"
     if any(isinstance(stmt, Expect) and not is_behind_message(stmt) for stmt, _ in statements(parts.body)):
         raise NotInParts
     parts.positions.at = parts.positions.values[row.begin] = Sum(0, frozenset({(row.begin, 1)}))

@@ -17,11 +17,12 @@ import numpy as np
 from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import NUMPY
+from rosetta_jit.generate.python.conversions import bits_of, converted, wrapped
 from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.generate.python.groups import zigzag_of
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS
-from rosetta_jit.kernel.terms import END, is_wider, type_of
+from rosetta_jit.kernel.terms import END, type_of
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
@@ -41,6 +42,8 @@ CODES = {
     "f64": "d",
 }
 """Of the struct module, and of views."""
+TRUTH = "T"
+"""The struct module's "?" in names of its functions."""
 OPERATORS = {"add": "+", "sub": "-", "mul": "*", "and": "&", "or": "|", "xor": "^", "shr": ">>"}
 LOGICAL = {"and": "and", "or": "or", "xor": "!="}
 COMPARISONS = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
@@ -51,10 +54,10 @@ ROUNDINGS = {"floor": "math.floor", "ceil": "math.ceil", "trunc": "math.trunc", 
 class Scope:
     """What the printers of a function share.
 
-    ``flat``: the fields of the message's row are locals, ``rows``, of which ``floats`` are floats. ``views`` are the lanes that it reaches,
-    with the code of the view, empty for the bytes themselves; ``paths`` are the fields that lanes belong to; ``counted`` and ``rooms`` are
-    lanes, ``loads`` functions that it needs, ``from_call`` values that each call brings: its time and number, registers, object.
-    ``small`` are the locals of 64 bits, without a sign, that are known to be below 2**63.
+    ``flat``: the fields of the message's row are locals, ``rows``, some of known ``offsets``, of which ``floats`` are floats, ``bools``
+    bools. ``views`` are the lanes that it reaches, with the code of the view, empty for the bytes themselves; ``paths`` are the fields
+    that lanes belong to; ``counted`` and ``rooms`` are lanes, ``loads`` functions that it needs, ``from_call`` what each call brings:
+    its time and number, registers, object. ``small`` are the locals of 64 bits, without a sign, that are known to be below 2**63.
     """
 
     locals: Namespace
@@ -65,7 +68,9 @@ class Scope:
     paths: tuple[str, ...]
     views: set[tuple[int, str]] = field(default_factory=set[tuple[int, str]])
     rows: set[str] = field(default_factory=set[str])
+    offsets: dict[str, int] = field(default_factory=dict[str, int])
     floats: set[str] = field(default_factory=set[str])
+    bools: set[str] = field(default_factory=set[str])
     counted: set[int] = field(default_factory=set[int])
     rooms: set[int] = field(default_factory=set[int])
     from_call: set[str] = field(default_factory=set[str])
@@ -93,7 +98,7 @@ class Scope:
     def struct(self, order: str, code: str, verb: str) -> str:
         """A function of the struct module: ``load_I`` with the low byte first, ``load_I_be`` with the high one."""
         code = "".join(f"{count}{each}" if (count := len([*same])) > 1 else each for each, same in groupby(code))
-        name = f"_{verb}_{code}{'' if order == '<' else '_be'}"
+        name = f"_{verb}_{code.replace('?', TRUTH)}{'' if order == '<' else '_be'}"
         self.loads.add(name)
         return name
 
@@ -109,6 +114,10 @@ class Scope:
         if place.lane in self.direct.elements:
             return self.element(place.lane, self.direct.elements[place.lane].index(place))
         return self.field(place.lane, expression(self, place.row), place.offset, scalar)
+
+    def truth_of(self, place: nodes.Place) -> str | None:  # noqa: ARG002 - of objects
+        """What stands for a bool of an object."""
+        return None
 
     def element(self, lane: int, number: int) -> str:
         """The local for an element of an array that has few."""
@@ -129,8 +138,9 @@ class Scope:
         if lane == 0 and self.flat:
             name = flat_name(self.lanes, offset, scalar)
             self.rows.add(name)
-            if scalar in FLOATS:
-                self.floats.add(name)
+            self.offsets[name] = offset
+            if scalar in FLOATS or scalar == "bool":
+                (self.bools if scalar == "bool" else self.floats).add(name)
             return name
         if lane in self.direct.appended or lane in self.direct.whole:
             return self.own(lane, offset, scalar)
@@ -168,13 +178,13 @@ def expression(scope: Scope, expr: nodes.Expr) -> str:
             return _loaded(scope, type_, bare(expression(scope, at)), order)
         case nodes.Get(type_, place):
             text = scope.place(place, type_)
-            return f"({text} != 0)" if type_ == "bool" else text
+            return f"({text} != 0)" if type_ == "bool" and text not in scope.bools else text
         case nodes.Used() | nodes.Capacity() | nodes.HostValue() | nodes.Register():
             return _known(scope, expr)
         case nodes.Unary(function, operand):
             return _unary(function, type_of(operand), expression(scope, operand))
         case nodes.Binary(op, left, right):
-            return _binary(op, type_of(left), expression(scope, left), expression(scope, right))
+            return _between(scope, expr) or _binary(op, type_of(left), expression(scope, left), expression(scope, right))
         case nodes.Compare(op, left, right):
             return f"({expression(scope, left)} {COMPARISONS[op]} {expression(scope, right)})"
         case nodes.Fits(op, left, right):
@@ -182,7 +192,7 @@ def expression(scope: Scope, expr: nodes.Expr) -> str:
         case nodes.Convert():
             return _converted(scope, expr)
         case nodes.Bits(type_, operand):
-            return _bits(type_, type_of(operand), expression(scope, operand))
+            return bits_of(type_, type_of(operand), expression(scope, operand))
         case nodes.Select(condition, then, otherwise):
             return f"({expression(scope, then)} if {expression(scope, condition)} else {expression(scope, otherwise)})"
         case nodes.IsText(address, size):
@@ -195,13 +205,24 @@ def expression(scope: Scope, expr: nodes.Expr) -> str:
             assert_never(expr)
 
 
+def _between(scope: Scope, expr: nodes.Binary) -> str:
+    """Whether a local is between two numbers; nothing for other expressions."""
+    match expr:
+        case nodes.Binary("and", nodes.Compare("ge", nodes.Local() as value, nodes.Const() as least), nodes.Compare("le", same, most)):
+            return f"({expression(scope, least)} <= {expression(scope, value)} <= {expression(scope, most)})" if value == same else ""
+        case _:
+            return ""
+
+
 def _converted(scope: Scope, convert: nodes.Convert) -> str:
     if (zigzag := zigzag_of(convert)) is not None:
         text = expression(scope, zigzag)
         return f"({text} >> 1 ^ -({text} & 1))"
+    if isinstance(convert.operand, nodes.Get) and (flag := scope.truth_of(convert.operand.place)) is not None:
+        return f"(1 if {flag} else 0)"
     if convert.type == "i64" and is_small(convert.operand, scope.small):
         return expression(scope, convert.operand)
-    return _convert(convert.type, type_of(convert.operand), expression(scope, convert.operand))
+    return converted(convert.type, type_of(convert.operand), expression(scope, convert.operand))
 
 
 def is_small(expr: nodes.Expr, small: Collection[str]) -> bool:
@@ -325,55 +346,9 @@ def _binary(op: str, type_: nodes.Scalar, left: str, right: str) -> str:
         case "atan2":
             return f"_of_math(math.atan2, {left}, {right})"
         case "shl":
-            return _wrapped(type_, f"({left} << {right})")
+            return wrapped(type_, f"({left} << {right})")
         case _:
             return _rounded(type_, f"({left} {OPERATORS[op]} {right})") if type_ in FLOATS else f"({left} {OPERATORS[op]} {right})"
-
-
-def _wrapped(type_: nodes.Scalar, value: str) -> str:
-    """The low bits of an integer."""
-    bits = 8 * nodes.WIDTH[type_]
-    if type_[0] == "u":
-        return f"({value} & {2**bits - 1})"
-    return f"(({value} + {2 ** (bits - 1)} & {2**bits - 1}) - {2 ** (bits - 1)})"
-
-
-def _convert(target: nodes.Scalar, source: nodes.Scalar, value: str) -> str:
-    if target == source:
-        return value
-    if target == "bool":
-        return f"({value} != 0)"
-    if source in FLOATS and target in FLOATS:
-        return value if target == "f64" else f"_single({bare(value)})"
-    if target in FLOATS:
-        return f"float({bare(value)})" if target == "f64" else f"_single_of_int({bare(value)})"
-    if source in FLOATS:
-        bits, signed = 8 * nodes.WIDTH[target], target[0] == "i"
-        least, most = (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) if signed else (0, 2**bits - 1)
-        return f"_saturated({bare(value)}, {least}, {most})"
-    if source == "bool":
-        return f"int({bare(value)})"
-    if (source[0], target[0]) == ("u", "i") and nodes.WIDTH[source] == nodes.WIDTH[target] and value.isidentifier():
-        bits = 8 * nodes.WIDTH[target]
-        return f"({value} if {value} < {2 ** (bits - 1)} else {value} - {2**bits})"
-    return value if is_wider(target, source) else _wrapped(target, value)
-
-
-def _bits(target: nodes.Scalar, source: nodes.Scalar, value: str) -> str:
-    if target == source:
-        return value
-    width = 8 * nodes.WIDTH[source]
-    if source in FLOATS:
-        return _convert(target, "u64" if width == 64 else "u32", f"_bits{width}({bare(value)})")
-    if target in FLOATS:
-        return f"_float{width}({bare(_convert('u64' if width == 64 else 'u32', source, value))})"
-    return _convert(target, source, value)
-
-
-def within(text: str, scalar: str) -> str:
-    """An integer, which is looked at first."""
-    bits, signed = 8 * nodes.WIDTH[scalar], scalar[0] == "i"
-    return f"_within({bare(text)}, {-(1 << bits - 1) if signed else 0}, {(1 << bits - signed) - 1})"
 
 
 def location(scope: Scope, address: nodes.Address) -> tuple[str, str]:

@@ -10,11 +10,13 @@ from rosetta_jit.backends.printing import Namespace, Writer
 from rosetta_jit.generate.cleared import settled
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.python.bools import with_bytes
 from rosetta_jit.generate.python.classes import WORDS
 from rosetta_jit.generate.python.direct import FEW, direct
 from rosetta_jit.generate.python.expressions import CODES, Scope, expression, flat_name, view_name
 from rosetta_jit.generate.python.groups import not_negative
-from rosetta_jit.generate.python.statements import Attempt, Function, Objects, print_block
+from rosetta_jit.generate.python.printed import Attempt, Function, Objects
+from rosetta_jit.generate.python.statements import print_block
 from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.shares import moved_lanes
 from rosetta_jit.generate.undamaged import undamaged
@@ -34,15 +36,19 @@ def is_flat(kernel: ir.Kernel, lanes: Lanes) -> bool:
         return False
     for body in kernel.bodies:
         for stmt, _ in statements(body):
-            whole = (
-                isinstance(stmt, nodes.Fill)
-                and stmt == nodes.Fill(stmt.target, nodes.Const("i64", kernel.strides[0]))
-                and stmt.target == nodes.Place(0, nodes.Const("i64", 0))
-            )
-            if not whole and any(place.lane == 0 for place in _memory(stmt)):
+            if not _clears(stmt) and any(place.lane == 0 for place in _memory(stmt)):
                 return False
     places = (place for routine in kernel.routines for stmt, _ in statements(routine.body) for place in (*_memory(stmt), *_set(stmt)))
     return all(place.lane for place in places)
+
+
+def _clears(stmt: nodes.Stmt) -> bool:
+    """Whether a statement sets the message's row, or a part of it, to 0."""
+    match stmt:
+        case nodes.Fill(nodes.Place(0, nodes.Const(_, 0)), nodes.Const(), 0):
+            return True
+        case _:
+            return False
 
 
 def _memory(stmt: nodes.Stmt) -> list[nodes.Place]:
@@ -102,9 +108,8 @@ def print_kernel(
 def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Attempt:
     kernel, scope, objects = function.kernel, function.scope, function.objects
     body = reached(kernel.bodies[number])
-    if kernel.direction != "decode":
-        body = undamaged(body, kernel.sites)
-    elif scope.flat and objects.layout is not None:
+    body = with_bytes(body) if kernel.direction == "decode" else undamaged(body, kernel.sites)
+    if kernel.direction == "decode" and scope.flat and objects.layout is not None:
         body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, objects.blobs, few=0 if scope.numpy else FEW)
     function.settled = settled(body)
     function.read, function.positive = read_names(body), not_negative(body)
@@ -126,12 +131,18 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Att
 
 
 def _completed(line: str, function: Function) -> list[str]:
-    """A line, or what it stands for: all fields of the row, all views of a lane that has grown."""
+    """A line, or what it stands for: all fields of a part of the row, all views of a lane that has grown."""
     scope, text = function.scope, line.strip()
     before = line[: len(line) - len(line.lstrip())]
-    if text == "<row>":
-        rows = scope.rows - {flat_name(scope.lanes, *each) for each in function.settled}
-        groups = ((rows - scope.floats, "0"), (rows & scope.floats, "0.0"))
+    if text.startswith("<row "):
+        begin, size = map(int, text[5:-1].split())
+        if size == scope.lanes.stride(0):
+            rows = scope.rows - {flat_name(scope.lanes, *each) for each in function.settled}
+        else:
+            rows = {name for name, offset in scope.offsets.items() if begin <= offset < begin + size}
+        texts = {scope.text(*span) for span in scope.direct.late if begin <= span[1] < begin + size}
+        numbers = rows - scope.floats - scope.bools
+        groups = ((numbers, "0"), (rows & scope.floats, "0.0"), (rows & scope.bools, "False"), (texts, '""'))
         return [f"{before}{' = '.join(sorted(group))} = {zero}" for group, zero in groups if group]
     if text.startswith("<views "):
         lane = int(text[7:-1])

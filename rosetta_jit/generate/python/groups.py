@@ -139,7 +139,7 @@ def turned(loop: nodes.For) -> tuple[nodes.Place, nodes.Expr, str] | None:
         return None
     match last:
         case nodes.SetField(place, nodes.Load(type_, at, ">")) | nodes.Store(at, nodes.Get(type_, place), ">") if nodes.WIDTH[type_] > 1:
-            row, base = _without(place.row, loop.variable, 1), _without(_resolved(at, names), loop.variable, nodes.WIDTH[type_])
+            row, base = without(place.row, loop.variable, 1), without(_resolved(at, names), loop.variable, nodes.WIDTH[type_])
             used = set(names) & (locals_in(row) | locals_in(base)) if row is not None and base is not None else {""}
             if row is None or base is None or used or place.offset or len(names) > 1:
                 return None
@@ -152,7 +152,7 @@ def _resolved(expr: nodes.Expr, names: dict[str, nodes.Expr]) -> nodes.Expr:
     return names.get(expr.name, expr) if isinstance(expr, nodes.Local) else expr
 
 
-def _without(expr: nodes.Expr, variable: str, times: int) -> nodes.Expr | None:
+def without(expr: nodes.Expr, variable: str, times: int) -> nodes.Expr | None:
     """An expression that is ``variable * times`` more than another: that other one."""
     match expr:
         case nodes.Local(_, name) if name == variable and times == 1:
@@ -161,7 +161,7 @@ def _without(expr: nodes.Expr, variable: str, times: int) -> nodes.Expr | None:
             return index(0)
         case nodes.Binary("add", left, right):
             for one, other in ((left, right), (right, left)):
-                found = _without(one, variable, times)
+                found = without(one, variable, times)
                 if found is not None and variable not in locals_in(other):
                     return other if found == index(0) else nodes.Binary("add", other, found)
             return None

@@ -10,17 +10,17 @@ from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.direct import numbers_of
 from rosetta_jit.generate.python.expressions import CODES, expression
 from rosetta_jit.generate.python.object_rows import Binder, Listed, ObjectScope
-from rosetta_jit.generate.python.packed import ANY, Part, part_text, with_numbers
+from rosetta_jit.generate.python.packed import ANY, Part, part_text, starred, with_numbers
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
 from rosetta_jit.generate.python.varints import _varint  # pyright: ignore[reportPrivateUsage] - as generated modules name it
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.nodes import WIDTH, Convert, Expr, Get, Place
 from rosetta_jit.kernel.terms import index, type_of
-from rosetta_jit.model.layout import Number
+from rosetta_jit.model.layout import UNKNOWN, Number
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.python.statements import Function
+    from rosetta_jit.generate.python.printed import Function
 
 JOIN = 'b"".join'
 
@@ -35,7 +35,8 @@ FEW_STARRED = 4
 class Around:
     """What there is before a message within another: ``begun``, ``pending`` and ``list_name`` of `Written`.
 
-    ``line`` and ``depth`` are where the lines of the inner one begin, ``routine`` writes its length.
+    ``line`` and ``depth`` are where the lines of the inner one begin, ``routine`` writes its length; ``may_be_long`` and ``has_long`` are
+    of `Written`, too, and ``is_entry`` says whether the inner one is an entry of a map.
     """
 
     begun: bool
@@ -44,12 +45,17 @@ class Around:
     line: int
     depth: int
     routine: str
+    may_be_long: bool
+    has_long: bool
+    is_entry: bool
 
 
 class Written:
     """``pending`` are parts that no line has written yet, ``begun`` is whether any has, ``list_name`` the local that has those.
 
-    ``join`` makes one of the parts of a message within another, ``join_all`` of all parts.
+    A message within another that has texts or bytes may be long: then those around it do not copy it. ``may_be_long`` and ``has_long`` say
+    whether the message at hand has any, and such messages within; ``at_entry`` whether the next one within is an entry of a map.
+    ``result`` is what makes the result of all parts, where that is not its bytes.
     """
 
     def __init__(self, unit: Unit, function: Function, scope: ObjectScope, needed: set[tuple[int, int]]) -> None:
@@ -58,8 +64,9 @@ class Written:
         self.around: dict[str, Around] = {}
         self.binder = Binder(unit, function, scope, needed)
         self.exact: dict[int, int] = {}
+        self.result = ""
         self.limits: dict[Expr, int] = {}
-        self.join = self.join_all = JOIN
+        self.may_be_long = self.has_long = self.at_entry = False
 
     def line(self, text: str) -> None:
         self.function.line(text)
@@ -67,6 +74,10 @@ class Written:
     def _store(self, at: Expr, value: Expr, order: str) -> None:
         type_ = type_of(value)
         match value:
+            case Convert("u8", Get("bool", place)) | Get("bool", place):
+                self._add("", "?", (self.scope.truth(place),))
+                self.positions.written(at, Sum(1))
+                return
             case Get(_, place) if not self.scope.has(place):
                 text = self.scope.element_of(place, type_)
             case Get(_, place):
@@ -75,7 +86,7 @@ class Written:
                 text = bare(expression(self.scope, count))
             case _:
                 text = bare(expression(self.scope, value))
-        self._add(order if WIDTH[type_] > 1 else "", CODES[type_], (f"1 if {text} else 0" if type_ == "bool" else text,))
+        self._add(order if WIDTH[type_] > 1 else "", CODES[type_], (text,))
         self.positions.written(at, Sum(WIDTH[type_]))
 
     def _add(self, order: str, codes: str, texts: tuple[str, ...]) -> None:
@@ -97,7 +108,7 @@ class Written:
             raise NotInParts
         codes = numbers_of(sequence.slot, stride)
         if sequence.element is None:
-            self.pending.append(Part("", "", (sequence.local,)))
+            self.pending.append(Part("", "", (self._text_or_bytes(sequence),)))
         elif isinstance(sequence.slot, Number):
             self._numbers(sequence, "<", exact)
         elif codes:
@@ -106,11 +117,23 @@ class Written:
             raise NotInParts
         self.positions.written(at, size_sum)
 
+    def _text_or_bytes(self, sequence: Listed) -> str:
+        """They are not copied by messages around theirs, where they are long; those that no schema knows hardly are.
+
+        Neither are entries of maps, but in types that contain themselves, whose texts may be long as they are bound.
+        """
+        recursive, around = bool(self.unit.layout.recursive), [*self.around.values()][-1:]
+        is_within = (around and not around[0].is_entry) or self.result or (around and recursive)
+        if not is_within or self.unit.layout.lanes[sequence.lane].name.endswith(UNKNOWN):
+            return sequence.local
+        self.may_be_long = True
+        return sequence.local if recursive and sequence.is_text else f"_long({sequence.local})"
+
     def _numbers(self, sequence: Listed, order: str, exact: int | None) -> None:
         assert isinstance(sequence.slot, Number)
-        code, own = CODES[sequence.slot.scalar], sequence.local
+        code, own = "?" if sequence.slot.scalar == "bool" else CODES[sequence.slot.scalar], sequence.local
         if exact is not None and 0 < exact <= (FEW_STARRED if self.unit.numpy else MOST_STARRED):
-            self._add(order if WIDTH[sequence.slot.scalar] > 1 else "", code * exact, (f"*{own}",))
+            self._add(order if WIDTH[sequence.slot.scalar] > 1 else "", code * exact, (starred(own, self.scope),))
         elif self.unit.numpy:
             dtype, is_bool = self.scope.dtype(sequence.slot.scalar, order), sequence.slot.scalar == "bool"
             self.pending.append(Part("", "", (f"_raw({dtype}, {own}{', is_bool=True' if is_bool else ''})",)))
@@ -146,7 +169,7 @@ class Written:
 
     def end(self, name: str) -> None:
         """Join the parts: that is the result, or has a name."""
-        made = self._joined(self.join_all)
+        made = self._joined(self.result or ("_whole" if self.has_long else JOIN))
         self.line(f"{name} = {made}" if name else f"return {made}")
 
     def _joined(self, join: str) -> str:
@@ -164,8 +187,10 @@ class Written:
     def begin(self, name: str, routine: str) -> None:
         """What follows comes behind its length, a local of the kernel: parts of a list of their own."""
         writer = self.function.writer
-        self.around[name] = Around(self.begun, self.pending, self.list_name, len(writer.lines), writer.depth, routine)
+        long = self.may_be_long, self.has_long, self.at_entry
+        self.around[name] = Around(self.begun, self.pending, self.list_name, len(writer.lines), writer.depth, routine, *long)
         self.pending, self.begun, self.list_name = [], False, self.binder.local("parts")
+        self.may_be_long = self.has_long = self.at_entry = False
 
     def finish(self, name: str) -> None:
         """All of it is there: its length is known, and written before it."""
@@ -174,7 +199,7 @@ class Written:
             raise NotInParts
         if not self.begun and all(part.codes for part in self.pending):
             inner, size = self.pending, sum(struct.calcsize(f"<{part.codes}") for part in self.pending)
-            self.pending, self.begun, self.list_name = around.pending, around.begun, around.list_name
+            self._go_on(around, has_long=False)
             length = _varint(size)
             self._add("", "B" * len(length), tuple(map(str, length)))
             for part in inner:
@@ -183,6 +208,12 @@ class Written:
         body = self.binder.local("body")
         if self.begun:
             writer.lines.insert(around.line, f"{'    ' * around.depth}{self.list_name} = []")
-        self.line(f"{body} = {self._joined(self.join)}")
-        self.pending, self.begun, self.list_name = around.pending, around.begun, around.list_name
+        is_kept = self.has_long or self.may_be_long
+        self.line(f"{body} = {self._joined('_joined' if is_kept else JOIN)}")
+        self._go_on(around, has_long=is_kept)
         self.pending = [*self.pending, Part("", "", (f"{around.routine}(len({body}))",)), Part("", "", (body,))]
+
+    def _go_on(self, around: Around, *, has_long: bool) -> None:
+        """Go on with what there was before a message within another."""
+        self.pending, self.begun, self.list_name = around.pending, around.begun, around.list_name
+        self.may_be_long, self.has_long = around.may_be_long, around.has_long or has_long

@@ -14,11 +14,11 @@ from rosetta_jit.generate.python.borrowed import borrowed
 from rosetta_jit.generate.python.classes import WORDS, classes, names_of
 from rosetta_jit.generate.python.collecting import Collect
 from rosetta_jit.generate.python.encoder import encoder_in_parts
-from rosetta_jit.generate.python.expressions import CODES, Scope, view_name
+from rosetta_jit.generate.python.expressions import CODES, TRUTH, Scope, view_name
 from rosetta_jit.generate.python.functions import Attempt, is_flat, print_kernel
 from rosetta_jit.generate.python.making import Make, arrays_of
 from rosetta_jit.generate.python.positions import NotInParts
-from rosetta_jit.generate.python.statements import Objects
+from rosetta_jit.generate.python.printed import Objects
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, wire_of
@@ -77,6 +77,8 @@ class _Module:
         for use, (path, begin) in MORE.items():
             if any(use in part for part in parts):
                 more = path.read_text("utf-8")
+                if "BytesIO" in more:
+                    runtime = runtime.replace("from itertools", "from io import BytesIO\nfrom itertools", 1)
                 runtime += f"\n\n\n{more[more.index(begin) :].rstrip()}".replace("  # pyright: ignore[reportUnusedFunction]", "")
         if self.unit.numpy:
             arrays = ARRAYS.read_text("utf-8")
@@ -103,7 +105,7 @@ class _Module:
                 lines.append(f'{name} = memoryview(b"").cast("{code}")')
             else:
                 method = {"load": "unpack_from", "store": "pack_into", "whole": "pack"}[verb]
-                lines.append(f'{name} = Struct("{">" if order else "<"}{code}").{method}')
+                lines.append(f'{name} = Struct("{">" if order else "<"}{code.replace(TRUTH, "?")}").{method}')
         lines += [f'{name} = Struct("{code}").pack_into' for code, name in self.structs.items()]
         if self.guesses:
             lines += ["_room = [256]", '"""The room that messages took."""']
@@ -185,11 +187,13 @@ class _Module:
     def _decode(self, attempts: tuple[Attempt, ...]) -> str:
         writer = Writer()
         copies = any("call_copy" in attempt.needs for attempt in attempts)
-        option = ", *, copy: bool = True" if copies else ""
+        has_arrays = any(name.startswith("_dtype_") for name in self.loads)
+        option = ", *, copy: bool = True" if has_arrays else ""
         writer.line(f"def decode(data: bytes | bytearray | memoryview{option}) -> {self.root}:")
         writer.depth = 1
-        said = "; without ``copy`` arrays are views of it, where they can be, which nothing writes to. Raises" if copies else "; raises"
-        writer.line(f'"""Read a message{said} `DecodeError`."""')
+        said = "; without ``copy`` arrays are views of it, where they can be, which nothing writes to. Raises"
+        never = "; no array can be a view of it, whatever ``copy`` says. Raises"
+        writer.line(f'"""Read a message{said if copies else never if has_arrays else "; raises"} `DecodeError`."""')
         writer.line("data = bytes(data)")
         writer.line("end = len(data)")
         writer.line("most = 1048576 + 64 * end")

@@ -1,43 +1,70 @@
-"""Messages of types that contain themselves, for generated modules that write some: part of those."""
+"""Messages within others that may be long, for generated modules that write some: part of those."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from io import BytesIO
 from typing import Any
 
-_LONG = 32768
+_LONG = 8192
 
 
 class _Long:
-    """The bytes of a long message in parts, which those around it do not copy."""
+    """A long message in parts, which those around it do not copy."""
 
     __slots__ = ("parts", "size")
 
-    def __init__(self, parts: list[Any], size: int) -> None:
+    def __init__(self, parts: Any, size: int) -> None:
         self.parts, self.size = parts, size
 
     def __len__(self) -> int:
         return self.size
 
 
+class _LongText:
+    """A long text, of ASCII alone, that becomes bytes where it is written."""
+
+    __slots__ = ("text",)
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+
+    def __len__(self) -> int:
+        return len(self.text)
+
+
+def _utf8(text: str) -> Any:  # pyright: ignore[reportUnusedFunction]
+    """A text as UTF-8."""
+    return _LongText(text) if len(text) >= _LONG and text.isascii() else text.encode("utf-8", "surrogateescape")
+
+
+def _long(part: Any) -> Any:  # pyright: ignore[reportUnusedFunction]
+    """Bytes that a message within another has."""
+    return part if len(part) < _LONG else _Long((part,), len(part))
+
+
 def _joined(parts: Any) -> Any:  # pyright: ignore[reportUnusedFunction]
-    """The bytes of a message that another contains, or their parts."""
+    """A message that another contains: its bytes, or if these are many their parts."""
     try:
         found = b"".join(parts)
-    except TypeError:  # some are long
-        flat: list[Any] = []
-        size = 0
-        for each in parts:
-            if type(each) is _Long:
-                flat += each.parts
-                size += each.size
-            else:
-                flat.append(each)
-                size += len(each)
-        return _Long(flat, size)
-    return found if len(found) < _LONG else _Long([found], len(found))
+    except TypeError:  # some parts are long
+        return _Long(parts, sum(map(len, parts)))
+    return found if len(found) < _LONG else _Long((found,), len(found))
 
 
 def _whole(parts: Any) -> bytes:  # pyright: ignore[reportUnusedFunction]
     """The bytes of a message."""
-    found = _joined(parts)
-    return b"".join(found.parts) if type(found) is _Long else found
+    try:
+        return b"".join(parts)
+    except TypeError:  # some parts are long
+        message = BytesIO()
+        _write(parts, message.write)
+        return message.getvalue()
+
+
+def _write(parts: Any, write: Callable[[Any], Any]) -> None:
+    for each in parts:
+        if isinstance(each, _Long):
+            _write(each.parts, write)
+        else:
+            write(each.text.encode() if isinstance(each, _LongText) else each)

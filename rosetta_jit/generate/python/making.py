@@ -31,7 +31,7 @@ class Make:
         match resolved, slot:
             case _, Number(offset, scalar):
                 text = self.scope.field(lane, row, offset, scalar)
-                return f"{text} != 0" if scalar == "bool" else text
+                return f"{text} != 0" if scalar == "bool" and not self._is_bool(lane, text) else text
             case Struct(), Row():
                 return self.struct(resolved, slot, lane, row)
             case Union(), Variant():
@@ -42,6 +42,10 @@ class Make:
                 return self.sequence(resolved, slot, lane, row)
             case _:
                 raise AssertionError(type_)
+
+    def _is_bool(self, lane: int, text: str) -> bool:
+        """Whether the field of a row is a local that has a bool."""
+        return text in self.scope.bools or lane in self.scope.direct.appended
 
     def linked(self, type_: Type, slot: Span, lane: int, row: str, instead: str) -> str:
         """A message of a type that contains itself; ``instead`` where it has no row: as the value of a map's entry that gives none."""
@@ -135,9 +139,11 @@ class Make:
         self.depth -= 1
         return found
 
-    def _numbers(self, numbers: str, scalar: str) -> str:
-        """An array of a list, or of a view of memory."""
-        return f"np.array({numbers}, np.{NUMPY[scalar][0]})" if self.unit.numpy else numbers
+    def _numbers(self, numbers: str, scalar: str, *, is_few: bool = False) -> str:
+        """An array of a list, or of a view of memory; numpy sees by itself what ``is_few`` floats are."""
+        if not self.unit.numpy:
+            return numbers
+        return f"np.array({numbers})" if is_few and scalar == "f64" else f"np.array({numbers}, np.{NUMPY[scalar][0]})"
 
     def _direct(self, slot: Span, lane: int, row: str) -> str | None:
         """What is a list or a string already."""
@@ -153,7 +159,7 @@ class Make:
             return self._numbers(rows, element.scalar) if isinstance(element, Number) else rows
         if slot.lane in known.elements and isinstance(element, Number):
             texts = (self.scope.element(slot.lane, number) for number in range(len(known.elements[slot.lane])))
-            return self._numbers(f"[{', '.join(texts)}]", element.scalar)
+            return self._numbers(f"[{', '.join(texts)}]", element.scalar, is_few=True)
         return self.scope.text(lane, slot.offset) if (lane, slot.offset) in known.texts else None
 
     def _is_borrowed(self, type_: Type, lane: int) -> bool:

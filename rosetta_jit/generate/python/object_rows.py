@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import member_names
-from rosetta_jit.generate.python.expressions import Scope, expression, within
+from rosetta_jit.generate.python.conversions import within
+from rosetta_jit.generate.python.expressions import CODES, Scope, expression
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.arithmetic import FLOATS
@@ -18,7 +19,10 @@ from rosetta_jit.model.types import Array, Bytes, Map, Optional, String, Struct,
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.python.statements import Function
+    from rosetta_jit.generate.python.printed import Function
+
+FLAG = "(1 if "
+"""Begins what stands for a bool, which may be anything that is true or not."""
 
 START = "<start> "
 """Begins what stands for the start of a sequence, behind which its lane is named: objects have no such number."""
@@ -33,6 +37,7 @@ class Listed:
     element: Type | None
     slot: Slot
     is_map: bool = False
+    is_text: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +85,29 @@ class ObjectScope(Scope):
         if self.numpy and scalar[0] in "iu" and self.sequences[place.lane].element is not None:
             return f"int({found})"
         return f"_single({found})" if scalar == "f32" else f"float({found})" if scalar == "f64" else found
+
+    def is_number(self, place: Place) -> bool:
+        """Whether a field is a number, or a bool, of an object."""
+        known = self.objects.get((place.lane, place.row), {}).get(place.offset, "")
+        return known in self.numbers or known.startswith(FLAG)
+
+    def is_not_zero(self, place: Place) -> str:
+        """Whether a number of an object has any bits."""
+        known = self.objects[place.lane, place.row][place.offset]
+        if known.startswith(FLAG):
+            return self.truth(place)
+        if (float_ := self.float_fields.get((place.lane, place.row, place.offset))) is None:
+            return f"_index({bare(known)}) != 0"
+        return f"{self.struct('<', CODES[float_], 'whole')}({bare(known)}) != {bytes(WIDTH[float_])!r}"
+
+    def truth_of(self, place: Place) -> str | None:
+        known = self.objects.get((place.lane, place.row), {}).get(place.offset, "")
+        return self.truth(place) if known.startswith(FLAG) else None
+
+    def truth(self, place: Place) -> str:
+        """What stands for a bool: it is true or not."""
+        known = self.objects.get((place.lane, place.row), {}).get(place.offset)
+        return self.element_of(place, "bool") if known is None else known.removeprefix(FLAG).removesuffix(" else 0)")
 
     def element_of(self, place: Place, scalar: str) -> str:
         """An element of a list of numbers, or of bytes."""
@@ -176,7 +204,7 @@ class Binder:
         resolved = self.unit.schema.resolve(type_)
         match resolved, slot:
             case _, Number(offset, scalar):
-                found[offset] = f"(1 if {at} else 0)" if scalar == "bool" else at
+                found[offset] = f"{FLAG}{at} else 0)" if scalar == "bool" else at
                 self.scope.numbers |= {at} if scalar != "bool" else set()
                 self.scope.float_fields |= {(lane, self.row, offset): scalar} if scalar in FLOATS else {}
             case Struct(), Row():
@@ -249,7 +277,8 @@ class Binder:
         if isinstance(type_, String) and type_.encoding == "utf-16":
             raise NotInParts
         own = self.local((at if at.replace(".", "").isidentifier() and "." in at else lane.name).rpartition(".")[2] or "value")
-        self.function.line(f'{own} = {at}.encode("utf-8", "surrogateescape")' if isinstance(type_, String) else f"{own} = {at}")
+        encoded = f"_utf8({at})" if self.unit.layout.recursive else f'{at}.encode("utf-8", "surrogateescape")'
+        self.function.line(f"{own} = {encoded if isinstance(type_, String) else at}")
         element = type_.element if isinstance(type_, Array) else None
-        self.scope.sequences[slot.lane] = Listed(own, slot.lane, element, lane.element)
+        self.scope.sequences[slot.lane] = Listed(own, slot.lane, element, lane.element, is_text=isinstance(type_, String))
         found[slot.offset], found[slot.offset + 8] = f"{START}{slot.lane}", f"len({own})"

@@ -42,6 +42,11 @@ def part_text(part: Part, scope: ObjectScope, exact: Mapping[int, int]) -> str:
     return f"{scope.struct(order, part.codes, 'whole')}({', '.join(_starred(part, scope, exact))})"
 
 
+def starred(local: str, scope: ObjectScope) -> str:
+    """All elements of an array as arguments."""
+    return f"*_few({local})" if scope.numpy else f"*{local}"
+
+
 def _starred(part: Part, scope: ObjectScope, exact: Mapping[int, int]) -> list[str]:
     """What is packed: all elements of an array, which follow each other, as it is."""
     texts = list(part.texts)
@@ -50,6 +55,6 @@ def _starred(part: Part, scope: ObjectScope, exact: Mapping[int, int]) -> list[s
         each = [f"{own}[{number}]" for number in range(count)]
         for begin in range(len(texts) - count + 1):
             if count and texts[begin : begin + count] == each:
-                texts[begin : begin + count] = [f"*{own}"]
+                texts[begin : begin + count] = [starred(own, scope)]
                 break
     return texts

@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.python.bools import Bools, bools_written
+from rosetta_jit.generate.python.defaults import asked_first, reads_of
 from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.flags import Flags, flags_of
 from rosetta_jit.generate.python.groups import turned
@@ -19,8 +21,9 @@ from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope
 from rosetta_jit.generate.python.packed import Part
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
 from rosetta_jit.generate.python.presence import bit_tested, case_tested, named_in_rounds, places_read
+from rosetta_jit.generate.python.printed import Function
 from rosetta_jit.generate.python.recursive_rows import is_hidden, row_function
-from rosetta_jit.generate.python.statements import Function, fail, print_statement
+from rosetta_jit.generate.python.statements import fail, print_statement
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
@@ -44,13 +47,13 @@ class Parts(Written):
         super().__init__(unit, function, scope, needed)
         self.body, self.routines, self.called, self.depth = body, routines, set[str](), function.writer.depth
         self.lengths, self.words = set[str](), dict[str, nodes.Place]()
-        self.counted = named_in_rounds(body)
+        self.counted, self.reads = named_in_rounds(body), reads_of(body)
         self.bodies, self.sizes, self.rows_called = dict[str, str](), dict[nodes.Expr, str](), set[int]()
 
     # --- statements ------------------------------------------------------------------------------------------------------------------
 
     def block(self, block: nodes.Block) -> None:
-        for stmt in block:
+        for stmt in asked_first(block, self.reads, self.scope.is_number):
             self._statement(stmt)
 
     def _statement(self, stmt: nodes.Stmt) -> None:
@@ -138,6 +141,7 @@ class Parts(Written):
         self.line(f"{body} = {row_function(self.scope.lanes, place.lane)}({self.scope.message(place)})")
         self.bodies[size], self.sizes[place.row] = body, size
         self.rows_called.add(place.lane)
+        self.has_long = True
         self.positions.values[size] = self.positions.new()
 
     def _note(self, condition: nodes.Expr) -> None:
@@ -202,8 +206,15 @@ class Parts(Written):
                 self._branches(f"if {self.function.text(folded(nodes.Unary('not', condition)))}:", [("", otherwise, None)], ())
             case nodes.If(condition, then, otherwise):
                 maybe = self._maybe(condition)
-                text = self.function.text(condition) if maybe is None or maybe.case else f"{maybe.local} is not None"
+                text = self._condition(condition) if maybe is None or maybe.case else f"{maybe.local} is not None"
                 self._branches(f"if {text}:", [("", then, maybe)], otherwise)
+
+    def _condition(self, condition: nodes.Expr) -> str:
+        match condition:
+            case nodes.Compare("ne", nodes.Get(_, place), nodes.Const(_, 0)) if self.scope.is_number(place):
+                return self.scope.is_not_zero(place)
+            case _:
+                return self.function.text(condition)
 
     def _branches(self, head: str, cases: list[tuple[str, nodes.Block, Maybe | None]], default: nodes.Block) -> None:
         self.flush()
@@ -243,6 +254,9 @@ class Parts(Written):
     def _for(self, loop: nodes.For) -> None:
         if (found := turned(loop)) is not None and isinstance(loop.body[-1], nodes.Store):
             self._turned(loop, *found)
+            return
+        if (bools := bools_written(loop)) is not None and self._is_count_of(bools.first.lane, loop.count):
+            self._bools(loop, bools)
             return
         width = sum(nodes.WIDTH[type_of(each.value)] for each in loop.body if isinstance(each, nodes.Store))
         self.flush()
@@ -327,6 +341,7 @@ class Parts(Written):
         if not sequence.is_map and self.unit.layout.lanes[sequence.lane].links is not None:
             self.scope.messages[sequence.lane, row] = names[0]
         elif sequence.is_map:
+            self.at_entry = True
             self.binder.bind_entry(sequence, row, names)
         else:
             self.binder.bind(sequence.lane, row, names[0], sequence.element, sequence.slot)
@@ -337,6 +352,13 @@ class Parts(Written):
             raise NotInParts
         self._numbers(sequence, ">", self.exact.get(place.lane))
         self.positions.written(base, Sum().plus(self.positions.sum(loop.count), nodes.WIDTH[type_]))
+
+    def _bools(self, loop: nodes.For, bools: Bools) -> None:
+        sequence = self.scope.sequences[bools.first.lane]
+        if self.scope.behind(bools.first) != index(0):
+            raise NotInParts
+        self._numbers(sequence, "<", self.exact.get(bools.first.lane))
+        self.positions.written(bools.base, self.positions.sum(loop.count))
 
     def _while(self, loop: nodes.While) -> None:
         self.flush()

@@ -9,12 +9,14 @@ from rosetta_jit.kernel.nodes import (
     Binary,
     Block,
     Call,
+    Compare,
     Const,
     Copy,
     Expect,
     Expr,
     Failure,
     Fill,
+    If,
     Local,
     Require,
     Return,
@@ -151,6 +153,8 @@ def without_places(block: Block) -> Block:
                 found.append(Store(index(0), value, order))
             case Copy(Wire(), source, _):
                 found.append(Copy(Wire(index(0)), source, index(0)))
+            case If(Compare("gt", _, Const(_, 0)), (Copy(Wire()) as copy,), ()):
+                found += without_places((copy,))  # a copy of nothing does nothing
             case Fill(Wire(), size, byte):
                 found.append(Fill(Wire(index(0)), size, byte))
             case Return(_, registers):

@@ -40,15 +40,19 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
     part = f"data[{begin} : {begin} + {expression(scope, size)}]"
     if isinstance(slot, Number) and scope.numpy:
         count = Const("i64", int(size.value) // stride) if isinstance(size, Const) else _divided(size, stride)
+        dtype, number = scope.dtype(slot.scalar, order), bare(expression(scope, count))
+        if order == ">" and stride > 1:
+            return f"np.frombuffer(data, {dtype}, {number}, {begin}).astype({scope.dtype(slot.scalar)})"
+        if slot.scalar == "bool":
+            return f"np.frombuffer(data, {dtype}, {number}, {begin}) != 0"
         scope.from_call.add("copy")
-        found = f"_array({scope.dtype(slot.scalar, order)}, data, {bare(expression(scope, count))}, {begin}, call_copy)"
-        return f"{found} != 0" if slot.scalar == "bool" else found
+        return f"_array({dtype}, data, {number}, {begin}, call_copy)"
     if isinstance(slot, Number):
-        if stride == 1 and slot.scalar != "i8":
-            return f"[*map(bool, {part})]" if slot.scalar == "bool" else f"[*{part}]"
+        if slot.scalar == "u8":
+            return f"[*{part}]"
         count = Const("i64", int(size.value) // stride) if isinstance(size, Const) else _divided(size, stride)
         number = f"{count.value}" if isinstance(count, Const) else f"{{{bare(expression(scope, count))}}}"
-        code = CODES[slot.scalar]
+        code = "?" if slot.scalar == "bool" else CODES[slot.scalar]
         few, many = f'"{order.replace("<", "")}{number}{code}"', f'_many{"_turned" if order == ">" else ""}({part}, "{code}")'
         if isinstance(count, Const):
             return many if count.value > SOME else f"[*_unpack({few}, data, {begin})]"

@@ -2,90 +2,22 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
 from typing import assert_never
 
-from rosetta_jit.backends.printing import Writer
-from rosetta_jit.generate.origins import Origin, origin_of
+from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.python.expressions import CODES, Scope, expression, is_small, location, view_name
+from rosetta_jit.generate.python.bools import Bools, bools_read
+from rosetta_jit.generate.python.expressions import CODES, expression, is_small, location, view_name
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
+from rosetta_jit.generate.python.printed import Attempt, Function
 from rosetta_jit.generate.python.reading import gathered, numbers_read, takes_text
-from rosetta_jit.kernel import ir, nodes
+from rosetta_jit.generate.python.reserving import reserve
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import mul, type_of
-from rosetta_jit.model.layout import Layout
-from rosetta_jit.startup.dataclass import dataclass, field
 
 OF_SEVERAL_BYTES = {**dict.fromkeys(("read_varint", "read_element", "read_packed"), "_several_bytes"), "read_size": "_long_length"}
 """Routines for integers of protobuf that often have several bytes, with the function that reads those that end by one call."""
-
-
-@dataclass(frozen=True, slots=True)
-class Attempt:
-    """A body as a function: its name, and the names of what it needs of the message's lanes and row.
-
-    Of a routine, ``is_mostly_a_byte`` says that its results are a byte and the place behind it, unless that byte is 128 or more;
-    ``may_lack`` that this byte may be missing.
-    """
-
-    name: str
-    needs: tuple[str, ...]
-    is_mostly_a_byte: bool = False
-    may_lack: bool = True
-
-
-@dataclass(frozen=True, slots=True)
-class Objects:
-    """How a function comes to objects: ``result`` is what a return of success gives at a position.
-
-    Of decoders ``row`` is the object of a lane's row, ``inner`` are the lines of functions for rows that contain rows of their own type,
-    ``arrays`` are the lanes of arrays in the ``layout``, and ``blobs`` those of bytes among them. ``numpy``: arrays of numbers are numpy's;
-    ``classes`` are the names of classes, which no local hides.
-    """
-
-    result: Callable[[Scope, str], str]
-    row: Callable[[Scope, int], str] = lambda _, lane: f"<row {lane}>"
-    inner: Callable[[Scope], list[str]] = lambda _: []
-    layout: Layout | None = None
-    arrays: frozenset[int] = frozenset()
-    blobs: frozenset[int] = frozenset()
-    numpy: bool = False
-    classes: frozenset[str] = frozenset()
-
-
-@dataclass(slots=True)
-class Function:
-    """One function being printed; ``routines`` are functions by name with what they need.
-
-    ``settled`` are the fields of the message's row, by offset and type, that are set whatever the message is before any is read.
-    ``positive`` are the locals that are not negative; ``reserved`` says how often rows of a lane are reserved, ``outside`` of which lanes
-    that is not within a loop or a case, and nothing asks for their room. ``measured`` are the hidden lanes that an encoder gets as
-    measuring has left them.
-    """
-
-    scope: Scope
-    kernel: ir.Kernel
-    sites: Sequence[ir.Site]
-    routines: Mapping[str, Attempt]
-    origins: Sequence[Origin]
-    objects: Objects
-    settled: frozenset[tuple[int, str]] = frozenset()
-    read: frozenset[str] = frozenset()
-    is_routine: bool = False
-    measured: range = range(0)
-    moved: set[int] = field(default_factory=set[int])
-    positive: frozenset[str] = frozenset()
-    reserved: Counter[int] = field(default_factory=Counter[int])
-    outside: set[int] = field(default_factory=set[int])
-    writer: Writer = field(default_factory=lambda: Writer(depth=1))
-
-    def line(self, text: str) -> None:
-        self.writer.line(text)
-
-    def text(self, expr: nodes.Expr) -> str:
-        return bare(expression(self.scope, expr))
 
 
 def print_block(function: Function, block: nodes.Block) -> None:
@@ -142,7 +74,7 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
         case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             _effect(function, stmt)
         case nodes.Reserve(lane, count):
-            _reserve(function, lane, function.text(count))
+            reserve(function, lane, function.text(count))
         case nodes.Advance(lane, count):
             function.line(f"{function.scope.used(lane)} += {function.text(count)}")
         case nodes.Return(position, ()):
@@ -230,10 +162,9 @@ def _effect(function: Function, stmt: nodes.Effect) -> None:
         case nodes.Copy(target, source, size):
             (to, first), (of, begin), length = location(scope, target), location(scope, source), expression(scope, size)
             function.line(f"{to}[{first} : {first} + {length}] = {of}[{begin} : {begin} + {length}]{origin}")
+        case nodes.Fill(nodes.Place(0, _, offset), nodes.Const(_, size), _) if scope.flat:
+            function.line(f"<row {offset} {int(size)}>")
         case nodes.Fill(target, size, byte):
-            if isinstance(target, nodes.Place) and target.lane == 0 and scope.flat:
-                function.line("<row>")
-                return
             (to, first), length = location(scope, target), expression(scope, size)
             filling = f"bytes({bare(length)})" if byte == 0 else f"bytes([{byte}]) * {length}"
             function.line(f"{to}[{first} : {first} + {length}] = {filling}{origin}")
@@ -261,47 +192,13 @@ def _list(function: Function, lane: int, at: nodes.Expr, size: nodes.Expr, order
     return numbers_read(scope, lane, objects.layout.lanes[lane].element, lambda: objects.row(scope, lane), at, size, order)
 
 
-def _reserve(function: Function, lane: int, count: str) -> None:
-    scope, name = function.scope, function.scope.lanes.rows(lane)
-    if lane in scope.direct.appended:
-        with function.writer.indented(f"if {count} > most:"):
-            function.line(f"raise _Failed(0, 0, ({_path(scope, lane)},))")
-        function.line(f"{name} = []")
-        return
-    if lane and function.reserved[lane] == 1 and lane in function.outside and lane not in scope.rooms and not function.is_routine:
-        _reserve_once(function, lane, count)
-        return
-    used, room = scope.used(lane), scope.room(lane)
-    function.moved.add(lane)
-    free = room if lane == 0 else f"{room} - {used}"
-    path = _path(scope, lane)
-    with function.writer.indented(f"if {count} > {free}:"):
-        function.line(
-            f"{name}, {room} = _more({scope.view(lane, '')}, {room}, {count} - ({free}), {scope.lanes.stride(lane)}, most, {path})"
-        )
-        function.line(f"<views {lane}>")
-
-
-def _reserve_once(function: Function, lane: int, count: str) -> None:
-    """Rows of a lane that has none yet, and gets no others."""
-    scope, stride = function.scope, function.scope.lanes.stride(lane)
-    with function.writer.indented(f"if {count} > most:"):
-        function.line(f"raise _Failed(0, 0, ({_path(scope, lane)},))")
-    size = count if stride == 1 else f"{stride} * ({count})" if " " in count else f"{stride} * {count}"
-    function.line(f"{scope.view(lane, '')} = bytearray({size})")
-    function.line(f"<views {lane}>")
-    function.moved.add(lane)
-
-
-def _path(scope: Scope, lane: int) -> str:
-    return ascii(scope.paths[lane]) if lane < len(scope.paths) else "''"
-
-
 def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
     scope = function.scope
     match stmt:
         case nodes.For(_, count, _) if (found := turned(stmt)) is not None:
             _turn(function, count, found, decodes=isinstance(stmt.body[-1], nodes.SetField))
+        case nodes.For(variable, count, _) if (bools := bools_read(stmt)) is not None and bools.first.lane in scope.direct.whole:
+            _bools(function, variable, count, bools)
         case nodes.For(variable, count, body):
             with function.writer.indented(f"for {scope.locals.identifier(variable)} in range({function.text(count)}):"):
                 print_block(function, body)
@@ -328,6 +225,19 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
                     print_block(function, default)
         case _:
             assert_never(stmt)
+
+
+def _bools(function: Function, variable: str, count: nodes.Expr, bools: Bools) -> None:
+    """An array of bools, which begins with as many bytes that are 0 or 1 as there are until another one comes."""
+    assert bools.check is not None
+    scope, number, length = function.scope, function.scope.locals.identifier(variable), expression(function.scope, count)
+    begin = expression(scope, bools.base)
+    part = f"data[{bare(begin)} : {begin} + {length}]" if begin != "0" else f"data[:{bare(length)}]"
+    function.line(f'{number} = {length} - len({part}.lstrip(b"\\0\\1"))')
+    with function.writer.indented(f"if {number} < {length}:"):
+        print_block(function, bools.before) if bools.before else None
+        fail(function, bools.check.failure)
+    function.line(f"{scope.lanes.rows(bools.first.lane)} = {_list(function, bools.first.lane, bools.base, count, '<')}")
 
 
 def _turn(function: Function, count: nodes.Expr, found: tuple[nodes.Place, nodes.Expr, str], *, decodes: bool) -> None:

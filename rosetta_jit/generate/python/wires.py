@@ -19,7 +19,7 @@ from rosetta_jit.model.types import Optional, Struct
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.python.making import Make
-    from rosetta_jit.generate.python.statements import Attempt
+    from rosetta_jit.generate.python.printed import Attempt
 
 
 def wires_of(unit: Unit) -> dict[str, Role]:

@@ -1,0 +1,68 @@
+"""Bools and numbers that generated Python reads and writes together, as lists and as arrays of numpy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.api.options import type_request
+from rosetta_jit.generate.build import Wishes, generated
+from tests.generate.driver import harmed
+from tests.generate.python import BOTH, answers_as_the_library, module
+
+BOOLS = {
+    "ros1": "bool a\nbool[] some\nbool[3] few\nint16 n\nbool[36] many\nbool b\nbool c\n",
+    "cdr": "bool a\nbool[] some\nbool[3] few\nint16 n\nbool[36] many\nbool b\nbool c\n",
+    "lcm": {
+        "t.lcm": "package t; struct T { boolean a; int32_t n; boolean some[n]; boolean few[3]; boolean many[36]; boolean b; boolean c; }"
+    },
+}
+
+
+@pytest.mark.parametrize("arrays", ["", "numpy"])
+@pytest.mark.parametrize("encoding", BOOLS)
+def test_bools_are_read_and_written_together(encoding, arrays):
+    """A byte that is neither 0 nor 1 is an error at its place, the first of them, wherever it is."""
+    type_ = {"ros1": "t/T", "cdr": "t/msg/T", "lcm": "t.T"}[encoding]
+    given = {"encoding": encoding, "schema": BOOLS[encoding]}
+    request, programs = type_request("decode", type_, given), (rj.Decoder.of(type_, **given), rj.Encoder.of(type_, **given))
+    text = generated(request, "python", BOTH, "unit", Wishes(numpy=bool(arrays)))["unit.py"]
+    assert "for i in range" not in text
+    unit = module(request, BOTH, Wishes(numpy=bool(arrays)))
+    good = []
+    for count in (0, 1, 5, 150):
+        some = [number % 3 == 0 for number in range(count)]
+        values = {"a": True, "n": count, "some": some, "few": [False, True, True], "many": [*some, *[True] * 36][:36], "c": True}
+        good.append(bytes(programs[1](programs[1].holder_type.from_dict(values))))
+        assert unit.encode(unit.T(**values)) == good[-1]
+        found = unit.decode(good[-1])
+        assert [*found.some] == some
+        assert {type(each) for each in [found.a, found.b, *found.some]} <= {bool, np.bool_}
+    bad = [good[-1][:at] + bytes([byte]) + good[-1][at + 1 :] for at in range(len(good[-1])) for byte in (2, 255)]
+    answers_as_the_library(unit, programs, [*harmed(good, 12, encoding), *bad])
+    assert unit.decode(unit.encode(unit.T(a="yes", b=[], few=[0, 1, 5], many=[7] * 36))).a
+
+
+def test_few_numbers_of_numpy_are_pythons_where_they_are_packed():
+    """Together with the numbers around them; what is no number of their type is refused, times too."""
+    given = {
+        "encoding": "lcm",
+        "schema": {"t.lcm": "package t; struct T { int64_t t; double p[3]; int32_t n; int16_t v[n]; int32_t q[2]; }"},
+    }
+    request = type_request("decode", "t.T", given)
+    unit, encode = module(request, BOTH, Wishes(numpy=True)), rj.Encoder.of("t.T", **given)
+    text = generated(request, "python", BOTH, "unit", Wishes(numpy=True))["unit.py"]
+    assert "*_few(p_" in text
+    values = {"t": 1, "p": [1.5, -2.0, 3.0], "n": 4, "v": [1, -2, 300, 4], "q": [7, -8]}
+    message = bytes(encode(encode.holder_type.from_dict(values)))
+    for change in (np.array, list, tuple):
+        made = {name: change(value) if isinstance(value, list) else value for name, value in values.items()}
+        assert unit.encode(unit.T(**made)) == message
+    found = unit.decode(message, copy=False)
+    assert (found.p.dtype, found.v.dtype, found.q.dtype) == (np.float64, np.int16, np.int32)
+    assert found.v.flags.writeable
+    assert unit.decode(unit.encode(unit.T(p=np.zeros(3), q=np.zeros(2, np.int64)))).v.dtype == np.int16
+    for wrong in ({"p": np.zeros((3, 2))}, {"q": np.zeros(2)}, {"q": np.zeros(2, "datetime64[s]")}, {"p": np.zeros(3, complex)}):
+        with pytest.raises(unit.EncodeError, match="range"):
+            unit.encode(unit.T(**{"p": np.zeros(3), "q": np.zeros(2, int), **wrong}))
