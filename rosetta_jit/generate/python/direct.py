@@ -37,6 +37,7 @@ class Direct:
     ``whole`` are lanes that are read by one call, ``appended`` those whose rows are appended to a list, ``loops`` the variables of the
     loops that do so; ``elements`` are the places of rows that are locals, by lane; ``texts`` are the spans of texts that are decoded where
     they are checked, by lane and offset, with the place and size of the check: ``late`` are those of them that may not come.
+    ``pieces`` are spans of bytes, with their place and size: they are taken where a statement sets where they start.
     ``gathered`` are lanes of texts and of bytes, with the place and size of one in the message: it is appended where a statement sets where
     it starts.
     """
@@ -50,6 +51,9 @@ class Direct:
     )
 
     late: set[tuple[int, int]] = field(default_factory=set[tuple[int, int]])
+    pieces: dict[tuple[int, int], tuple[nodes.Expr, nodes.Expr]] = field(
+        default_factory=dict[tuple[int, int], "tuple[nodes.Expr, nodes.Expr]"]
+    )
     gathered: dict[int, tuple[nodes.Expr, nodes.Expr]] = field(default_factory=dict[int, "tuple[nodes.Expr, nodes.Expr]"])
 
     def text_at(self, at: nodes.Expr, size: nodes.Expr) -> tuple[int, int] | None:
@@ -120,6 +124,25 @@ class _Search:
                     self._text(block, row, at, size)
                 case _:
                     pass
+        self._pieces(block, row)
+
+    def _pieces(self, block: nodes.Block, row: nodes.Place) -> None:
+        """Bytes of a row of which a block says where they are in the message, once and nowhere else."""
+        places = {each.place: each for each in block if isinstance(each, nodes.SetField)}
+        for offset, lane in _spans(self.layout, row.lane).items():
+            begin, end = (places.get(nodes.Place(row.lane, row.row, offset + behind)) for behind in (0, 8))
+            once = all(len(self.fields.get((row.lane, offset + behind), ())) == 1 for behind in (0, 8))
+            if begin is None or end is None or not once or self.mentions.get(lane) or (row.lane, offset) in self.direct.texts:
+                continue
+            match end.value:
+                case nodes.Binary("sub", nodes.Const(_, -1), size):
+                    self.direct.pieces[row.lane, offset] = begin.value, size
+                    self.instead[id(end)] = ()
+                case nodes.Const(_, negative) if negative < 0:
+                    self.direct.pieces[row.lane, offset] = begin.value, index(-1 - int(negative))
+                    self.instead[id(end)] = ()
+                case _:
+                    pass
 
     def _text(self, block: nodes.Block, row: nodes.Place, at: nodes.Expr, size: nodes.Expr) -> None:
         spans = [
@@ -138,7 +161,7 @@ class _Search:
 
     def texts_of_message(self, block: nodes.Block) -> None:
         """The texts that a block within another, which may not come, sets in the message's row."""
-        known = {*self.direct.texts}
+        known = {*self.direct.texts, *self.direct.pieces}
         for stmt in block:
             match stmt:
                 case nodes.Expect(nodes.IsText(nodes.Wire(at), size), _) if self.checks[at, size] == 1 and not self.direct.text_at(
@@ -147,7 +170,8 @@ class _Search:
                     self._text(block, nodes.Place(0, index(0)), at, size)
                 case _:
                     pass
-        self.direct.late |= {*self.direct.texts} - known
+        self._pieces(block, nodes.Place(0, index(0)))
+        self.direct.late |= {*self.direct.texts, *self.direct.pieces} - known
 
     def _sets(self, block: nodes.Block, row: nodes.Place, value: nodes.Expr) -> list[nodes.SetField]:
         """The one statement, if it is one, that sets a field of the row to a value, and that has to do with the field."""

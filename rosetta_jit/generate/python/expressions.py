@@ -57,7 +57,8 @@ class Scope:
     ``flat``: the fields of the message's row are locals, ``rows``, some of known ``offsets``, of which ``floats`` are floats, ``bools``
     bools. ``views`` are the lanes that it reaches, with the code of the view, empty for the bytes themselves; ``paths`` are the fields
     that lanes belong to; ``counted`` and ``rooms`` are lanes, ``loads`` functions that it needs, ``from_call`` what each call brings:
-    its time and number, registers, object. ``small`` are the locals of 64 bits, without a sign, that are known to be below 2**63.
+    its time and number, registers, object. ``small`` are the locals of 64 bits, without a sign, that are known to be below 2**63,
+    ``sums`` those that are sums.
     """
 
     locals: Namespace
@@ -77,6 +78,7 @@ class Scope:
     direct: Direct = field(default_factory=Direct)
     numpy: bool = False
     small: set[str] = field(default_factory=set[str])
+    sums: dict[nodes.Expr, str] = field(default_factory=dict[nodes.Expr, str])
 
     def note(self, name: str, *, is_small: bool) -> None:
         """Know of a local whether it is below 2**63."""
@@ -133,6 +135,10 @@ class Scope:
         start = flat_name(self.lanes, offset, "i64") if lane == 0 else self.own(lane, offset, "i64")
         return self.locals.identifier(f"{start.removesuffix('_start')}\0text")
 
+    def piece(self, lane: int, offset: int) -> str:
+        """The local for bytes that are taken where a statement says where they are."""
+        return self.locals.identifier(f"{self.text(lane, offset).removesuffix('_text')}\0bytes")
+
     def field(self, lane: int, row: str, offset: int, scalar: str) -> str:
         """A scalar of a row."""
         if lane == 0 and self.flat:
@@ -184,7 +190,7 @@ def expression(scope: Scope, expr: nodes.Expr) -> str:
         case nodes.Unary(function, operand):
             return _unary(function, type_of(operand), expression(scope, operand))
         case nodes.Binary(op, left, right):
-            return _between(scope, expr) or _binary(op, type_of(left), expression(scope, left), expression(scope, right))
+            return _shorter(scope, expr) or _binary(op, type_of(left), expression(scope, left), expression(scope, right))
         case nodes.Compare(op, left, right):
             return f"({expression(scope, left)} {COMPARISONS[op]} {expression(scope, right)})"
         case nodes.Fits(op, left, right):
@@ -205,9 +211,11 @@ def expression(scope: Scope, expr: nodes.Expr) -> str:
             assert_never(expr)
 
 
-def _between(scope: Scope, expr: nodes.Binary) -> str:
-    """Whether a local is between two numbers; nothing for other expressions."""
+def _shorter(scope: Scope, expr: nodes.Binary) -> str:
+    """Whether a local is between two numbers, and a difference; nothing for other expressions."""
     match expr:
+        case nodes.Binary("add", left, nodes.Const(type_, value)) if value < 0 and type_ not in FLOATS:
+            return f"({expression(scope, left)} - {-int(value)})"
         case nodes.Binary("and", nodes.Compare("ge", nodes.Local() as value, nodes.Const() as least), nodes.Compare("le", same, most)):
             return f"({expression(scope, least)} <= {expression(scope, value)} <= {expression(scope, most)})" if value == same else ""
         case _:
@@ -349,6 +357,15 @@ def _binary(op: str, type_: nodes.Scalar, left: str, right: str) -> str:
             return wrapped(type_, f"({left} << {right})")
         case _:
             return _rounded(type_, f"({left} {OPERATORS[op]} {right})") if type_ in FLOATS else f"({left} {OPERATORS[op]} {right})"
+
+
+def slice_of(scope: Scope, at: nodes.Expr, size: nodes.Expr) -> str:
+    """Bytes of the message."""
+    begin = bare(expression(scope, at))
+    if isinstance(at, nodes.Const) and isinstance(size, nodes.Const):
+        return f"data[{begin} : {int(at.value + size.value)}]"
+    end = scope.sums.get(nodes.Binary("add", at, size)) or f"{begin} + {expression(scope, size)}"
+    return f"data[{begin} : {end}]"
 
 
 def location(scope: Scope, address: nodes.Address) -> tuple[str, str]:

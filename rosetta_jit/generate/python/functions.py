@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -17,6 +18,7 @@ from rosetta_jit.generate.python.expressions import CODES, Scope, expression, fl
 from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.printed import Attempt, Function, Objects
 from rosetta_jit.generate.python.statements import print_block
+from rosetta_jit.generate.python.sums import with_locals
 from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.shares import moved_lanes
 from rosetta_jit.generate.undamaged import undamaged
@@ -108,7 +110,7 @@ def print_kernel(
 def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Attempt:
     kernel, scope, objects = function.kernel, function.scope, function.objects
     body = reached(kernel.bodies[number])
-    body = with_bytes(body) if kernel.direction == "decode" else undamaged(body, kernel.sites)
+    body = with_locals(with_bytes(body)) if kernel.direction == "decode" else undamaged(body, kernel.sites)
     if kernel.direction == "decode" and scope.flat and objects.layout is not None:
         body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, objects.blobs, few=0 if scope.numpy else FEW)
     function.settled = settled(body)
@@ -123,11 +125,13 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Att
     name = f"_{role}_{number + 1}"
     parameters = _parameters(function, own_only=kernel.direction != "decode")
     _blank(writer)
-    writer.line(f"def {name}({', '.join(['data', 'end', 'most', *parameters])}):")
+    lines = [each for line in function.writer.lines for each in _completed(line, function)]
+    is_bounded = kernel.direction != "decode" or any(re.search(r"\bmost\b", line) for line in lines)
+    writer.line(f"def {name}({', '.join(['data', 'end', *(['most'] if is_bounded else []), *parameters])}):")
     for line in (*_begin(function, role), *made):
         writer.line(f"    {line}" if line else "")
-    writer.lines += [each for line in function.writer.lines for each in _completed(line, function)]
-    return Attempt(name, tuple(parameters))
+    writer.lines += lines
+    return Attempt(name, tuple(parameters), is_bounded=is_bounded)
 
 
 def _completed(line: str, function: Function) -> list[str]:
@@ -140,9 +144,11 @@ def _completed(line: str, function: Function) -> list[str]:
             rows = scope.rows - {flat_name(scope.lanes, *each) for each in function.settled}
         else:
             rows = {name for name, offset in scope.offsets.items() if begin <= offset < begin + size}
-        texts = {scope.text(*span) for span in scope.direct.late if begin <= span[1] < begin + size}
+        late = [span for span in scope.direct.late if begin <= span[1] < begin + size]
+        texts = {scope.text(*span) for span in late if span in scope.direct.texts}
+        pieces = {scope.piece(*span) for span in late if span in scope.direct.pieces}
         numbers = rows - scope.floats - scope.bools
-        groups = ((numbers, "0"), (rows & scope.floats, "0.0"), (rows & scope.bools, "False"), (texts, '""'))
+        groups = ((numbers, "0"), (rows & scope.floats, "0.0"), (rows & scope.bools, "False"), (texts, '""'), (pieces, 'b""'))
         return [f"{before}{' = '.join(sorted(group))} = {zero}" for group, zero in groups if group]
     if text.startswith("<views "):
         lane = int(text[7:-1])

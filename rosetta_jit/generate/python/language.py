@@ -196,11 +196,12 @@ class _Module:
         writer.line(f'"""Read a message{said if copies else never if has_arrays else "; raises"} `DecodeError`."""')
         writer.line("data = bytes(data)")
         writer.line("end = len(data)")
-        writer.line("most = 1048576 + 64 * end")
+        if any(attempt.is_bounded for attempt in attempts):
+            writer.line("most = 1048576 + 64 * end")
         self._from_call(writer, {each for attempt in attempts for each in attempt.needs}, "decode")
         for number, attempt in enumerate(attempts):
             writer.line("try:")
-            writer.line(f"    return {attempt.name}({', '.join(['data', 'end', 'most', *attempt.needs])})")
+            writer.line(f"    return {attempt.name}({attempt.arguments()})")
             writer.line("except _Failed as failed:")
             if number == 0:
                 writer.line("    farthest = failed")

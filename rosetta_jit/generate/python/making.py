@@ -91,7 +91,7 @@ class Make:
         return f"{function}({self.scope.view(slot.lane, '')}, data, {self._start(slot, lane, row)}, {self._count(slot, lane, row)})"
 
     def sequence(self, type_: String | Bytes | Array | Map, slot: Span, lane: int, row: str) -> str:
-        known = self._direct(slot, lane, row)
+        known = self._direct(type_, slot, lane, row)
         if known is not None:
             return known
         start, count = self._start(slot, lane, row), self._count(slot, lane, row)
@@ -145,10 +145,13 @@ class Make:
             return numbers
         return f"np.array({numbers})" if is_few and scalar == "f64" else f"np.array({numbers}, np.{NUMPY[scalar][0]})"
 
-    def _direct(self, slot: Span, lane: int, row: str) -> str | None:
+    def _direct(self, type_: Type, slot: Span, lane: int, row: str) -> str | None:
         """What is a list or a string already."""
         known = self.scope.direct
         element = self.unit.layout.lanes[slot.lane].element
+        if (lane, slot.offset) in known.pieces:
+            piece = self.scope.piece(lane, slot.offset)
+            return f"{piece}.decode({_HOW[type_.encoding]})" if isinstance(type_, String) else piece
         if slot.lane in known.whole:
             return self.scope.lanes.rows(slot.lane)
         if slot.lane in known.gathered:

@@ -16,7 +16,8 @@ from rosetta_jit.startup.dataclass import dataclass, field
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """A body as a function: its name, and the names of what it needs of the message's lanes and row.
+    """A body as a function: its name, and the names of what it needs of the message's lanes and row; ``is_bounded`` says that it asks
+    how many rows the message may take.
 
     Of a routine, ``is_mostly_a_byte`` says that its results are a byte and the place behind it, unless that byte is 128 or more;
     ``may_lack`` that this byte may be missing.
@@ -26,6 +27,11 @@ class Attempt:
     needs: tuple[str, ...]
     is_mostly_a_byte: bool = False
     may_lack: bool = True
+    is_bounded: bool = True
+
+    def arguments(self) -> str:
+        """What a decoder is called with."""
+        return ", ".join(["data", "end", *(["most"] if self.is_bounded else []), *self.needs])
 
 
 @dataclass(frozen=True, slots=True)

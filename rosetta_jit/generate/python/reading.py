@@ -7,7 +7,7 @@ from itertools import groupby
 
 from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.python.expressions import CODES, Scope, expression
+from rosetta_jit.generate.python.expressions import CODES, Scope, expression, slice_of
 from rosetta_jit.kernel.nodes import Binary, Const, Expr, IsText, Wire
 from rosetta_jit.model.layout import Number, Slot
 
@@ -19,8 +19,7 @@ def takes_text(scope: Scope, condition: Expr) -> str | None:
     """The line that decodes a text, where a check is that of one which is taken where it is checked."""
     match condition:
         case IsText(Wire(at), size) if (span := scope.direct.text_at(at, size)) is not None:
-            begin = bare(expression(scope, at))
-            return f"{scope.text(*span)} = data[{begin} : {begin} + {expression(scope, size)}].decode()"
+            return f"{scope.text(*span)} = {slice_of(scope, at, size)}.decode()"
         case _:
             return None
 
@@ -30,8 +29,7 @@ def gathered(scope: Scope, lane: int) -> str:
     if (lane, 0) in scope.direct.texts:
         return scope.text(lane, 0)
     at, size = scope.direct.gathered[lane]
-    begin = bare(expression(scope, at))
-    return f"data[{begin} : {begin} + {expression(scope, size)}]"
+    return slice_of(scope, at, size)
 
 
 def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at: Expr, size: Expr, order: str) -> str:

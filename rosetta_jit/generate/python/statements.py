@@ -7,7 +7,7 @@ from typing import assert_never
 from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.bools import Bools, bools_read
-from rosetta_jit.generate.python.expressions import CODES, expression, is_small, location, view_name
+from rosetta_jit.generate.python.expressions import CODES, expression, is_small, location, slice_of, view_name
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
 from rosetta_jit.generate.python.printed import Attempt, Function
 from rosetta_jit.generate.python.reading import gathered, numbers_read, takes_text
@@ -71,6 +71,8 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
             if name in function.read:
                 text = function.text(value)
                 function.line(f"{function.scope.locals.identifier(name)} = {text}{_origin(function, stmt)}")
+                if isinstance(stmt, nodes.Let) and isinstance(value, nodes.Binary) and value.op == "add":
+                    function.scope.sums[value] = function.scope.locals.identifier(name)
         case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             _effect(function, stmt)
         case nodes.Reserve(lane, count):
@@ -151,6 +153,8 @@ def _effect(function: Function, stmt: nodes.Effect) -> None:
                 )
         case nodes.SetField(nodes.Place(lane), _) if lane in scope.direct.gathered:
             function.line(f"{scope.lanes.rows(lane)}.append({gathered(scope, lane)}){origin}")
+        case nodes.SetField(nodes.Place(lane, _, offset), _) if (lane, offset) in scope.direct.pieces:
+            function.line(f"{scope.piece(lane, offset)} = {slice_of(scope, *scope.direct.pieces[lane, offset])}{origin}")
         case nodes.SetField(place, value):
             target = _target(function, place, value)
             text = function.text(value)

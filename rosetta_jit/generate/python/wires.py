@@ -81,11 +81,12 @@ def decoder(root: str, wire: str, attempts: tuple[Attempt, ...], from_call: list
     writer.line(f"def decode_{wire}(data: bytes | bytearray | memoryview, into: {root}) -> {root}:")
     writer.depth = 1
     said = f"Read a message of `{wire}`, and set what its messages tell of an object; raises `DecodeError`, and changes nothing then."
-    for line in (f'"""{said}"""', "data = bytes(data)", "end = len(data)", "most = 1048576 + 64 * end", "call_into = into", *from_call):
+    most = ["most = 1048576 + 64 * end"] if any(attempt.is_bounded for attempt in attempts) else []
+    for line in (f'"""{said}"""', "data = bytes(data)", "end = len(data)", *most, "call_into = into", *from_call):
         writer.line(line)
     for number, attempt in enumerate(attempts):
         with writer.indented("try:"):
-            writer.line(f"return {attempt.name}({', '.join(['data', 'end', 'most', *attempt.needs])})")
+            writer.line(f"return {attempt.name}({attempt.arguments()})")
         with writer.indented("except _Failed as failed:"):
             if number == 0:
                 writer.line("farthest = failed")
