@@ -33,6 +33,25 @@ def _subject(body: str, message: bytes) -> Subject:
     return Subject("t.M", "protobuf", message, {"schema": {"t.proto": f'syntax = "proto3"; package t; message M {{ {body} }}'}})
 
 
+def _texts(depth: int, size: int) -> bytes:
+    """Messages in one another, each with a text."""
+    message = b""
+    for _ in range(depth):
+        message = (_sized(10, message) if message else b"") + _sized(18, b"x" * size)
+    return message
+
+
+def _nested(depth: int, message: bytes) -> bytes:
+    for _ in range(depth):
+        message = _sized(10, message)
+    return message
+
+
+_KINDS = ("string", "bytes", "bool", "float", "double", "fixed32", "sfixed64", "int32", "int64", "uint32", "uint64", "sint32", "sint64")
+_EIGHTEEN = (*_KINDS, *_KINDS[:5])
+_WITHIN = (
+    "".join(f"message {one} {{ {other} in = 1; }} " for one, other in zip("ABCDE", "BCDEF", strict=True)) + "message F { string text = 7; }"
+)
 _INTEGERS = [number * 2654435761 % (1 << 1 + number % 30) for number in range(300)]
 TAGGED = {
     "100 short texts": _subject("repeated string v = 1;", b"".join(_sized(10, b"joint_%d" % number) for number in range(100))),
@@ -43,4 +62,10 @@ TAGGED = {
     "200 unpacked bools": _subject("repeated bool v = 1 [packed = false];", b"\x08\x01\x08\x00" * 100),
     "a tree of 121 messages": _subject("string name = 1; int32 n = 2; repeated M children = 3;", _tree(4, 3)),
     "a chain of 30 messages": _subject("int32 n = 1; M next = 2;", _chain(30)),
+    "60 messages with 10 KB of text": _subject("M next = 1; string text = 2;", _texts(60, 10_000)),
+    "200 KB of text six messages deep": _subject(f"{_WITHIN} A in = 1;", _nested(6, _sized(58, b"x" * 200_000))),
+    "18 fields with their defaults": _subject(" ".join(f"{type_} f{n} = {n};" for n, type_ in enumerate(_EIGHTEEN, 1)), b""),
+    "a oneof of 12 cases": _subject(
+        f"oneof which {{ {' '.join(f'{type_} f{n} = {n};' for n, type_ in enumerate(_KINDS[:12], 1))} }}", b"\x0a\x01a"
+    ),
 }
