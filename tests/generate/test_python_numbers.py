@@ -66,3 +66,14 @@ def test_few_numbers_of_numpy_are_pythons_where_they_are_packed():
     for wrong in ({"p": np.zeros((3, 2))}, {"q": np.zeros(2)}, {"q": np.zeros(2, "datetime64[s]")}, {"p": np.zeros(3, complex)}):
         with pytest.raises(unit.EncodeError, match="range"):
             unit.encode(unit.T(**{"p": np.zeros(3), "q": np.zeros(2, int), **wrong}))
+
+
+def test_lists_of_numbers_together_may_be_empty():
+    """Of times, whose two numbers are read by one call for all."""
+    given = {"encoding": "ros1", "schema": "time[] v\nduration[2] w\n"}
+    request, programs = type_request("decode", "t/T", given), (rj.Decoder.of("t/T", **given), rj.Encoder.of("t/T", **given))
+    unit = module(request)
+    assert "if count else []" in generated(request, "python", BOTH, "unit")["unit.py"]
+    good = [bytes([count, 0, 0, 0]) + bytes(range(8 * count + 16)) for count in (0, 1, 3)]
+    assert [len(unit.decode(each).v) for each in good] == [0, 1, 3]
+    answers_as_the_library(unit, programs, harmed(good, 12, "times"))

@@ -59,7 +59,8 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
     code = "".join(f"{len([*same])}{each}" for each, same in groupby(CODES[scalar] for _, scalar in numbers))
     names = "".join(f"{scope.own(lane, offset, scalar)}, " for offset, scalar in numbers)
     names = names.strip() if len(numbers) == 1 else names[:-2]
-    return f'[{row()} for {names} in _unpack_each("{order}{code}", {part})]'
+    found = f'[{row()} for {names} in _unpack_each("{order}{code}", {part})]'
+    return found if isinstance(size, Const) else f"{found} if {expression(scope, _divided(size, stride))} else []"
 
 
 def _divided(size: Expr, stride: int) -> Expr:
