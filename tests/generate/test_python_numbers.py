@@ -77,3 +77,34 @@ def test_lists_of_numbers_together_may_be_empty():
     good = [bytes([count, 0, 0, 0]) + bytes(range(8 * count + 16)) for count in (0, 1, 3)]
     assert [len(unit.decode(each).v) for each in good] == [0, 1, 3]
     answers_as_the_library(unit, programs, harmed(good, 12, "times"))
+
+
+def test_arrays_of_fixed_dimensions_are_written_from_the_objects():
+    """Of bytes, of numbers of a byte and of more, and of structs: each row is taken apart where it is written."""
+    schema = {
+        "t.lcm": "package t; struct sub { byte raw[2]; int8_t few[2][2]; string name; } "
+        "struct T { byte b[2][3]; int8_t v[2][3]; int16_t w[3][2]; int8_t x[2][2][2]; sub s[2]; string names[2]; }"
+    }
+    given = {"encoding": "lcm", "schema": schema}
+    request, programs = type_request("decode", "t.T", given), (rj.Decoder.of("t.T", **given), rj.Encoder.of("t.T", **given))
+    values = {
+        "b": [b"abc", b"def"],
+        "v": [[1, -2, 3], [4, 5, -6]],
+        "w": [[1, 2], [-300, 4], [5, 6]],
+        "x": [[[1, 2], [3, 4]], [[5, 6], [7, 8]]],
+        "s": [{"raw": b"\1\2", "few": [[1, 2], [3, 4]], "name": "one"}, {"raw": b"\3\4", "few": [[5, 6], [7, 8]], "name": ""}],
+        "names": ["x", "é"],
+    }
+    message = bytes(programs[1](programs[1].holder_type.from_dict(values)))
+    for arrays in ("", "numpy"):
+        unit = module(request, BOTH, Wishes(numpy=bool(arrays)))
+        assert unit.encode(unit.decode(message)) == message
+        made = {**values, "s": [unit.sub(**each) for each in values["s"]]}
+        assert unit.encode(unit.T(**made)) == message
+        for wrong in ({"b": [b"abc"]}, {"b": [b"abc", b"de"]}, {"v": [[1, 2, 3], [1, 2]]}, {"x": [[[1, 2], [3, 4]], [[5, 6], [7]]]}):
+            with pytest.raises(unit.EncodeError):
+                unit.encode(unit.T(**{**made, **wrong}))
+        answers_as_the_library(unit, programs, harmed([message], 12, f"dimensions {arrays}"))
+    for fields in ("byte b[2][3]; byte c[3];", "int8_t v[2][3]; byte b[2][3];"):
+        few = {"encoding": "lcm", "schema": {"t.lcm": f"package t; struct T {{ {fields} }}"}}
+        assert "_size_1" not in generated(type_request("decode", "t.T", few), "python", BOTH, "unit")["unit.py"]

@@ -17,7 +17,7 @@ from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.flags import Flags, flags_of
 from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.joined_parts import Written
-from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope
+from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope, lanes_within
 from rosetta_jit.generate.python.packed import Part
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
 from rosetta_jit.generate.python.presence import bit_tested, case_tested, named_in_rounds, places_read
@@ -54,7 +54,28 @@ class Parts(Written):
 
     def block(self, block: nodes.Block) -> None:
         for stmt in asked_first(block, self.reads, self.scope.is_number):
+            self._numbered(stmt)
             self._statement(stmt)
+
+    def _numbered(self, stmt: nodes.Stmt) -> None:
+        """Take apart the rows of an array of which a statement names the number, as one does of a loop that is written out."""
+        for place in [place for expr in expressions_of(stmt) for place in places_read(expr)]:
+            match self.scope.behind(place), self.scope.sequences.get(place.lane):
+                case nodes.Const(_, number), Listed(own, lane, element, slot, is_map=False) if element is not None:
+                    is_bound = (lane, place.row) in self.scope.objects or isinstance(slot, Number)
+                    if not is_bound and number < self.exact.get(lane, 0) and self.unit.layout.lanes[lane].links is None:
+                        self._leave(lane, lanes_within(slot, self.unit.layout))
+                        self.binder.bind(lane, place.row, f"{own}[{int(number)}]", element, slot)
+                case _:
+                    pass
+
+    def _leave(self, lane: int, inner: set[int]) -> None:
+        """Forget the row of an array that was taken apart, and what that has: another one comes."""
+        scope = self.scope
+        scope.objects = {key: fields for key, fields in scope.objects.items() if key[0] != lane and key[0] not in inner}
+        scope.starts = {name: each for name, each in scope.starts.items() if each not in inner}
+        scope.counts = {name: each for name, each in scope.counts.items() if each not in inner}
+        self.exact = {each: count for each, count in self.exact.items() if each not in inner}
 
     def _statement(self, stmt: nodes.Stmt) -> None:
         match stmt:
