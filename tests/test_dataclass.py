@@ -160,7 +160,7 @@ def test_standard_ones_may_inherit_ours():
     assert Derived(1.0).more == 1
 
 
-TEMPLATE = PACKAGE / "generate" / "python" / "runtime.py"
+TEMPLATE = PACKAGE / "generate" / "python" / "runtime" / "usual.py"
 """What generated modules begin with, which need the standard library alone."""
 
 

@@ -32,16 +32,14 @@ from rosetta_jit.startup.dataclass import replace
 REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 """The lists of the registers of each direction, in the module."""
 
-RUNTIME = Path(__file__).with_name("runtime.py")
-DECIMALS = Path(__file__).with_name("decimals.py")
+RUNTIME = Path(__file__).with_name("runtime")
 MORE = {
-    "_varint(": (Path(__file__).with_name("varints.py"), "_SHORT"),
-    "_several_bytes(": (Path(__file__).with_name("long_varints.py"), "def "),
-    "_long_length(": (Path(__file__).with_name("long_lengths.py"), "def "),
-    "_joined(": (Path(__file__).with_name("long_parts.py"), "_LONG"),
+    "_varint(": ("varints.py", "_SHORT"),
+    "_several_bytes(": ("long_varints.py", "def "),
+    "_long_length(": ("long_lengths.py", "def "),
+    "_joined(": ("long_parts.py", "_LONG"),
 }
-"""What modules have besides that name such functions: a file, from where its text begins."""
-ARRAYS = Path(__file__).with_name("arrays.py")
+"""What modules have besides that name such functions: a file of the runtime, from where its text begins."""
 OF_DECIMALS = ("_nearest(", "_shortest(", "_fixed_digits(")
 NO_MEMORY = "the message asks for more memory than its size allows"
 
@@ -69,19 +67,19 @@ class _Module:
         parts += [self._decoder_of(wire, role) for wire, role in wires_of(self.unit).items()]
         parts += [self._encoder()] if "encode" in self.unit.kernels else []
         parts += [self._reset()] if self.unit.state else []
-        runtime = RUNTIME.read_text("utf-8")
+        runtime = (RUNTIME / "usual.py").read_text("utf-8")
         runtime = runtime[runtime.index("import math") :].rstrip()
         if any(function in part for function in OF_DECIMALS for part in parts):
-            decimals = DECIMALS.read_text("utf-8")
+            decimals = (RUNTIME / "decimals.py").read_text("utf-8")
             runtime += f"\n\n\n{decimals[decimals.index('def ') :].rstrip()}"
-        for use, (path, begin) in MORE.items():
+        for use, (file, begin) in MORE.items():
             if any(use in part for part in parts):
-                more = path.read_text("utf-8")
+                more = (RUNTIME / file).read_text("utf-8")
                 if "BytesIO" in more:
                     runtime = runtime.replace("from itertools", "from io import BytesIO\nfrom itertools", 1)
                 runtime += f"\n\n\n{more[more.index(begin) :].rstrip()}".replace("  # pyright: ignore[reportUnusedFunction]", "")
         if self.unit.numpy:
-            arrays = ARRAYS.read_text("utf-8")
+            arrays = (RUNTIME / "arrays.py").read_text("utf-8")
             runtime = runtime.replace(
                 "from typing import Any\n", "from typing import Any\n\nimport numpy as np\nimport numpy.typing as npt\n"
             )

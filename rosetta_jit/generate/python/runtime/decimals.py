@@ -4,7 +4,7 @@
 import math
 from typing import Any
 
-from rosetta_jit.generate.python.runtime import _single
+from rosetta_jit.generate.python.runtime.usual import _single
 
 
 def _nearest(text: Any, exponent: int) -> float:

@@ -1,4 +1,4 @@
-"""What generated modules have besides `runtime` where arrays of numbers are numpy's."""
+"""What generated modules have besides `usual` where arrays of numbers are numpy's."""
 
 # pyright: reportUnusedImport=false, reportUnusedFunction=false, reportUnusedClass=false, reportUnknownArgumentType=false
 
