@@ -14,6 +14,7 @@ from rosetta_jit.generate.c.aligned import aligned
 from rosetta_jit.generate.c.expressions import expression, location, store, written
 from rosetta_jit.generate.c.positions import NONE, Positions, after_binding, after_require, bound_in, forget, is_position, said_by
 from rosetta_jit.generate.c.state import register_word
+from rosetta_jit.generate.c.straight import statement as straight_statement
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.varint_loops import REPLACED, Sized, replaced, rounds_done, rounds_of
 from rosetta_jit.generate.c.words import C_TYPES
@@ -101,6 +102,9 @@ def _statement(function: Function, stmt: nodes.Stmt) -> None:
         case nodes.Let() | nodes.Var() | nodes.Assign():
             _bind(function, stmt)
             function.known = after_binding(function.known, stmt.name, stmt.value)
+        case nodes.SetField(place, value) if (straight := straight_statement(scope, place, value)) is not None:
+            if straight:
+                function.line(f"{straight}{_origin(function, stmt)}")
         case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             function.line(f"{_effect(scope, stmt)}{_origin(function, stmt)}")
         case nodes.Reserve() | nodes.Advance():

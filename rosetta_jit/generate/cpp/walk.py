@@ -43,7 +43,7 @@ class Walk:
     """One of the functions being printed; ``in_rows`` is how many lists there are around a value, ``share`` what is set of it.
 
     ``takes``: an encoder copies rows, whose lanes have memory of their own. ``taken`` are the lists that a decoder has put into the object
-    already, where their elements lie in memory as rows do; ``straight`` the numbers that it has, as the message's row would have them.
+    already, where their elements lie in memory as rows do, ``straight`` the numbers, as rows would have them, ``opened`` lists and texts.
     """
 
     unit: Unit
@@ -54,6 +54,7 @@ class Walk:
     addressed: frozenset[int] = frozenset()
     taken: frozenset[int] = frozenset()
     straight: frozenset[str] = frozenset()
+    opened: frozenset[int] = frozenset()
     takes: bool = False
     writer: Writer = field(default_factory=Writer)
     depth: int = 0
@@ -181,7 +182,7 @@ class Walk:
     def sequence(self, type_: String | Bytes | Array, slot: Span, row: str, spot: Spot) -> None:
         """Numbers, a text, bytes; or a list of anything else, element by element."""
         lane = self.lanes.rows(slot.lane)
-        if slot.lane in self.direct:
+        if slot.lane in self.direct or (self.direction == "decode" and slot.lane in self.opened):
             return
         if not isinstance(type_, Array) or isinstance(self.unit.layout.lanes[slot.lane].element, Number):
             if slot.lane in self.addressed:
