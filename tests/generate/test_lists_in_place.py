@@ -43,9 +43,11 @@ MSG: rj/Leaf
 string text
 int64 number
 string[] words
+float32[] weights
+float64[3] corner
 """
 CLASSES = """
-%s std::string text; std::int64_t number; std::vector<std::string> words; };
+%s std::string text; std::int64_t number; std::vector<std::string> words; std::vector<float> weights; std::array<double, 3> corner; };
 %s double x; float y; std::string frame; };
 %s std::int32_t id; std::string name; Place place; std::vector<Leaf> leaves; bool ok; std::vector<std::uint8_t> blob; };
 struct Parts { std::vector<Part> parts; std::string name; std::vector<std::string> tags; };
@@ -61,6 +63,8 @@ def part(number: int) -> dict[str, object]:
     """One of many shapes."""
     text = "abcdefghijklmnopqrstuvwxyz" * 2
     leaves = [{"text": text[: 7 * each], "number": each - 2, "words": [text[:each]] * (each % 3)} for each in range(number % 5)]
+    for size, each in enumerate(leaves):
+        each |= {"weights": [0.5 * size] * (2 * size % 5), "corner": [1.5, -size, number]}
     place = {"x": 0.5 * number, "y": -1.5, "frame": text[: number * 5 % 40]}
     return {"id": number, "name": text[:number], "place": place, "leaves": leaves, "ok": number % 2 == 0, "blob": bytes(number)}
 
@@ -73,11 +77,18 @@ def test_lists_within_lists_are_set_as_they_are_read(header, encoding, tmp_path)
     options = {"encoding": encoding, "schema": TYPE}
     wishes = Wishes()
     if header != "own":
-        (tmp_path / "parts.h").write_text(f"{LIBRARY}namespace rj {{\n{HEADERS[header]}\nnamespace msg = ::rj;\n}}\n")
+        (tmp_path / "parts.h").write_text(f"{LIBRARY}#include <array>\nnamespace rj {{\n{HEADERS[header]}\nnamespace msg = ::rj;\n}}\n")
         wishes = Wishes(holder="ros1", include="parts.h")
     name = cpp.write(tmp_path, generated(type_request("decode", "rj/Parts", options), "cpp", BOTH, "unit", wishes))
     text = (tmp_path / "unit.cpp").read_text()
-    for opened in ("parts.open(given_object.parts", "parts_leaves.open(parts[i].leaves", "tags.put(", "parts_leaves_words.put("):
+    for opened in (
+        "parts.open(given_object.parts",
+        "parts_leaves.open(parts[i].leaves",
+        "tags.put(",
+        "parts_leaves_words.put(",
+        "weights.open(",
+        "corner.open(",
+    ):
         assert opened in text, opened
     decode, encode = (of("rj/Parts", **options) for of in (rj.Decoder.of, rj.Encoder.of))
     counts = (0, 3, 1, 12, 2, 0, 5)
@@ -89,10 +100,10 @@ def test_lists_within_lists_are_set_as_they_are_read(header, encoding, tmp_path)
     same(answers(cpp.program(tmp_path, name, options=THOROUGH), messages), decode, encode, messages)
 
 
-@pytest.mark.parametrize("element", ["float32[2] pair", "float64[] many", "Place[2] places", "bool[] flags"])
+@pytest.mark.parametrize("element", ["Place[2] places", "bool[] flags", "Pair[] pairs"])
 def test_a_list_is_opened_only_if_all_of_it_can_be(element):
-    """Arrays of numbers and of fixed lengths keep rows, and what they are in does."""
-    schema = TYPE.replace("int64 number\n", f"int64 number\n{element}\n")
+    """Bools and arrays of structs of a fixed length keep rows, as structs that lie in memory as rows do, and what they are in does."""
+    schema = TYPE.replace("int64 number\n", f"int64 number\n{element}\n") + f"{SEPARATOR}\nMSG: rj/Pair\nfloat64 x\nfloat64 y\n"
     text = generated(type_request("decode", "rj/Parts", {"encoding": "ros1", "schema": schema}), "cpp", BOTH, "unit")["unit.cpp"]
     assert ".open(given_object.tags" in text
     assert ".open(given_object.parts" not in text

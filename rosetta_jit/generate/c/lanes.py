@@ -60,12 +60,14 @@ class Straight:
     """The statement that sets a field where an object has it.
 
     It stands for `$value`, a number; or of a ``text`` for `$start` and `$size`, which say where it is in the message; or for the `$count`
-    of a list, whose elements are those of ``lane`` from then on. `$index` is the number of the element that the field is of.
+    of a list, whose elements are those of ``lane`` from then on. `$index` is the number of the element that the field is of. Numbers that
+    are elements themselves may be ``copied`` at once, too.
     """
 
     statement: str
     lane: int = 0
     text: bool = False
+    copied: bool = False
 
     @property
     def is_span(self) -> bool:

@@ -1,8 +1,8 @@
 """Lists whose elements a decoder sets where the object has them, and texts: no rows keep them meanwhile.
 
 A list is *opened* where the decoder knows how many elements it has: the container gets as many, and their fields are set as they are read.
-That is so where every field of an element is a number, a text or bytes left in the message, or such a list, and the decoder opens a list
-before it sets its elements, which it never reads. Lists that lie in memory as rows do are copied at once instead (`lists`).
+That is so where every field of an element is a number, an array of these, a text or bytes left in the message, or such a list, and the
+decoder opens a list before it sets its elements, which it never reads. Lists that lie in memory as rows do are copied at once instead (`lists`).
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ HOLDER = "std::declval<holder &>()"
 class Opened:
     """A list of the message with those within it: where each is, for types, by its lane; and what sets a field, by its lane and offset.
 
-    Or a text, which has a lane alone. ``texts`` are the lanes of lists of texts.
+    Or a text, which has a lane alone. ``texts`` are the lanes of lists of texts, ``numbers`` those of arrays: the type of their rows, and
+    how many they are, if that is fixed.
     """
 
     at: str
@@ -36,6 +37,7 @@ class Opened:
     containers: dict[int, str] = field(default_factory=dict[int, str])
     fields: dict[tuple[int, int], Straight] = field(default_factory=dict[tuple[int, int], Straight])
     texts: set[int] = field(default_factory=set[int])
+    numbers: dict[int, str] = field(default_factory=dict[int, str])
 
     @property
     def lanes(self) -> frozenset[int]:
@@ -44,8 +46,9 @@ class Opened:
     @property
     def kinds(self) -> dict[int, str]:
         """The types of lanes, by their lanes."""
-        named = {lane: "text_lane" if lane in self.texts else "open_lane" for lane in self.containers}
-        return {lane: f"{named[lane]}<{container_type(at)}>" for lane, at in self.containers.items()}
+        found = {lane: f"open_lane<{container_type(at)}>" for lane, at in self.containers.items()}
+        found |= {lane: f"text_lane<{container_type(self.containers[lane])}>" for lane in self.texts}
+        return found | {lane: f"number_lane<{container_type(self.containers[lane])}, {row}>" for lane, row in self.numbers.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,12 +101,14 @@ def _list(walk: Walk, opened: Opened, type_: Type, span: Span, place: _Place) ->
     """Whether a list can be opened, as far as types say; ``opened`` gets what sets it."""
     resolved, layout = walk.unit.schema.resolve(type_), walk.unit.layout.lanes[span.lane]
     is_shown = walk.text("laid out", place.spot) != ""
-    if not isinstance(resolved, Array) or resolved.length is not None or layout.links is not None or not is_shown:
-        return False
-    if isinstance(layout.element, Number):
+    if not isinstance(resolved, Array) or layout.links is not None or not is_shown:
         return False
     rows, container = walk.lanes.rows(span.lane), walk.text("direct", place.typed)
     opened.containers[span.lane] = container
+    if isinstance(layout.element, Number):
+        return _numbers(walk, opened, resolved, span, place)
+    if resolved.length is not None:
+        return False
     if isinstance(walk.unit.schema.resolve(resolved.element), String | Bytes):
         opened.texts.add(span.lane)
         opened.fields[place.lane, span.offset] = Straight(walk.text("open texts", place.spot, lane=rows, count="$count"), span.lane)
@@ -113,6 +118,17 @@ def _list(walk: Walk, opened: Opened, type_: Type, span: Span, place: _Place) ->
     opened.fields[place.lane, span.offset] = Straight(walk.text("open", place.spot, lane=rows, count="$count"), span.lane)
     element = f"std::declval<rosetta_jit::detail::element_type<decltype({container})> &>()"
     return _value(walk, opened, resolved.element, layout.element, _Place(Spot(f"{rows}[$index]"), Spot(element), span.lane))
+
+
+def _numbers(walk: Walk, opened: Opened, type_: Array, span: Span, place: _Place) -> bool:
+    """The same of numbers that an element of a list has; those of the message itself are lanes as they are."""
+    rows = walk.lanes.rows(span.lane)
+    if place.lane == 0 or not walk.is_plain(type_, span.lane) or not (type_.length is None or type_.fixed):
+        return False
+    opened.numbers[span.lane] = f"{walk.lanes.type(span.lane)}, {type_.fixed or 0}"
+    opened.fields[place.lane, span.offset] = Straight(walk.text("open", place.spot, lane=rows, count="$count"), span.lane)
+    opened.fields[span.lane, 0] = Straight(walk.text("number", Spot(f"{rows}[$index]"), row="$value"), copied=True)
+    return True
 
 
 def _value(walk: Walk, opened: Opened, type_: Type, slot: Slot, place: _Place) -> bool:

@@ -7,13 +7,14 @@ itself has must be set whatever the message is: nothing may be left of another o
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import TypeGuard
 
 from rosetta_jit.generate.c.lanes import Straight
 from rosetta_jit.generate.c.positions import difference
 from rosetta_jit.generate.c.straight import size_left
 from rosetta_jit.generate.cleared import settled
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.nodes import Assign, Block, Expr, For, HostCall, Place, SetField, Stmt
+from rosetta_jit.kernel.nodes import Address, Assign, Block, Copy, Expr, For, HostCall, Place, SetField, Stmt, Wire
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
@@ -66,12 +67,23 @@ class _Body:
         """A block; ``opened`` are the lists that are open in it, and the first row of each."""
         rest, found = iter(block), list[Stmt]()
         for stmt in rest:
+            if isinstance(stmt, Copy) and self._is_copied(stmt.target) and isinstance(stmt.source, Wire):
+                found.append(replace(stmt, target=self._placed(stmt.target, opened)))
+                continue
             self._fails |= bool(self._lanes & _used(stmt))
             if isinstance(stmt, SetField):
                 found += self._field(stmt, rest, opened)
             else:
                 found.append(with_blocks(stmt, lambda inner: self.block(inner, dict(opened))))
         return tuple(found)
+
+    def _is_copied(self, target: Address) -> TypeGuard[Place]:
+        """Whether numbers are copied to their place."""
+        straight = self._fields.get((target.lane, target.offset)) if isinstance(target, Place) else None
+        if straight is None or not straight.copied or not isinstance(target, Place):
+            return False
+        self._seen.add((target.lane, target.offset))
+        return True
 
     def _field(self, stmt: SetField, rest: Iterator[Stmt], opened: dict[int, Expr]) -> tuple[Stmt, ...]:
         """The statement, and the one behind it where both set a span."""

@@ -364,7 +364,7 @@ class Walk:
     def directs(self, type_: Type, slot: object, element: object, row: str, spot: Spot) -> Iterator[Direct]:
         """Containers of numbers and texts that every message has, and how they are reached from it."""
         for found, lane, at, inner in self.spans(type_, slot, element, row, spot):
-            if isinstance(found, String | Bytes | Array) and self._is_plain(found, lane):
+            if isinstance(found, String | Bytes | Array) and self.is_plain(found, lane):
                 yield Direct(lane, at, Spot(self.text("direct", inner), inner.owner, inner.field))
 
     def spans(self, type_: Type, slot: object, element: object, row: str, spot: Spot) -> Iterator[tuple[Type, int, str, Spot]]:
@@ -393,7 +393,7 @@ class Walk:
             elif member.presence is None:
                 yield from self.numbers(each.type, member.slot, own.type, there, inner.at)
 
-    def _is_plain(self, type_: String | Bytes | Array, lane: int) -> bool:
+    def is_plain(self, type_: String | Bytes | Array, lane: int) -> bool:
         """Whether a container has the very numbers that the lane has: enums are of another type, and bools may be bits."""
         element = self.unit.layout.lanes[lane].element
         is_enum = isinstance(type_, Array) and isinstance(self.unit.schema.resolve(type_.element), Enum)

@@ -1271,6 +1271,12 @@ template <class Container> struct open_lane {
     }
 };
 
+/* The same of numbers, of which there may be a fixed count. */
+template <class Container, class Row, std::size_t Fixed> struct number_lane : open_lane<Container> {
+    static_assert(same_numbers<typename open_lane<Container>::Element, Row>, "the class has elements of another type than the schema");
+    static_assert(Fixed == 0 || sizeof(Container) == Fixed * sizeof(Row), "the class has another number of elements than the schema");
+};
+
 /* The same of texts. Those that a list lacks are made of their characters where that can be. */
 template <class Container> struct text_lane {
     std::int64_t capacity = 0;
