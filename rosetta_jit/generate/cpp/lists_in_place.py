@@ -2,7 +2,7 @@
 
 A list is *opened* where the decoder knows how many elements it has: the container gets as many, and their fields are set as they are read.
 That is so where every field of an element is a number, an array of these, a text or bytes left in the message, or such a list, and the
-decoder opens a list before it sets its elements, which it never reads. Lists that lie in memory as rows do are copied at once instead (`lists`).
+decoder opens a list before it sets its elements, which it never reads. Lists that lie in memory as rows do are copied instead (`lists`).
 """
 
 from __future__ import annotations
