@@ -24,11 +24,14 @@ SCALARS = ("int32", "int64", "uint32", "uint64", "sint32", "sint64", "bool", "Op
 FIELDS = "".join(f"repeated {scalar} f{number} = {number}; " for number, scalar in enumerate(SCALARS, 1))
 SCHEMA = (
     'syntax = "proto3"; package t; enum Open { NONE = 0; SOME = 3; } '
-    f"message N {{ repeated int64 f1 = 1; }} message M {{ {FIELDS} N n = 16; repeated N more = 17; }}"
+    f"message N {{ repeated int64 f1 = 1; }} message M {{ {FIELDS} N n = 16; repeated N more = 17; "
+    "repeated uint64 f9 = 9 [packed = false]; }"
 )
 OPTIONS = {"encoding": "protobuf", "schema": {"t.proto": SCHEMA}}
 COMPILERS = {"g++": ("-O1", *QUICK[1:]), "clang++": ("-O2",)}
 WIDEST = 10
+BEHIND_TAGS = len(SCALARS) + 1
+"""The field whose integers come one by one."""
 
 
 def varint(value: int, width: int = 0) -> bytes:
@@ -119,6 +122,8 @@ def array_of(chance: random.Random, field: int, width: int) -> bytes:
     integers = [of_width(chance, each) if chance.random() < 0.8 else varint(chance.randrange(128), each) for each in widths]
     if chance.random() < 0.1:
         integers[chance.randrange(count)] = varint(chance.randrange(128), WIDEST + 1)
+    if field == BEHIND_TAGS:
+        return b"".join(varint(field << 3) + each for each in integers)
     body = b"".join(integers)
     return varint(field << 3 | 2) + varint(len(body)) + body
 
@@ -135,15 +140,15 @@ EVERY = (*COMPILERS, "gcc")
 
 @pytest.mark.parametrize("compiler", EVERY)
 def test_arrays_damaged_at_every_byte(compiler, program_by):
-    """Of all widths, of two kinds of integers, and bools."""
-    check_damaged(program_by(compiler), EVERY.index(compiler), 1, (2, 5, 7))
+    """Of all widths, of two kinds of integers, bools, and integers behind tags."""
+    check_damaged(program_by(compiler), EVERY.index(compiler), 1, (2, 5, 7, BEHIND_TAGS))
 
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("compiler", EVERY)
 @pytest.mark.parametrize("seed", range(100, 125))
 def test_arrays_damaged_at_every_byte_in_many_ways(compiler, seed, program_by):
-    check_damaged(program_by(compiler), seed, 5, range(1, len(SCALARS) + 1))
+    check_damaged(program_by(compiler), seed, 5, range(1, BEHIND_TAGS + 1))
 
 
 def test_loops_are_recognised():
@@ -157,6 +162,8 @@ def test_loops_are_recognised():
     for function in ("size_of_varints", "write_varints"):
         assert text.count(f"detail::{function}(") == integers, function
     assert text.count("detail::write_flags(") == text.count("detail::size_of_flags(") == 1
+    assert "detail::read_eight(" in text
+    assert "borrow_read_eight(" not in text
     assert "varint_size(" not in text.replace("detail::varint_size(", "")
     assert not re.search("_of_varints|write_varints", generated(request, "c", BOTH, "unit")["unit.c"])
 

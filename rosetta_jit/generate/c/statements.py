@@ -303,7 +303,8 @@ def _call(function: Function, call: nodes.Call) -> None:
     """Results come through pointers; what the function returns is the number of its own site that failed, or 0."""
     scope = function.scope
     if scope.lanes.dialect == "c++" and call.routine in REPLACED:
-        function.line(replaced(scope, call))
+        for line in replaced(scope, call):
+            function.line(line)
         return
     routine = function.routines[call.routine]
     for result in call.results:

@@ -651,6 +651,15 @@ inline constexpr std::uint64_t VARINT_BITS[8] = {
     0x7f, 0x7f7f, 0x7f7f7f, 0x7f7f7f7f, 0x7f7f7f7f7f, 0x7f7f7f7f7f7f, 0x7f7f7f7f7f7f7f, 0x7f7f7f7f7f7f7f7f,
 };
 
+/* The integer that eight bytes from `at` on begin with, or are all of, and where it ends; `stops` are the bytes that end one. */
+ROSETTA_JIT_INLINE std::uint64_t read_eight(std::int64_t at, std::uint64_t word, std::int64_t *next, std::uint64_t *stops) noexcept
+{
+    *stops = ~word & GOES_ON;
+    const unsigned more = *stops == 0 ? 7 : lowest_bit(*stops) / 8;
+    *next = at + 1 + more;
+    return bits_joined(word & VARINT_BITS[more]);
+}
+
 /* Reads integers of one number of bytes each, whose words are in the message. */
 template <class Row, class Number> void read_alike(const unsigned char *bytes, std::int64_t width, std::int64_t count, Row *rows, Number number)
 {
@@ -932,10 +941,13 @@ struct made_anew {
     }
 };
 
-/* A text of another length. One that has no memory of its own is made anew in its place, which compilers see into. */
+/* A text of another length. A longer one becomes shorter; one that has no memory of its own is made anew in its place, which compilers see into. */
 inline void assign_other(std::string &target, const char *first, std::size_t size)
 {
-    if (HAS_SHORT_TEXTS && target.capacity() < SHORT_TEXT) {
+    if (size < target.size()) {
+        target.erase(size);
+        copy_few(&target[0], 0, first, 0, static_cast<std::int64_t>(size));
+    } else if (HAS_SHORT_TEXTS && target.capacity() < SHORT_TEXT) {
         std::destroy_at(&target);
         made_anew anew{&target};
         ::new (static_cast<void *>(&target)) std::string(first, size);
