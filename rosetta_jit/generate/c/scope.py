@@ -17,15 +17,16 @@ class Scope:
     """What the printers of a function share: names, how lanes are reached, and what they find that the function needs.
 
     ``parameters`` are those that it must be given, ``touched`` the lanes whose rows it reads or writes, ``counted`` those whose rows in use
-    it counts, ``moved`` those that it makes room in, ``support`` the functions of `support.c` that it calls, ``hidden`` the hidden lanes
-    that its kernel uses, ``registers`` those that it reads, ``tables`` the names of the constants that it has, ``begun`` the starts of
-    spans of an object whose counts come next.
+    it counts, ``moved`` those that it makes room in, ``support`` the functions of `support.c` that it calls, ``named`` the lanes that its
+    kernel uses, ``hidden`` those that are hidden, ``registers`` those that it reads, ``tables`` the names of the constants that it has,
+    ``begun`` the starts of spans of an object whose counts come next.
     """
 
     locals: Namespace
     lanes: Lanes
     support: set[str]
     hidden: set[int]
+    named: set[int]
     parameters: set[str] = field(default_factory=set[str])
     touched: set[int] = field(default_factory=set[int])
     counted: set[int] = field(default_factory=set[int])
@@ -78,6 +79,7 @@ class Scope:
         return register_name(number)
 
     def _note(self, lane: int) -> None:
+        self.named.add(lane)
         if lane >= self.lanes.own:
             self.hidden.add(lane - self.lanes.own)
 

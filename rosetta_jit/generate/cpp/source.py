@@ -320,7 +320,7 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], opened:
         finish = [f"    {FILLED}->{lanes.rows(each.lane)}.finish({each.row}, bytes);" for each in directs["decode"]]
         empty = [*finish, *(f"    rosetta_jit::detail::resize_to({each.at}, 0);" for each in opened if each.containers)]
         most = dict.fromkeys(walk.opened, f"{FILLED}->most")
-        own = (lane for lane in range(1, lanes.own) if lane not in bound)
+        own = (lane for lane in range(1, lanes.own) if lane not in bound and lane in printed["borrow"].named)
         reset = [f"    {FILLED}->{lanes.rows(lane)}.reset({most.get(lane, '')});" for lane in own]
         texts.append(
             Template(known["decode"]).substitute(
