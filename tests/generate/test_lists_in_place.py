@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import random
 import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -207,3 +209,60 @@ def test_texts_are_set_whatever_a_string_has(tmp_path):
     (tmp_path / "texts.cpp").write_text(TEXTS)
     subprocess.run(["g++", *cpp.STRICT, *THOROUGH, f"-I{INCLUDE}", "texts.cpp", "-o", "texts"], cwd=tmp_path, check=True)
     subprocess.run([tmp_path / "texts"], check=True)
+
+
+KINDS = ("int32", "float64", "bool", "string", "uint8[]", "float32[]", "float64[3]", "bool[]", "string[]", "string[2]", "int64[<=4]")
+LEVELS = 4
+
+
+def fields_of(chance: random.Random, level: int) -> list[tuple[str, str]]:
+    """The fields of a type: numbers, texts, arrays, and types of the level below, alone and in lists."""
+    inner = [f"Level{level - 1}{each}" for each in ("", "[]", "[]", "[2]")] if level else []
+    return [(f"f{number}", chance.choice((*KINDS, *inner, *inner))) for number in range(chance.randint(1, 5))]
+
+
+def value_of(chance: random.Random, types: dict[str, list[tuple[str, str]]], kind: str) -> object:
+    name, _, size = kind.partition("[")
+    if size:
+        count = chance.randint(0, 4) if size[0] in "]<" else int(size[:-1])
+        some = [value_of(chance, types, name) for _ in range(count)]
+        return bytes(chance.randrange(256) for _ in some) if name == "uint8" else some
+    match name:
+        case "string":
+            return "".join(chance.choice("abé") for _ in range(chance.choice((0, 3, 15, 16, 40))))
+        case "bool":
+            return chance.random() < 0.5
+        case "float32" | "float64":
+            return chance.randrange(-8, 8) / 4
+        case "int32" | "int64" | "uint8":
+            return chance.randrange(100)
+        case _:
+            return {field: value_of(chance, types, inner) for field, inner in types[name]}
+
+
+def check_random(folder: Path, seed: int) -> None:
+    """Of a random type both encodings, in classes of our own."""
+    chance = random.Random(seed)
+    types = {f"Level{level}": fields_of(chance, level) for level in range(LEVELS)}
+    texts = {name: "".join(f"{kind} {field}\n" for field, kind in fields) for name, fields in types.items()}
+    top = f"Level{LEVELS - 1}"
+    schema = texts.pop(top) + "".join(f"{SEPARATOR}\nMSG: rj/{name}\n{text}" for name, text in texts.items())
+    for encoding in ("ros1", "cdr"):
+        options = {"encoding": encoding, "schema": schema.replace("<=4", "" if encoding == "ros1" else "<=4")}
+        name = cpp.write(folder, generated(type_request("decode", f"rj/{top}", options), "cpp", BOTH, "unit"))
+        decode, encode = (of(f"rj/{top}", **options) for of in (rj.Decoder.of, rj.Encoder.of))
+        good = [bytes(encode(value_of(chance, types, top))) for _ in range(12)]
+        messages = [*good, *harmed(good, 12, str(seed)), *reversed(good)]
+        same(answers(cpp.program(folder, name, options=THOROUGH), messages), decode, encode, messages)
+
+
+@cpp.needs_cpp
+def test_a_random_type(tmp_path):
+    check_random(tmp_path, 3)
+
+
+@pytest.mark.campaign
+@cpp.needs_cpp
+@pytest.mark.parametrize("seed", range(100, 140))
+def test_random_types(seed, tmp_path):
+    check_random(tmp_path, seed)
