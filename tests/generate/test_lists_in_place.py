@@ -211,14 +211,16 @@ def test_texts_are_set_whatever_a_string_has(tmp_path):
     subprocess.run([tmp_path / "texts"], check=True)
 
 
-KINDS = ("int32", "float64", "bool", "string", "uint8[]", "float32[]", "float64[3]", "bool[]", "string[]", "string[2]", "int64[<=4]")
+IN_PLACE = ("int32", "float64", "bool", "string", "uint8[]", "float32[]", "float64[3]", "string[]", "int64[<=4]")
+KINDS = (*IN_PLACE, "bool[]", "string[2]")
 LEVELS = 4
 
 
-def fields_of(chance: random.Random, level: int) -> list[tuple[str, str]]:
-    """The fields of a type: numbers, texts, arrays, and types of the level below, alone and in lists."""
-    inner = [f"Level{level - 1}{each}" for each in ("", "[]", "[]", "[2]")] if level else []
-    return [(f"f{number}", chance.choice((*KINDS, *inner, *inner))) for number in range(chance.randint(1, 5))]
+def fields_of(chance: random.Random, level: int, *, is_opened: bool) -> list[tuple[str, str]]:
+    """The fields of a type: numbers, texts, arrays, and types of the level below, alone and in lists, or those that are opened alone."""
+    inner = [f"Level{level - 1}{each}" for each in ("", "[]", "[]", *([] if is_opened else ["[2]"]))] if level else []
+    kinds = [chance.choice((*(IN_PLACE if is_opened else KINDS), *inner, *inner)) for _ in range(chance.randint(1, 5))]
+    return [(f"f{number}", kind) for number, kind in enumerate(["string", *kinds] if is_opened else kinds)]
 
 
 def value_of(chance: random.Random, types: dict[str, list[tuple[str, str]]], kind: str) -> object:
@@ -243,7 +245,7 @@ def value_of(chance: random.Random, types: dict[str, list[tuple[str, str]]], kin
 def check_random(folder: Path, seed: int) -> None:
     """Of a random type both encodings, in classes of our own."""
     chance = random.Random(seed)
-    types = {f"Level{level}": fields_of(chance, level) for level in range(LEVELS)}
+    types = {f"Level{level}": fields_of(chance, level, is_opened=seed % 3 > 0) for level in range(LEVELS)}
     texts = {name: "".join(f"{kind} {field}\n" for field, kind in fields) for name, fields in types.items()}
     top = f"Level{LEVELS - 1}"
     schema = texts.pop(top) + "".join(f"{SEPARATOR}\nMSG: rj/{name}\n{text}" for name, text in texts.items())
@@ -258,7 +260,7 @@ def check_random(folder: Path, seed: int) -> None:
 
 @cpp.needs_cpp
 def test_a_random_type(tmp_path):
-    check_random(tmp_path, 3)
+    check_random(tmp_path, 4)
 
 
 @pytest.mark.campaign
