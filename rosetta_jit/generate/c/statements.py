@@ -16,7 +16,7 @@ from rosetta_jit.generate.c.positions import NONE, Positions, after_binding, aft
 from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.straight import statement as straight_statement
 from rosetta_jit.generate.c.texts import comment
-from rosetta_jit.generate.c.varint_loops import REPLACED, Sized, replaced, rounds_done, rounds_of
+from rosetta_jit.generate.c.varint_loops import REPLACED, Sized, replaced, rounds_done, rounds_of, sooner
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.origins import Origin, described, origin_of
 from rosetta_jit.generate.parentheses import bare
@@ -318,7 +318,16 @@ def _call(function: Function, call: nodes.Call) -> None:
         return
     name = call.results[0].name if call.results else call.routine
     problem = scope.locals.identifier(f"{name} problem")
-    function.line(f"const int64_t {problem} = {routine.name}({arguments});")
+    quick = sooner(scope, call) if scope.lanes.dialect == "c++" else None
+    if quick is None:
+        function.line(f"const int64_t {problem} = {routine.name}({arguments});")
+    else:
+        function.line(f"int64_t {problem} = 0;")
+        with function.block(f"if ({quick[0]})"):
+            function.line(quick[1])
+        function.writer.lines[-1] += " else {"
+        function.line(f"    {problem} = {routine.name}({arguments});")
+        function.line("}")
     with function.block(f"if ({problem} != 0)"):
         _failed(function, _site(problem, tuple(map(function.site, call.sites))), "failure->offset", call.indices, None)
 

@@ -156,6 +156,15 @@ def replaced(scope: Scope, call: Call) -> list[str]:
     return [*declared, f"const {C_TYPES[first.type]} {name} = {DETAIL}::{call.routine}({', '.join(arguments)});"]
 
 
+def sooner(scope: Scope, call: Call) -> tuple[str, str] | None:
+    """Where there is room, a statement that does what the call of a routine does, and may write what is not yet in use behind it."""
+    if call.routine != "write_two_bytes":
+        return None
+    at, value = (bare(expression(scope, each)) for each in call.arguments)
+    bytes_, end, found = scope.takes("bytes"), expression(scope, END), scope.locals.identifier(call.results[0].name)
+    return f"{end} - {at} >= 10", f"{found} = {at} + {DETAIL}::write_varint({bytes_} + {at}, {value});"
+
+
 def called(kernel: Kernel) -> frozenset[str]:
     """The routines that are called where these functions stand for others."""
     routines, found = {each.name: each.body for each in kernel.routines}, set[str]()
