@@ -10,7 +10,7 @@ from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.generate.bounds import bounds_of_type, least, reserved
 from rosetta_jit.generate.inner_types import with_inner_types
-from rosetta_jit.generate.languages import installed
+from rosetta_jit.generate.languages import Language, installed
 from rosetta_jit.generate.origins import Origin, origins_of
 from rosetta_jit.generate.unit import Role, Unit, UserFunction, wire_of
 from rosetta_jit.kernel.ir import Kernel
@@ -54,6 +54,12 @@ class LowByteFirst(AheadOfTime):
 
     def _optimised(self, kernel: Kernel) -> Kernel:
         return postpone(alone(passes.run(kernel, passes.FIELD_BY_FIELD)))
+
+
+class IntoObjects(LowByteFirst):
+    """The same for code that fills objects at once: their texts are copied from the message."""
+
+    TEXTS_STAY = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,6 +220,12 @@ def object_of(
         return files_for(unit_of(request, roles, name, Wishes(freestanding)), triple, cpu)
 
 
+def _machine(language: Language) -> type[AheadOfTime]:
+    if language.fills_objects:
+        return IntoObjects
+    return LowByteFirst if language.low_byte_first else AheadOfTime
+
+
 def generated(request: Request, language: str, roles: tuple[Role, ...], name: str, wishes: Wishes = NO_WISHES) -> dict[str, str]:
     """The files of a mapping or type in a language, by their names.
 
@@ -243,7 +255,7 @@ def generated(request: Request, language: str, roles: tuple[Role, ...], name: st
     if wishes.numpy and not known[language].numpy:
         raise SchemaError((words.no_numpy(language, tuple(name for name, each in known.items() if each.numpy)),))
     with within_stack():
-        machine = LowByteFirst if known[language].low_byte_first else AheadOfTime
+        machine = _machine(known[language])
         wanted = _of_wires(request, roles) if known[language].wires else roles
         unit = unit_of(request, known[language].roles(wanted), name, wishes, machine, known[language].shown)
         return known[language].files(unit)

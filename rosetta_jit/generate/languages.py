@@ -35,6 +35,8 @@ class Language:
         Its decoders leave bytes in the message, from where the code around them takes them.
     low_byte_first
         What it prints need not run on machines whose numbers have their high byte first.
+    fills_objects
+        What it prints is such, and the code around its decoders takes texts from the message, too.
     numpy
         Its arrays of numbers can be numpy's.
     wires
@@ -48,6 +50,7 @@ class Language:
     printer: str
     borrows: bool = False
     low_byte_first: bool = False
+    fills_objects: bool = False
     numpy: bool = False
     wires: bool = False
     taken: str = ""
@@ -89,6 +92,7 @@ LANGUAGES = (
         "rosetta_jit.generate.cpp.language:files",
         borrows=True,
         low_byte_first=True,
+        fills_objects=True,
         wires=True,
         taken="rosetta_jit.generate.cpp.names:NOT_NAMESPACES",
     ),

@@ -42,6 +42,7 @@ def lower(
     mapped: Mapped | None = None,
     borrow: bool = False,
     references: References | None = None,
+    texts_stay: bool = False,
 ) -> Kernel:
     """The kernel that reads or writes messages of an encoding, or computes their size.
 
@@ -53,9 +54,11 @@ def lower(
         Bytes fields of the holder refer to the message instead of being copied.
     references
         How they refer to it: see `rosetta_jit.lowering.writer.References`. By the sign of their spans if None.
+    texts_stay
+        Texts of tagged messages do so, too.
     """
     registers, kept = (0, ()) if mapped is None else (mapped.registers, rules.kept_lanes(mapped, layout))
-    lowering = _Lowering(encoding, layout, direction, borrow, references, registers, kept)
+    lowering = _Lowering(encoding, layout, direction, borrow, references, registers, kept, texts_stay)
     if mapped is None:
         return lowering.kernel(name, lambda fields, attempt: lower_own(encoding, attempt, fields))
     return lowering.kernel(name, rules.relation(mapped, encoding, lowering.attempts, direction))
@@ -72,6 +75,7 @@ class _Lowering:
     references: References | None = None
     registers: int = 0
     kept: tuple[int, ...] = ()
+    texts_stay: bool = False
 
     @property
     def attempts(self) -> tuple[Codec, ...]:
@@ -80,7 +84,8 @@ class _Lowering:
         return tuple(attempt for attempt in attempts if attempt is not None)
 
     def kernel(self, name: str, relate: Relate) -> Kernel:
-        writer = Writer(self.direction, [*(lane.stride for lane in self.layout.lanes), SCRATCH_STRIDE], references=self.references)
+        lanes = [*(lane.stride for lane in self.layout.lanes), SCRATCH_STRIDE]
+        writer = Writer(self.direction, lanes, references=self.references, texts_stay=self.texts_stay)
         own = len(writer.strides)
         bodies = [self.body(writer, attempt, relate) for attempt in self.attempts]
         expected = self.encoding.expected if self.direction == "decode" else 0

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from collections.abc import Generator, Iterable, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Literal, cast, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast, get_args
 
 from rosetta_jit.backends.backend import Backend
 from rosetta_jit.backends.installed import backend_named
@@ -59,7 +59,10 @@ class Build:
     """A program in the making. Each stage is made when it is first asked for.
 
     Its kernels handle all messages of the encoding. If it ``leaves_rare`` ones and becomes machine code, they are another program's.
+    A class whose ``TEXTS_STAY`` has decoders that borrow leave texts of tagged messages where they are, too.
     """
+
+    TEXTS_STAY: ClassVar[bool] = False
 
     def __init__(self, request: Request, references: References | None = None, *, leaves_rare: bool = False) -> None:
         self.request = request
@@ -149,7 +152,16 @@ class Build:
         borrow = request.borrow or self.references is not None
         encoding, goes_on = (self.encoding, False) if self.rare is None else (self.encoding.usual, True)
         try:
-            kernel = lower(encoding, self.layout, direction, name=types.wire.name, mapped=rules, borrow=borrow, references=self.references)
+            kernel = lower(
+                encoding,
+                self.layout,
+                direction,
+                name=types.wire.name,
+                mapped=rules,
+                borrow=borrow,
+                references=self.references,
+                texts_stay=self.TEXTS_STAY,
+            )
         except TooManyStatementsError as error:
             raise report(self.request, words.too_many_statements(self._span, str(error))) from error
         return replace(kernel, goes_on=goes_on)

@@ -6,6 +6,9 @@ import random
 import re
 import shutil
 import subprocess
+from collections.abc import Iterator, Sequence
+from functools import cache
+from pathlib import Path
 
 import pytest
 
@@ -13,7 +16,7 @@ import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import generated
 from rosetta_jit.generate.cpp.language import INCLUDE
-from tests.generate import cpp
+from tests.generate import cpp, driver
 from tests.generate.driver import answers, harmed
 from tests.generate.test_cpp import BOTH, QUICK, same
 
@@ -21,10 +24,14 @@ SCALARS = ("int32", "int64", "uint32", "uint64", "sint32", "sint64", "bool", "Op
 FIELDS = "".join(f"repeated {scalar} f{number} = {number}; " for number, scalar in enumerate(SCALARS, 1))
 SCHEMA = (
     'syntax = "proto3"; package t; enum Open { NONE = 0; SOME = 3; } '
-    f"message N {{ repeated int64 f1 = 1; }} message M {{ {FIELDS} N n = 16; repeated N more = 17; }}"
+    f"message N {{ repeated int64 f1 = 1; }} message M {{ {FIELDS} N n = 16; repeated N more = 17; "
+    "repeated uint64 f9 = 9 [packed = false]; }"
 )
+OPTIONS = {"encoding": "protobuf", "schema": {"t.proto": SCHEMA}}
 COMPILERS = {"g++": ("-O1", *QUICK[1:]), "clang++": ("-O2",)}
 WIDEST = 10
+BEHIND_TAGS = len(SCALARS) + 1
+"""The field whose integers come one by one."""
 
 
 def varint(value: int, width: int = 0) -> bytes:
@@ -67,20 +74,81 @@ def message(chance: random.Random) -> bytes:
     return b"".join([*fields, nested, another, *([b"\xc0\x02\x05"] if chance.random() < 0.3 else [])])
 
 
-@cpp.needs_cpp
+@pytest.fixture(scope="module")
+def program_by(tmp_path_factory):
+    """The program that a compiler makes of the schema, which `gcc` does of C."""
+
+    @cache
+    def made(compiler: str) -> Path:
+        if shutil.which(compiler) is None:
+            pytest.skip(f"{compiler} is not installed")
+        folder, request = tmp_path_factory.mktemp("varints"), type_request("decode", "t.M", OPTIONS)
+        if compiler == "gcc":
+            return driver.driver(folder, driver.write(folder, generated(request, "c", BOTH, "unit")))
+        name = cpp.write(folder, generated(request, "cpp", BOTH, "unit"))
+        return cpp.program(folder, name, compiler=compiler, options=COMPILERS[compiler])
+
+    return made
+
+
+def answer_alike(program: Path, messages: list[bytes], kinds: set[str]) -> None:
+    """A program says of messages what the library does, and these kinds of things of some. Lanes of C have little room."""
+    said = [(line, each) for line, each in zip(answers(program, messages), messages, strict=True) if not line.startswith("full ")]
+    assert len(said) >= len(messages) // 4
+    found, messages = [line for line, _ in said], [each for _, each in said]
+    assert {line.split()[0] for line in found} >= kinds
+    same(found, rj.Decoder.of("t.M", **OPTIONS), rj.Encoder.of("t.M", **OPTIONS), messages)
+
+
 @pytest.mark.parametrize("compiler", COMPILERS)
-def test_arrays_of_all_widths_and_kinds(compiler, tmp_path):
-    if shutil.which(compiler) is None:
-        pytest.skip(f"{compiler} is not installed")
-    options = {"encoding": "protobuf", "schema": {"t.proto": SCHEMA}}
-    request = type_request("decode", "t.M", options)
-    name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "unit"))
+def test_arrays_of_all_widths_and_kinds(compiler, program_by):
     chance = random.Random(compiler)
     good = [message(chance) for _ in range(300)]
-    messages = [*good, *harmed(good[:100], 4, compiler)]
-    found = answers(cpp.program(tmp_path, name, compiler=compiler, options=COMPILERS[compiler]), messages)
-    assert {line.split()[0] for line in found} >= {"ok", "truncated", "varint"}
-    same(found, rj.Decoder.of("t.M", **options), rj.Encoder.of("t.M", **options), messages)
+    answer_alike(program_by(compiler), [*good, *harmed(good[:100], 4, compiler)], {"ok", "truncated", "varint"})
+
+
+def damaged(chance: random.Random, good: bytes, ways: int) -> Iterator[bytes]:
+    """A message cut before each byte, and with each byte altered in some ways: integers end there, go on, or become too long."""
+    for at, byte in enumerate(good):
+        yield good[:at]
+        for other in chance.sample((byte ^ 128, 128, 255, 0, 127, chance.randrange(256)), ways):
+            yield good[:at] + bytes([other]) + good[at + 1 :]
+
+
+def array_of(chance: random.Random, field: int, width: int) -> bytes:
+    """An array whose integers have up to so many bytes, some of them more than they need. One of eleven bytes is none."""
+    count, alike = chance.choice((1, 2, 7, 9, 20, 33, 66)), chance.random() < 0.4
+    widths = [width if alike else chance.randint(1, width) for _ in range(count)]
+    integers = [of_width(chance, each) if chance.random() < 0.8 else varint(chance.randrange(128), each) for each in widths]
+    if chance.random() < 0.1:
+        integers[chance.randrange(count)] = varint(chance.randrange(128), WIDEST + 1)
+    if field == BEHIND_TAGS:
+        return b"".join(varint(field << 3) + each for each in integers)
+    body = b"".join(integers)
+    return varint(field << 3 | 2) + varint(len(body)) + body
+
+
+def check_damaged(program: Path, seed: int, ways: int, fields: Sequence[int]) -> None:
+    chance = random.Random(seed)
+    for field in fields:
+        good = [array_of(chance, field, width) for width in range(1, WIDEST + 1)]
+        answer_alike(program, [*good, *(each for one in good for each in damaged(chance, one, ways))], {"ok", "truncated"})
+
+
+EVERY = (*COMPILERS, "gcc")
+
+
+@pytest.mark.parametrize("compiler", EVERY)
+def test_arrays_damaged_at_every_byte(compiler, program_by):
+    """Of all widths, of two kinds of integers, bools, and integers behind tags."""
+    check_damaged(program_by(compiler), EVERY.index(compiler), 1, (2, 5, 7, BEHIND_TAGS))
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("compiler", EVERY)
+@pytest.mark.parametrize("seed", range(100, 125))
+def test_arrays_damaged_at_every_byte_in_many_ways(compiler, seed, program_by):
+    check_damaged(program_by(compiler), seed, 5, range(1, BEHIND_TAGS + 1))
 
 
 def test_loops_are_recognised():
@@ -94,6 +162,9 @@ def test_loops_are_recognised():
     for function in ("size_of_varints", "write_varints"):
         assert text.count(f"detail::{function}(") == integers, function
     assert text.count("detail::write_flags(") == text.count("detail::size_of_flags(") == 1
+    for function in ("read_eight", "write_varint"):
+        assert f"detail::{function}(" in text, function
+    assert "borrow_read_eight(" not in text
     assert "varint_size(" not in text.replace("detail::varint_size(", "")
     assert not re.search("_of_varints|write_varints", generated(request, "c", BOTH, "unit")["unit.c"])
 

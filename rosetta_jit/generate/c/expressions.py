@@ -258,9 +258,6 @@ def read(scope: Scope, type_: nodes.Scalar, place: nodes.Place) -> str:
 def written(scope: Scope, place: nodes.Place, value: nodes.Expr) -> str:
     """A statement that sets a field of a row."""
     type_, text = type_of(value), expression(scope, value)
-    if place.lane == 0 and place.offset in scope.lanes.straight:
-        scope.takes("given_object")
-        return scope.lanes.straight[place.offset].replace("$value", bare(text))
     named = _field(scope, place, type_)
     if named is None:
         return f"{scope.calls(f'set_{type_}')}({', '.join(location(scope, place))}, {text});"

@@ -50,13 +50,14 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Printed:
-    """A kernel's functions as text: its attempts in order, the sites that they name, the support and the hidden lanes that they use."""
+    """A kernel's functions as text: its attempts in order, the sites that they name, the support, hidden lanes and lanes that they use."""
 
     text: str
     attempts: tuple[Attempt, ...]
     sites: tuple[int, ...]
     support: frozenset[str]
     hidden: frozenset[int]
+    named: frozenset[int] = frozenset()
 
 
 def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Origin] = ()) -> Printed:
@@ -64,12 +65,12 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Ori
 
     ``origins`` say which lines of the mapping stand beside the statements.
     """
-    writer, support, hidden, routines = Writer(), set[str](), set[int](), dict[str, Callable]()
+    writer, support, hidden, named, routines = Writer(), set[str](), set[int](), set[int](), dict[str, Callable]()
     words = lanes.words() | function_names() | {f"{role}_{each.name}" for each in kernel.routines}
     words |= {register_name(number) for number in range(kernel.registers)}
 
     def scope() -> Scope:
-        return Scope(Namespace(words), lanes, support, hidden)
+        return Scope(Namespace(words), lanes, support, hidden, named)
 
     short = _short(kernel) if lanes.dialect == "c++" else frozenset[str]()
     needed = called(kernel) if lanes.dialect == "c++" else frozenset(each.name for each in kernel.routines)
@@ -82,13 +83,14 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Ori
         _attempt(writer, role, kernel, number, Function(scope(), kernel.sites, routines, numbers=numbers, origins=origins, role=role))
         for number in range(len(kernel.bodies))
     )
-    return Printed(writer.text(), attempts, tuple(numbers), frozenset(support), frozenset(hidden))
+    return Printed(writer.text(), attempts, tuple(numbers), frozenset(support), frozenset(hidden), frozenset(named))
 
 
 def _attempt(writer: Writer, role: Role, kernel: Kernel, number: int, function: Function) -> Attempt:
     body, scope = reached(decided(kernel.bodies[number])), function.scope
     advanced = {each.lane for each in (stmt for stmt, _ in statements(body)) if isinstance(each, Advance)}
-    finish = {lane: scope.lanes.used(lane) if lane in advanced else "0" for lane in counted_lanes(kernel, body) if lane < scope.lanes.own}
+    counted = [lane for lane in counted_lanes(kernel, body) if lane < scope.lanes.own and not _is_forgotten(scope.lanes, role)]
+    finish = {lane: scope.lanes.used(lane) if lane in advanced else "0" for lane in counted}
     function.read = read_names(as_printed(body))
     function.finish = tuple(f"{scope.takes('holder')}->{scope.lanes.rows(lane)}.used = {used};" for lane, used in finish.items())
     print_block(function, body)
@@ -106,6 +108,11 @@ def _attempt(writer: Writer, role: Role, kernel: Kernel, number: int, function: 
     needless = {moved(scope.lanes, lane) for lane in scope.moved - scope.touched}
     writer.lines += [*(line for line in function.writer.lines if line.strip() not in needless), "}"]
     return Attempt(name, parameters)
+
+
+def _is_forgotten(lanes: Lanes, role: Role) -> bool:
+    """Whether nobody asks how many rows a decoder has used: code that fills an object knows it by the spans."""
+    return lanes.dialect == "c++" and role == "borrow"
 
 
 def _used_at_start(kernel: Kernel, lanes: Lanes, lane: int) -> str:

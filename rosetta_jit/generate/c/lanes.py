@@ -33,6 +33,7 @@ OWN_WORDS = frozenset(
         "problem",
         "given_row",
         "given_object",
+        "gathered",
     }
 )
 """What the functions call their parameters, and the holder its other members."""
@@ -55,12 +56,32 @@ class Lane:
 
 
 @dataclass(frozen=True, slots=True)
+class Straight:
+    """The statement that sets a field where an object has it.
+
+    It stands for `$value`, a number; or of a ``text`` for `$start` and `$size`, which say where it is in the message; or for the `$count`
+    of a list, whose elements are those of ``lane`` from then on. `$index` is the number of the element that the field is of. Numbers that
+    are elements themselves may be ``copied`` at once, too.
+    """
+
+    statement: str
+    lane: int = 0
+    text: bool = False
+    copied: bool = False
+
+    @property
+    def is_span(self) -> bool:
+        """Whether it stands for both fields of a span."""
+        return self.text or self.lane != 0
+
+
+@dataclass(frozen=True, slots=True)
 class Lanes:
     """Those of a kernel; ``prefix`` begins the names of the header, ``own`` are not hidden. Those of C++ make room for themselves.
 
     The rows of ``addressed`` lanes are bytes anywhere in memory, by their addresses; those of ``viewed`` lanes are made of an object's
-    elements when they are read. ``row``: the functions are given the message's row. ``straight`` are the numbers of the message's row, by
-    offset, that no row keeps: each is a statement that sets it where an object has it, with `$value` for the number.
+    elements when they are read. ``row``: the functions are given the message's row. ``straight`` are the fields, by lane and offset, that
+    no row keeps, as an object has them; the rows of ``opened`` lanes are elements of the object.
     """
 
     prefix: str
@@ -70,7 +91,8 @@ class Lanes:
     addressed: frozenset[int] = frozenset()
     viewed: frozenset[int] = frozenset()
     row: bool = False
-    straight: Mapping[int, str] = field(default_factory=dict[int, str])
+    straight: Mapping[tuple[int, int], Straight] = field(default_factory=dict[tuple[int, int], Straight])
+    opened: frozenset[int] = frozenset()
 
     def stride(self, lane: int) -> int:
         """Bytes of a row."""
@@ -101,6 +123,8 @@ class Lanes:
 
     def pointer(self, lane: int) -> str:
         """The type of the local for the rows."""
+        if lane in self.opened:
+            return "auto *"
         return "auto" if lane in self.viewed else f"{self.type(lane)} *restrict"
 
     def grown(self, lane: int, missing: str) -> str | None:

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
-from rosetta_jit.kernel.terms import END
+from rosetta_jit.kernel.terms import END, add, index
 from rosetta_jit.kernel.walk import statements
 
 Terms = frozenset[tuple[nodes.Expr, int]]
@@ -71,6 +71,26 @@ def said_by(invariant: Iterable[nodes.Expr]) -> Positions:
             case _:
                 pass
     return frozenset(map(_local, low & high))
+
+
+def difference(one: nodes.Expr, other: nodes.Expr) -> nodes.Expr | None:
+    """What is left of a sum without the terms of another one; None where it has not all of them."""
+    sums = _sum(one), _sum(other)
+    if sums[0] is None or sums[1] is None:
+        return None
+    left, taken = Counter(dict(sums[0][0])), Counter(dict(sums[1][0]))
+    if taken - left:
+        return None
+    parts = sorted((left - taken).elements(), key=str)
+    return sum_of(parts, sums[0][1] - sums[1][1])
+
+
+def sum_of(parts: Iterable[nodes.Expr], constant: int) -> nodes.Expr:
+    """A sum as an expression."""
+    found: nodes.Expr | None = None
+    for each in parts:
+        found = each if found is None else nodes.Binary("add", found, each)
+    return index(constant) if found is None else add(found, constant) if constant else found
 
 
 def _bound_by(stmt: nodes.Stmt) -> tuple[str, ...]:

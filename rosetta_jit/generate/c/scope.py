@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Namespace
-from rosetta_jit.kernel.nodes import Scalar
+from rosetta_jit.kernel.nodes import Expr, Scalar
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
@@ -17,20 +17,23 @@ class Scope:
     """What the printers of a function share: names, how lanes are reached, and what they find that the function needs.
 
     ``parameters`` are those that it must be given, ``touched`` the lanes whose rows it reads or writes, ``counted`` those whose rows in use
-    it counts, ``moved`` those that it makes room in, ``support`` the functions of `support.c` that it calls, ``hidden`` the hidden lanes
-    that its kernel uses, ``registers`` those that it reads, ``tables`` the names of the constants that it has.
+    it counts, ``moved`` those that it makes room in, ``support`` the functions of `support.c` that it calls, ``named`` the lanes that its
+    kernel uses, ``hidden`` those that are hidden, ``registers`` those that it reads, ``tables`` the names of the constants that it has,
+    ``begun`` the starts of spans of an object whose counts come next.
     """
 
     locals: Namespace
     lanes: Lanes
     support: set[str]
     hidden: set[int]
+    named: set[int]
     parameters: set[str] = field(default_factory=set[str])
     touched: set[int] = field(default_factory=set[int])
     counted: set[int] = field(default_factory=set[int])
     moved: set[int] = field(default_factory=set[int])
     registers: set[int] = field(default_factory=set[int])
     tables: dict[tuple[Scalar, tuple[int, ...]], str] = field(default_factory=dict[tuple["Scalar", tuple[int, ...]], str])
+    begun: dict[tuple[int, int], Expr] = field(default_factory=dict[tuple[int, int], "Expr"])
 
     def table(self, type_: Scalar, values: tuple[int, ...]) -> str:
         """The constant of the function that has some values."""
@@ -76,6 +79,7 @@ class Scope:
         return register_name(number)
 
     def _note(self, lane: int) -> None:
+        self.named.add(lane)
         if lane >= self.lanes.own:
             self.hidden.add(lane - self.lanes.own)
 

@@ -14,8 +14,9 @@ from rosetta_jit.generate.c.aligned import aligned
 from rosetta_jit.generate.c.expressions import expression, location, store, written
 from rosetta_jit.generate.c.positions import NONE, Positions, after_binding, after_require, bound_in, forget, is_position, said_by
 from rosetta_jit.generate.c.state import register_word
+from rosetta_jit.generate.c.straight import statement as straight_statement
 from rosetta_jit.generate.c.texts import comment
-from rosetta_jit.generate.c.varint_loops import REPLACED, Sized, replaced, rounds_done, rounds_of
+from rosetta_jit.generate.c.varint_loops import REPLACED, Sized, replaced, rounds_done, rounds_of, sooner
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.origins import Origin, described, origin_of
 from rosetta_jit.generate.parentheses import bare
@@ -101,6 +102,9 @@ def _statement(function: Function, stmt: nodes.Stmt) -> None:
         case nodes.Let() | nodes.Var() | nodes.Assign():
             _bind(function, stmt)
             function.known = after_binding(function.known, stmt.name, stmt.value)
+        case nodes.SetField(place, value) if (straight := straight_statement(scope, place, value)) is not None:
+            if straight:
+                function.line(f"{straight}{_origin(function, stmt)}")
         case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             function.line(f"{_effect(scope, stmt)}{_origin(function, stmt)}")
         case nodes.Reserve() | nodes.Advance():
@@ -299,7 +303,8 @@ def _call(function: Function, call: nodes.Call) -> None:
     """Results come through pointers; what the function returns is the number of its own site that failed, or 0."""
     scope = function.scope
     if scope.lanes.dialect == "c++" and call.routine in REPLACED:
-        function.line(replaced(scope, call))
+        for line in replaced(scope, call):
+            function.line(line)
         return
     routine = function.routines[call.routine]
     for result in call.results:
@@ -313,7 +318,16 @@ def _call(function: Function, call: nodes.Call) -> None:
         return
     name = call.results[0].name if call.results else call.routine
     problem = scope.locals.identifier(f"{name} problem")
-    function.line(f"const int64_t {problem} = {routine.name}({arguments});")
+    quick = sooner(scope, call) if scope.lanes.dialect == "c++" else None
+    if quick is None:
+        function.line(f"const int64_t {problem} = {routine.name}({arguments});")
+    else:
+        function.line(f"int64_t {problem} = 0;")
+        with function.block(f"if ({quick[0]})"):
+            function.line(quick[1])
+        function.writer.lines[-1] += " else {"
+        function.line(f"    {problem} = {routine.name}({arguments});")
+        function.line("}")
     with function.block(f"if ({problem} != 0)"):
         _failed(function, _site(problem, tuple(map(function.site, call.sites))), "failure->offset", call.indices, None)
 

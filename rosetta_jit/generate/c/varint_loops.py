@@ -46,8 +46,8 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.c.scope import Scope
 
 DETAIL = "rosetta_jit::detail"
-REPLACED = frozenset({"varint_size"})
-"""Routines that a function of the header stands for."""
+REPLACED = frozenset({"varint_size", "read_eight"})
+"""Routines that a function of the header stands for, which asks the processor where the next bit is set."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,11 +147,22 @@ def _without_names(block: Block) -> tuple[Stmt, ...]:
             return block
 
 
-def replaced(scope: Scope, call: Call) -> str:
-    """The statement that stands for the call of a routine."""
-    (argument,), (result,) = call.arguments, call.results
-    name = scope.locals.identifier(result.name)
-    return f"const int64_t {name} = {DETAIL}::{call.routine}({bare(expression(scope, argument))});"
+def replaced(scope: Scope, call: Call) -> list[str]:
+    """The statements that stand for the call of a routine. The first result is returned, others come through pointers."""
+    first, *others = call.results
+    arguments = [bare(expression(scope, each)) for each in call.arguments] + [f"&{scope.locals.identifier(each.name)}" for each in others]
+    declared = [f"{C_TYPES[each.type]} {scope.locals.identifier(each.name)} = 0;" for each in others]
+    name = scope.locals.identifier(first.name)
+    return [*declared, f"const {C_TYPES[first.type]} {name} = {DETAIL}::{call.routine}({', '.join(arguments)});"]
+
+
+def sooner(scope: Scope, call: Call) -> tuple[str, str] | None:
+    """Where there is room, a statement that does what the call of a routine does, and may write what is not yet in use behind it."""
+    if call.routine != "write_two_bytes":
+        return None
+    at, value = (bare(expression(scope, each)) for each in call.arguments)
+    bytes_, end, found = scope.takes("bytes"), expression(scope, END), scope.locals.identifier(call.results[0].name)
+    return f"{end} - {at} >= 10", f"{found} = {at} + {DETAIL}::write_varint({bytes_} + {at}, {value});"
 
 
 def called(kernel: Kernel) -> frozenset[str]:

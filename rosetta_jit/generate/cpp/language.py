@@ -7,10 +7,12 @@ from pathlib import Path
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.functions import Printed, print_kernel
-from rosetta_jit.generate.c.lanes import Lanes
+from rosetta_jit.generate.c.lanes import Lanes, Straight
 from rosetta_jit.generate.c.language import parts_of
 from rosetta_jit.generate.cleared import without_clearing
+from rosetta_jit.generate.cpp.lists_in_place import opened_lists
 from rosetta_jit.generate.cpp.manners import MANNERS, Manners
+from rosetta_jit.generate.cpp.opened import in_place
 from rosetta_jit.generate.cpp.reading import addressed_in, viewed_in
 from rosetta_jit.generate.cpp.set_in_place import straight_numbers
 from rosetta_jit.generate.cpp.source import header, source
@@ -62,6 +64,11 @@ def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: R
         views = frozenset(each.direct.lane for each in viewed_in(unit, lanes, manners))
         kernel, lanes = undamaged_kernel(kernel), replace(lanes, addressed=addressed_in(unit, lanes, manners), viewed=views, row=True)
     else:
-        numbers = straight_numbers(Walk(unit, lanes, manners, "decode"))
-        lanes = replace(lanes, straight={offset: statement for offset, (_, statement) in numbers.items()})
+        walk = Walk(unit, lanes, manners, "decode")
+        straight = {(0, offset): Straight(statement) for offset, (_, statement) in straight_numbers(walk).items()}
+        lists = opened_lists(walk, "given_object")
+        for each in lists:
+            kernel, straight = in_place(kernel, each.fields) or kernel, straight | each.fields
+        opened = frozenset(lane for each in lists for lane in each.containers.keys() - each.texts)
+        lanes = replace(lanes, straight=straight, opened=opened)
     return print_kernel(kernel, lanes, role, unit.origins.get(role, ()))

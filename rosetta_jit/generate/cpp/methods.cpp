@@ -6,10 +6,8 @@ rosetta_jit::result<rosetta_jit::done> codec::try_decode(const void *data, std::
     const int64_t end = reach(size);
     auto &row = filled->message;
     struct failure failure = {0, 0, {0, 0, 0, 0}};
-    filled->now = now;
-    filled->number = number;
+$begin
 $kept
-    filled->most = rosetta_jit::detail::most_rows(size);
 $reset
 $bind
     int64_t result = $first;

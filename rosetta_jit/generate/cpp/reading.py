@@ -26,7 +26,8 @@ HOLDER = "std::declval<const holder &>()"
 def directs_of(walk: Walk, at: str) -> list[Direct]:
     """The containers that are lanes; none where rows stay, which are the codec's."""
     unit, element = walk.unit, walk.lanes.all[0].element
-    return [] if wires_of(unit) else [*walk.directs(Ref(unit.type), unit.layout.root, element, "row", Spot(at))]
+    found = list[Direct]() if wires_of(unit) else walk.directs(Ref(unit.type), unit.layout.root, element, "row", Spot(at))
+    return [each for each in found if each.lane not in walk.opened]
 
 
 def addressed_in(unit: Unit, lanes: Lanes, manners: Manners) -> frozenset[int]:
@@ -79,7 +80,8 @@ def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -
     lanes, copied = parts.lanes, _copied(parts, directs, walk)
     members = [(f"rosetta_jit::detail::lane<{lanes.type(lane)}> &", lanes.rows(lane)) for lane in copied]
     members += [("rosetta_jit::detail::scratch *", "scratch")] if parts.hidden else []
-    initial = [f"{name}(memory.{name})" for _, name in members]
+    of_its_own = {lanes.rows(lane) for lane in walk.opened}
+    initial = [f"{name}(memory.{'gathered.' if name in of_its_own else ''}{name})" for _, name in members]
     members += [("int64_t ", "most"), ("int64_t ", "now"), ("int64_t ", "number")]
     initial += ["most(rosetta_jit::detail::most_rows(std::size_t{1} << 39))", "now(owner.now)", "number(owner.number)"]
     if unit.state:

@@ -16,6 +16,7 @@ from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import C_TYPES, RESERVED
 from rosetta_jit.generate.cpp.classes import classes
 from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
+from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
 from rosetta_jit.generate.cpp.read_in_place import is_local
 from rosetta_jit.generate.cpp.reading import addressed_in, container_type, directs_of, encoder, source_struct, viewed_in, writes_apart
 from rosetta_jit.generate.cpp.set_in_place import straight_numbers
@@ -39,6 +40,10 @@ RESET = (
     "    /* Forgets all messages: state is what the mapping says that it is at first. */",
     "    void reset() { kept = state(); }",
 )
+BEGIN = f"""    {FILLED}->now = now;
+    {FILLED}->number = number;
+    {FILLED}->most = rosetta_jit::detail::most_rows(size);"""
+"""What kernels are told that work on more than the object."""
 SELDOM = re.compile(r"^static int64_t (?:fail|fail_here|full)\(", re.MULTILINE)
 """The functions that are called where something is wrong."""
 SAID = """    if (where.scratch >= 0) { /* the mapping has put this text together */
@@ -149,6 +154,9 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
     """The text of the source file."""
     printed, lanes = parts.printed, parts.lanes
     walks = {direction: Walk(unit, lanes, manners, direction) for direction in ("decode", "encode")}
+    opened = opened_lists(walks["decode"], "target") if "borrow" in printed else []
+    walks["decode"].opened = frozenset(lane for each in opened for lane in each.lanes)
+    walks["encode"].opened = frozenset(lane for each in opened for lane in each.containers)
     directs = {name: directs_of(walk, at) for (name, walk), at in zip(walks.items(), ("target", "source"), strict=True)}
     containers = {each.lane: each.spot.at for each in directs_of(walks["decode"], HOLDER)}
     views, filled = viewed_in(unit, lanes, manners), _taken(walks["decode"], "target")
@@ -171,7 +179,7 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
         structs="\n\n".join(_struct(unit, parts, each, walks["decode"].taken) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
         holder=_row_structs(unit, parts, manners, [*views, *filled])
-        + _holder(unit, parts, containers, listed)
+        + _holder(unit, parts, containers, listed, {lane: kind for each in opened for lane, kind in each.kinds.items()})
         + (source_struct(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
         support=SELDOM.sub(r"ROSETTA_JIT_COLD \g<0>", support(without_unused(called, printed))),
         kernels="\n\n".join(kernels),
@@ -181,7 +189,7 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
         ),
         said=SAID if said else "",
         written=", written_(new memory)" if writes_apart(unit) else "",
-        functions="\n".join(_methods(unit, parts, directs, walks["encode"])),
+        functions="\n".join(_methods(unit, parts, directs, opened, walks["encode"])),
     )
 
 
@@ -211,7 +219,7 @@ def _struct(unit: Unit, parts: Parts, struct: RowStruct, taken: frozenset[int]) 
     return text.replace("typedef struct ", "typedef struct ROSETTA_JIT_MAY_ALIAS ", 1) if is_taken else text
 
 
-def _holder(unit: Unit, parts: Parts, containers: dict[int, str], listed: dict[int, str]) -> str:
+def _holder(unit: Unit, parts: Parts, containers: dict[int, str], listed: dict[int, str], opened: dict[int, str]) -> str:
     """What kernels work on: the message's row and the lanes."""
     lanes = parts.lanes
     lines = [
@@ -227,7 +235,12 @@ def _holder(unit: Unit, parts: Parts, containers: dict[int, str], listed: dict[i
             container, rows = container_type(listed[lane]), row_name(lanes, lane)
             lies = f"{rows}::lies<rosetta_jit::detail::element_type<{container}>>()"
             kind = f"rosetta_jit::detail::list_lane<{lanes.type(lane)}, {container}, {lies}>"
+        if lane in opened:
+            kind = f"rosetta_jit::detail::{opened[lane]}"
         lines.append(f"    {kind} {lanes.rows(lane)};")
+    if opened and "encode" in parts.printed:
+        rows = (f"        rosetta_jit::detail::lane<{lanes.type(lane)}> {lanes.rows(lane)};" for lane in sorted(opened))
+        lines += ["    struct {", *rows, "    } gathered; /* to write a message */"]
     lines += [f"    rosetta_jit::detail::scratch scratch[{parts.hidden}];"] if parts.hidden else []
     lines += ["    int64_t most = 0; /* rows that a message may ask for */", "    int64_t now = 0;", "    int64_t number = 0;"]
     lines += ["    codec::state *state = nullptr;"] if unit.state else []
@@ -293,7 +306,7 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
     return head, walk.writer.text()
 
 
-def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], walk: Walk) -> list[str]:
+def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], opened: list[Opened], walk: Walk) -> list[str]:
     template = (FOLDER / "methods.cpp").read_text("utf-8")
     _, *sections = re.split(r"^/\* == (\w+) == \*/\n", template, flags=re.MULTILINE)
     known = dict(zip(sections[::2], sections[1::2], strict=True))
@@ -304,16 +317,21 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], walk: W
     if "borrow" in printed:
         first, *others = printed["borrow"].attempts
         bound = {each.lane for each in directs["decode"]}
-        finish = "\n".join(f"    {FILLED}->{lanes.rows(each.lane)}.finish({each.row}, bytes);" for each in directs["decode"])
+        finish = [f"    {FILLED}->{lanes.rows(each.lane)}.finish({each.row}, bytes);" for each in directs["decode"]]
+        empty = [*finish, *(f"    rosetta_jit::detail::resize_to({each.at}, 0);" for each in opened if each.containers)]
+        most = dict.fromkeys(walk.opened, f"{FILLED}->most")
+        own = (lane for lane in range(1, lanes.own) if lane not in bound and lane in printed["borrow"].named)
+        reset = [f"    {FILLED}->{lanes.rows(lane)}.reset({most.get(lane, '')});" for lane in own]
         texts.append(
             Template(known["decode"]).substitute(
                 into,
+                begin=BEGIN if any("holder" in each.parameters for each in (first, *others)) else "",
                 bind="\n".join(f"    {FILLED}->{lanes.rows(each.lane)}.fill({each.spot.at});" for each in directs["decode"]),
-                reset="\n".join(f"    {FILLED}->{lanes.rows(lane)}.reset();" for lane in range(1, lanes.own) if lane not in bound),
+                reset="\n".join(reset),
                 first=run(first, "failure", FILLED),
                 others="".join(Template(known["other"]).substitute(call=run(each, "other", FILLED)) for each in others),
-                finish=finish,
-                empty="\n".join(f"    {line}" for line in finish.splitlines()),
+                finish="\n".join(finish),
+                empty="\n".join(f"    {line}" for line in empty),
             )
         )
     texts += [_of_wire(unit, parts, known, role) for role in printed if wire_of(role)]

@@ -43,7 +43,7 @@ class Walk:
     """One of the functions being printed; ``in_rows`` is how many lists there are around a value, ``share`` what is set of it.
 
     ``takes``: an encoder copies rows, whose lanes have memory of their own. ``taken`` are the lists that a decoder has put into the object
-    already, where their elements lie in memory as rows do; ``straight`` the numbers that it has, as the message's row would have them.
+    already, where their elements lie in memory as rows do, ``straight`` the numbers, as rows would have them, ``opened`` lists and texts.
     """
 
     unit: Unit
@@ -54,6 +54,7 @@ class Walk:
     addressed: frozenset[int] = frozenset()
     taken: frozenset[int] = frozenset()
     straight: frozenset[str] = frozenset()
+    opened: frozenset[int] = frozenset()
     takes: bool = False
     writer: Writer = field(default_factory=Writer)
     depth: int = 0
@@ -181,7 +182,7 @@ class Walk:
     def sequence(self, type_: String | Bytes | Array, slot: Span, row: str, spot: Spot) -> None:
         """Numbers, a text, bytes; or a list of anything else, element by element."""
         lane = self.lanes.rows(slot.lane)
-        if slot.lane in self.direct:
+        if slot.lane in self.direct or (self.direction == "decode" and slot.lane in self.opened):
             return
         if not isinstance(type_, Array) or isinstance(self.unit.layout.lanes[slot.lane].element, Number):
             if slot.lane in self.addressed:
@@ -363,7 +364,7 @@ class Walk:
     def directs(self, type_: Type, slot: object, element: object, row: str, spot: Spot) -> Iterator[Direct]:
         """Containers of numbers and texts that every message has, and how they are reached from it."""
         for found, lane, at, inner in self.spans(type_, slot, element, row, spot):
-            if isinstance(found, String | Bytes | Array) and self._is_plain(found, lane):
+            if isinstance(found, String | Bytes | Array) and self.is_plain(found, lane):
                 yield Direct(lane, at, Spot(self.text("direct", inner), inner.owner, inner.field))
 
     def spans(self, type_: Type, slot: object, element: object, row: str, spot: Spot) -> Iterator[tuple[Type, int, str, Spot]]:
@@ -392,7 +393,7 @@ class Walk:
             elif member.presence is None:
                 yield from self.numbers(each.type, member.slot, own.type, there, inner.at)
 
-    def _is_plain(self, type_: String | Bytes | Array, lane: int) -> bool:
+    def is_plain(self, type_: String | Bytes | Array, lane: int) -> bool:
         """Whether a container has the very numbers that the lane has: enums are of another type, and bools may be bits."""
         element = self.unit.layout.lanes[lane].element
         is_enum = isinstance(type_, Array) and isinstance(self.unit.schema.resolve(type_.element), Enum)

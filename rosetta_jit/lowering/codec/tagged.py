@@ -235,7 +235,7 @@ def _read_bytes(message: Message, fields: HolderFields, span: Span, where: Where
     if text:
         writer.expect(nodes.IsText(nodes.Wire(at), size), "text", where, "not valid UTF-8")
     writer.advance(size)
-    left = writer.left_in_message(span.lane, size) if fields.borrow and not text else None
+    left = writer.left_in_message(span.lane, size) if fields.borrow and (writer.texts_stay or not text) else None
     if left is not None:
         return at, left
     start = fields.reserve(span.lane, size)

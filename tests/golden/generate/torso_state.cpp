@@ -252,8 +252,6 @@ static int64_t borrow_1(torso_state_holder *holder, const unsigned char *restric
     angles[start] = (float)(load_f64_le(bytes + 8) * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
     angles[start + 1] = (float)(load_f64_le(bytes + 16) * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
     angles[start + 2] = (float)(load_f64_le(bytes + 24) * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
-    holder->unknown.used = 0;
-    holder->angles.used = angles_used;
     return 32;
 }
 
@@ -327,8 +325,6 @@ static int64_t borrow_2(torso_state_holder *holder, const unsigned char *restric
     if (next != end) {
         return fail(failure, 11, next); /* trailing: bytes are left over */
     }
-    holder->unknown.used = 0;
-    holder->angles.used = angles_used;
     return next;
 }
 
@@ -468,7 +464,6 @@ rosetta_jit::result<rosetta_jit::done> codec::try_decode(const void *data, std::
     filled->now = now;
     filled->number = number;
     filled->most = rosetta_jit::detail::most_rows(size);
-    filled->unknown.reset();
     filled->angles.fill((*target.mutable_angles()));
     int64_t result = borrow_1(filled, bytes, end, &failure);
     if (result < 0 && failure.site != 0) {

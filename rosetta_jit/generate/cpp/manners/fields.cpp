@@ -34,6 +34,18 @@ rosetta_jit::detail::resize_to($at, $row.count);
 $row.count = rosetta_jit::detail::count_of($at);
 $row.start = rosetta_jit::detail::$take(to.$lane, $row.count);
 
+/* == open == */
+$lane = holder->$lane.open($at, $count);
+
+/* == open texts == */
+holder->$lane.open($at, $count);
+
+/* == text of a list == */
+holder->$lane.put($index, bytes + ($start), $size);
+
+/* == text in place == */
+rosetta_jit::detail::assign($at, bytes + ($start), $size);
+
 /* == element decode == */
 rosetta_jit::detail::element($at, $index)
 

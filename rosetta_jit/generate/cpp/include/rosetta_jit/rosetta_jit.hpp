@@ -399,8 +399,8 @@ inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) 
 {
     const unsigned char *const text = static_cast<const unsigned char *>(memory) + start;
     if (size >= 8) {
-        std::uint64_t any = word_at(text + size - 8);
-        std::int64_t at = 0;
+        std::uint64_t any = word_at(text) | word_at(text + size - 8);
+        std::int64_t at = 8;
         for (; size - at > 32; at += 32) {
             any |= word_at(text + at) | word_at(text + at + 8) | word_at(text + at + 16) | word_at(text + at + 24);
         }
@@ -650,6 +650,15 @@ inline constexpr std::uint64_t ALIKE[8] = {
 inline constexpr std::uint64_t VARINT_BITS[8] = {
     0x7f, 0x7f7f, 0x7f7f7f, 0x7f7f7f7f, 0x7f7f7f7f7f, 0x7f7f7f7f7f7f, 0x7f7f7f7f7f7f7f, 0x7f7f7f7f7f7f7f7f,
 };
+
+/* The integer that eight bytes from `at` on begin with, or are all of, and where it ends; `stops` are the bytes that end one. */
+ROSETTA_JIT_INLINE std::uint64_t read_eight(std::int64_t at, std::uint64_t word, std::int64_t *next, std::uint64_t *stops) noexcept
+{
+    *stops = ~word & GOES_ON;
+    const unsigned more = *stops == 0 ? 7 : lowest_bit(*stops) / 8;
+    *next = at + 1 + more;
+    return bits_joined(word & VARINT_BITS[more]);
+}
 
 /* Reads integers of one number of bytes each, whose words are in the message. */
 template <class Row, class Number> void read_alike(const unsigned char *bytes, std::int64_t width, std::int64_t count, Row *rows, Number number)
@@ -919,18 +928,37 @@ template <class Container, class Row> void assign(Container &&target, const Row 
     }
 }
 
-/* A text of another length. One that has no room yet is made anew, which compilers see into. */
+constexpr bool HAS_SHORT_TEXTS = sizeof(std::string) == 2 * sizeof(void *) + SHORT_TEXT; /* in the string itself */
+
+/* Makes a string empty if it has no content yet when this ends, as where there is no memory for it. */
+struct made_anew {
+    std::string *target;
+    ~made_anew()
+    {
+        if (target != nullptr) {
+            ::new (static_cast<void *>(target)) std::string();
+        }
+    }
+};
+
+/* A text of another length. A longer one becomes shorter; one that has no memory of its own is made anew in its place, which compilers see into. */
 inline void assign_other(std::string &target, const char *first, std::size_t size)
 {
-    if (target.empty() && (size < SHORT_TEXT || size > target.capacity())) {
-        target = std::string(first, size);
+    if (size < target.size()) {
+        target.erase(size);
+        copy_few(&target[0], 0, first, 0, static_cast<std::int64_t>(size));
+    } else if (HAS_SHORT_TEXTS && target.capacity() < SHORT_TEXT) {
+        std::destroy_at(&target);
+        made_anew anew{&target};
+        ::new (static_cast<void *>(&target)) std::string(first, size);
+        anew.target = nullptr;
     } else {
         target.assign(first, size);
     }
 }
 
 /* Bytes that nothing has to make room for first. A text of the same length, as names have again and again, is written where it is. */
-inline void assign(std::string &target, const unsigned char *bytes, std::int64_t count)
+ROSETTA_JIT_INLINE void assign(std::string &target, const unsigned char *bytes, std::int64_t count)
 {
     if (target.size() == static_cast<std::size_t>(count)) {
         copy_few(&target[0], 0, bytes, 0, count);
@@ -1213,6 +1241,90 @@ template <class Row, class Container> struct list_lane<Row, Container, false> : 
     static constexpr bool LIES = false;
     void fill(Container &) { this->reset(); }
     template <class Span> void finish(const Span &, const unsigned char *) const noexcept {}
+};
+
+/* Makes an object whose fields are all set afterwards: where a class can be made without initial values, as rclcpp's can, it is. */
+struct without_values {
+    template <class Choice, class = decltype(Choice::SKIP)> constexpr operator Choice() const noexcept { return Choice::SKIP; }
+};
+
+/* Lists whose elements are set where they are as a message is read: they have no rows, and no more elements than rows may be. */
+template <class Container> struct open_lane {
+    using Element = element_type<Container>;
+    static_assert(has_data<Container>::value, "the elements of a list must lie one behind the other");
+    Element *rows = nullptr;
+    std::int64_t capacity = 0;
+    std::int64_t used = 0;
+
+    void reset(std::int64_t most) noexcept
+    {
+        rows = nullptr;
+        capacity = most;
+        used = 0;
+    }
+
+    bool grow(std::int64_t, std::int64_t) const noexcept { return false; }
+
+    /* Gives a list as many elements as follow in the message. */
+    Element *open(Container &target, std::int64_t count)
+    {
+        if constexpr (std::is_constructible_v<Element, without_values>) {
+            const std::size_t wanted = static_cast<std::size_t>(count);
+            if (wanted > target.size()) {
+                target.reserve(wanted);
+                while (target.size() < wanted) {
+                    target.emplace_back(without_values{});
+                }
+            }
+        }
+        resize_to(target, count);
+        rows = data_of(target);
+        return rows;
+    }
+};
+
+/* The same of numbers, of which there may be a fixed count. */
+template <class Container, class Row, std::size_t Fixed> struct number_lane : open_lane<Container> {
+    static_assert(same_numbers<typename open_lane<Container>::Element, Row>, "the class has elements of another type than the schema");
+    static_assert(Fixed == 0 || sizeof(Container) == Fixed * sizeof(Row), "the class has another number of elements than the schema");
+};
+
+/* The same of texts. Those that a list lacks are made of their characters where that can be. */
+template <class Container> struct text_lane {
+    std::int64_t capacity = 0;
+    std::int64_t used = 0;
+    Container *container = nullptr;
+
+    void reset(std::int64_t most) noexcept
+    {
+        capacity = most;
+        used = 0;
+    }
+
+    bool grow(std::int64_t, std::int64_t) const noexcept { return false; }
+
+    void open(Container &target, std::int64_t count)
+    {
+        container = &target;
+        if constexpr (appends_texts<Container>::value) {
+            if (count > count_of(target)) {
+                target.reserve(static_cast<std::size_t>(count));
+                return;
+            }
+        }
+        resize_to(target, count);
+    }
+
+    void put(std::int64_t index, const unsigned char *bytes, std::int64_t size)
+    {
+        if constexpr (appends_texts<Container>::value) {
+            if (index >= count_of(*container)) {
+                container->emplace_back(reinterpret_cast<const char *>(bytes), static_cast<std::size_t>(size));
+                return;
+            }
+        }
+        assign(element(*container, index), bytes, size);
+    }
 };
 
 template <class Message, class = void> struct shows_unknown : std::false_type {};

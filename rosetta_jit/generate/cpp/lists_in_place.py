@@ -1,0 +1,148 @@
+"""Lists whose elements a decoder sets where the object has them, and texts: no rows keep them meanwhile.
+
+A list is *opened* where the decoder knows how many elements it has: the container gets as many, and their fields are set as they are read.
+That is so where every field of an element is a number, an array of these, a text or bytes left in the message, or such a list, and the
+decoder opens a list before it sets its elements, which it never reads. Lists that lie in memory as rows do are copied instead (`lists`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rosetta_jit.generate.c.lanes import Straight
+from rosetta_jit.generate.cpp.lists import taken
+from rosetta_jit.generate.cpp.opened import in_place
+from rosetta_jit.generate.cpp.reading import container_type
+from rosetta_jit.generate.cpp.spots import Spot
+from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.unit import wires_of
+from rosetta_jit.model.layout import Number, Row, Slot, Span
+from rosetta_jit.model.types import Array, Bytes, Ref, String, Struct, Type
+from rosetta_jit.startup.dataclass import dataclass, field
+
+HOLDER = "std::declval<holder &>()"
+"""An object, for types."""
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """A list of the message with those within it: where each is, for types, by its lane; and what sets a field, by its lane and offset.
+
+    Or a text, which has a lane alone. ``texts`` are the lanes of lists of texts, ``numbers`` those of arrays: the type of their rows, and
+    how many they are, if that is fixed.
+    """
+
+    at: str
+    lane: int
+    containers: dict[int, str] = field(default_factory=dict[int, str])
+    fields: dict[tuple[int, int], Straight] = field(default_factory=dict[tuple[int, int], Straight])
+    texts: set[int] = field(default_factory=set[int])
+    numbers: dict[int, str] = field(default_factory=dict[int, str])
+
+    @property
+    def lanes(self) -> frozenset[int]:
+        return frozenset((self.lane, *self.containers))
+
+    @property
+    def kinds(self) -> dict[int, str]:
+        """The types of lanes, by their lanes."""
+        found = {lane: f"open_lane<{container_type(at)}>" for lane, at in self.containers.items()}
+        found |= {lane: f"text_lane<{container_type(self.containers[lane])}>" for lane in self.texts}
+        return found | {lane: f"number_lane<{container_type(self.containers[lane])}, {row}>" for lane, row in self.numbers.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """A value of the object: as statements reach it, as types do, and the lane that its row is in."""
+
+    spot: Spot
+    typed: Spot
+    lane: int
+
+
+def opened_lists(walk: Walk, at: str, typed: str = HOLDER) -> list[Opened]:
+    """The lists that a decoder opens of an object, which statements call ``at`` and types ``typed``; none where rows stay."""
+    unit = walk.unit
+    kernel = unit.kernels.get("borrow")
+    if kernel is None or wires_of(unit):
+        return []
+    lies = {each.direct.lane for each in taken(walk, at)}
+    found: list[Opened] = []
+    for type_, slot, place in _spans(walk, Ref(unit.type), unit.layout.root, _Place(Spot(at), Spot(typed), 0)):
+        opened = Opened(place.spot.at, slot.lane)
+        if slot.lane not in lies and _value(walk, opened, type_, slot, place) and in_place(kernel, opened.fields) is not None:
+            found.append(opened)
+    return found
+
+
+def _spans(walk: Walk, type_: Type, slot: Slot, place: _Place) -> Iterator[tuple[Type, Span, _Place]]:
+    """What has a length and is in every message."""
+    resolved = walk.unit.schema.resolve(type_)
+    for inner, own, at, present in _members(walk, resolved, slot, place):
+        if present and isinstance(own, Span):
+            yield inner, own, at
+        elif present:
+            yield from _spans(walk, inner, own, at)
+
+
+def _members(walk: Walk, type_: Type, slot: Slot, place: _Place) -> Iterator[tuple[Type, Slot, _Place, bool]]:
+    """The fields of a struct: type, slot and place of each, and whether it is always there."""
+    if not isinstance(type_, Struct) or not isinstance(slot, Row):
+        return
+    for each, name, member in zip(type_.fields, walk.names(type_), slot.members, strict=True):
+        inner = _Place(walk.member_of(place.spot.at, name), walk.member_of(place.typed.at, name), place.lane)
+        yield each.type, member.slot, inner, member.presence is None
+
+
+# --- what sets the fields of elements ------------------------------------------------------------------------------------------------
+
+
+def _list(walk: Walk, opened: Opened, type_: Type, span: Span, place: _Place) -> bool:
+    """Whether a list can be opened, as far as types say; ``opened`` gets what sets it."""
+    resolved, layout = walk.unit.schema.resolve(type_), walk.unit.layout.lanes[span.lane]
+    is_shown = walk.text("laid out", place.spot) != ""
+    if not isinstance(resolved, Array) or layout.links is not None or not is_shown:
+        return False
+    rows, container = walk.lanes.rows(span.lane), walk.text("direct", place.typed)
+    opened.containers[span.lane] = container
+    if isinstance(layout.element, Number):
+        return _numbers(walk, opened, resolved, span, place)
+    if resolved.length is not None:
+        return False
+    if isinstance(walk.unit.schema.resolve(resolved.element), String | Bytes):
+        opened.texts.add(span.lane)
+        opened.fields[place.lane, span.offset] = Straight(walk.text("open texts", place.spot, lane=rows, count="$count"), span.lane)
+        words = {"lane": rows, "index": "$index", "start": "$start", "size": "$size"}
+        opened.fields[span.lane, 0] = Straight(walk.text("text of a list", place.spot, **words), text=True)
+        return True
+    opened.fields[place.lane, span.offset] = Straight(walk.text("open", place.spot, lane=rows, count="$count"), span.lane)
+    element = f"std::declval<rosetta_jit::detail::element_type<decltype({container})> &>()"
+    return _value(walk, opened, resolved.element, layout.element, _Place(Spot(f"{rows}[$index]"), Spot(element), span.lane))
+
+
+def _numbers(walk: Walk, opened: Opened, type_: Array, span: Span, place: _Place) -> bool:
+    """The same of numbers that an element of a list has; those of the message itself are lanes as they are."""
+    rows = walk.lanes.rows(span.lane)
+    if place.lane == 0 or not walk.is_plain(type_, span.lane) or not (type_.length is None or type_.fixed):
+        return False
+    opened.numbers[span.lane] = f"{walk.lanes.type(span.lane)}, {type_.fixed or 0}"
+    opened.fields[place.lane, span.offset] = Straight(walk.text("open", place.spot, lane=rows, count="$count"), span.lane)
+    opened.fields[span.lane, 0] = Straight(walk.text("number", Spot(f"{rows}[$index]"), row="$value"), copied=True)
+    return True
+
+
+def _value(walk: Walk, opened: Opened, type_: Type, slot: Slot, place: _Place) -> bool:
+    match walk.unit.schema.resolve(type_), slot:
+        case _, Number(offset):
+            opened.fields[place.lane, offset] = Straight(walk.text("number", place.spot, row="$value"))
+            return True
+        case ((String() | Bytes()), Span(offset)):
+            opened.fields[place.lane, offset] = Straight(walk.text("text in place", place.spot, start="$start", size="$size"), text=True)
+            return True
+        case Array(), Span():
+            return _list(walk, opened, type_, slot, place)
+        case Struct() as struct, Row(unknown=None):
+            members = [*_members(walk, struct, slot, place)]
+            return all(present and _value(walk, opened, inner, own, at) for inner, own, at, present in members)
+        case _:
+            return False

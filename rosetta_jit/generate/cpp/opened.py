@@ -1,0 +1,117 @@
+"""A decoder that sets the elements of lists where the object has them: their rows are counted from the first one of each list.
+
+It must open a list before it sets elements of it, in the same block or around it, and do nothing else with their rows. What the message
+itself has must be set whatever the message is: nothing may be left of another one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TypeGuard
+
+from rosetta_jit.generate.c.lanes import Straight
+from rosetta_jit.generate.c.positions import difference
+from rosetta_jit.generate.c.straight import size_left
+from rosetta_jit.generate.cleared import settled
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Address, Assign, Block, Copy, Expr, For, HostCall, Place, SetField, Stmt, Wire
+from rosetta_jit.kernel.rewrite import locals_in, with_blocks, with_bodies
+from rosetta_jit.kernel.terms import index
+from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
+from rosetta_jit.startup.dataclass import replace
+
+Fields = Mapping[tuple[int, int], Straight]
+
+
+def in_place(kernel: Kernel, fields: Fields) -> Kernel | None:
+    """The decoder that sets these fields in place, those of all elements and the lists themselves; None if it cannot."""
+    lanes = frozenset(each.lane for each in fields.values() if each.lane)
+    routines = (stmt for routine in kernel.routines for stmt, _ in statements(routine.body))
+    if any(lanes & (_used(stmt) | _set(stmt)) for stmt in routines):
+        return None
+    of_message = {offset for lane, offset in fields if lane == 0}
+    if not all(of_message <= {offset for offset, _ in settled(body)} for body in kernel.bodies):
+        return None
+    bodies = [_Body(fields, lanes, body) for body in kernel.bodies]
+    found = tuple(each.block(body, {}) for each, body in zip(bodies, kernel.bodies, strict=True))
+    return with_bodies(kernel, found) if all(each.is_in_place for each in bodies) else None
+
+
+def _used(stmt: Stmt) -> set[int]:
+    """The lanes whose rows a statement uses, but for the field that it sets."""
+    named = [] if isinstance(stmt, SetField) else [getattr(stmt, name, None) for name in ("target", "source")]
+    named += [each.address for each in extents_of(stmt)] if isinstance(stmt, HostCall) else []
+    for part in (part for expr in expressions_of(stmt) for part in subexpressions(expr)):
+        named += [getattr(part, name, None) for name in ("place", "address")]
+    return {each.lane for each in named if isinstance(each, Place)}
+
+
+def _set(stmt: Stmt) -> set[int]:
+    return {stmt.place.lane} if isinstance(stmt, SetField) else set()
+
+
+class _Body:
+    """One body of a decoder being rewritten: the fields that it has set so far, and whether all is as it must be."""
+
+    def __init__(self, fields: Fields, lanes: frozenset[int], body: Block) -> None:
+        self._fields, self._lanes = fields, lanes
+        changing = (stmt for stmt, _ in statements(body) if isinstance(stmt, Assign | For))
+        self._changed = frozenset(each.name if isinstance(each, Assign) else each.variable for each in changing)
+        self._seen, self._fails = set[tuple[int, int]](), False
+
+    @property
+    def is_in_place(self) -> bool:
+        return not self._fails and self._seen == set(self._fields)
+
+    def block(self, block: Block, opened: dict[int, Expr]) -> Block:
+        """A block; ``opened`` are the lists that are open in it, and the first row of each."""
+        rest, found = iter(block), list[Stmt]()
+        for stmt in rest:
+            if isinstance(stmt, Copy) and self._is_copied(stmt.target) and isinstance(stmt.source, Wire):
+                found.append(replace(stmt, target=self._placed(stmt.target, opened)))
+                continue
+            self._fails |= bool(self._lanes & _used(stmt))
+            if isinstance(stmt, SetField):
+                found += self._field(stmt, rest, opened)
+            else:
+                found.append(with_blocks(stmt, lambda inner: self.block(inner, dict(opened))))
+        return tuple(found)
+
+    def _is_copied(self, target: Address) -> TypeGuard[Place]:
+        """Whether numbers are copied to their place."""
+        straight = self._fields.get((target.lane, target.offset)) if isinstance(target, Place) else None
+        if straight is None or not straight.copied or not isinstance(target, Place):
+            return False
+        self._seen.add((target.lane, target.offset))
+        return True
+
+    def _field(self, stmt: SetField, rest: Iterator[Stmt], opened: dict[int, Expr]) -> tuple[Stmt, ...]:
+        """The statement, and the one behind it where both set a span."""
+        lane, offset = stmt.place.lane, stmt.place.offset
+        straight = self._fields.get((lane, offset))
+        if straight is None:
+            self._fails |= lane in self._lanes
+            return (stmt,)
+        self._seen.add((lane, offset))
+        place = self._placed(stmt.place, opened)
+        if not straight.is_span:
+            return (replace(stmt, place=place),)
+        count = next(rest, None)
+        if not isinstance(count, SetField) or count.place != Place(lane, stmt.place.row, offset + 8) or self._lanes & _used(count):
+            self._fails = True
+            return (stmt,)
+        start = stmt.value
+        if straight.text:
+            self._fails |= size_left(count.value) is None
+        else:
+            self._fails |= bool(locals_in(start) & self._changed)
+            opened[straight.lane], start = start, index(0)
+        return replace(stmt, place=place, value=start), replace(count, place=replace(place, offset=offset + 8))
+
+    def _placed(self, place: Place, opened: dict[int, Expr]) -> Place:
+        """A place of an opened list, by the number of its element."""
+        if place.lane == 0:
+            return place
+        number = difference(place.row, opened[place.lane]) if place.lane in opened else None
+        self._fails |= number is None
+        return place if number is None else replace(place, row=number)
