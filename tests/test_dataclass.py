@@ -13,7 +13,7 @@ from typing import ClassVar
 
 import pytest
 
-from rosetta_jit.startup.dataclass import dataclass, field
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 from rosetta_jit.startup.stores import STORES
 
 PACKAGE = Path(__file__).resolve().parent.parent / "rosetta_jit"
@@ -221,3 +221,13 @@ def test_objects_may_be_watched():
     one = Watched(3)
     assert weakref.ref(one)() is one
     assert {one: 1}[Watched(3)] == 1
+
+
+def test_replaced_fields():
+    one = Ours(1, span="here")
+    changed = replace(one, first=2, span="there")
+    assert (changed.first, changed.second, changed.span, one.first) == (2, "two", "there", 1)
+    assert replace(one) == one
+    for wrong in ({"other": 1}, {"derived": 1.0}, {"KIND": "other"}):
+        with pytest.raises(TypeError, match=next(iter(wrong))):
+            replace(one, **wrong)

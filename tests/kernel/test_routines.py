@@ -125,3 +125,12 @@ def test_a_proof_does_not_hold_for_other_promises_of_what_is_called():
     verify(replace(kernel(body, strides=(8,), sites=2), routines=(there, relying)))
     with pytest.raises(VerificationError, match="routine relying"):
         verify(replace(kernel(body, strides=(8,), sites=2), routines=(silent, relying)))
+
+
+def test_what_is_called_may_name_lanes_that_its_caller_does_not():
+    room = Compare("ge", Capacity(1), index(1))
+    inner = routine(Expect(room, FAILED), ensures=(room,), name="inner")
+    outer = Routine("outer", (), (), (Call("inner", (), (), (1,), ()),), (), (), SITES)
+    body = (Call("outer", (), (), (1,), ()), Return(END))
+    two = (*SITES, Site("truncated", "", ""))
+    verify(replace(kernel(body, strides=(8, 8), sites=2), routines=(replace(inner, sites=two), replace(outer, sites=two))))
