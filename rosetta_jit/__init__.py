@@ -32,6 +32,7 @@ from rosetta_jit.errors import (
     SchemaError,
     TransportError,
 )
+from rosetta_jit.startup import modules
 
 if TYPE_CHECKING:
     from rosetta_jit.api.bridges import Bridge
@@ -44,6 +45,8 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.transports.opening import call, publish, serve, subscribe
+
+modules.install()
 
 __version__ = "0.1.0"
 

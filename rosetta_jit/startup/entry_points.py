@@ -51,7 +51,7 @@ def may_be_offered(group: str) -> bool:
 
 
 def _is_named_in(folder: str, group: bytes) -> bool:
-    if folder.lower().endswith(".egg") or os.path.isfile(folder):  # noqa: PTH113 - hundreds of them, at each start
+    if folder.lower().endswith(".egg") or os.path.isfile(folder):
         return True
     return group in _entry_points_in(folder)
 
@@ -69,7 +69,7 @@ def _entry_points_in(folder: str) -> bytes:
 
 def _text_of(file: str) -> bytes:
     try:
-        with open(file, "rb", buffering=0) as entry_points:  # noqa: PTH123 - hundreds of them, at each start
+        with open(file, "rb", buffering=0) as entry_points:
             return entry_points.read()
     except OSError:
         return b""
