@@ -160,6 +160,9 @@ class Choice:
 
     The first is written, or the one numbered ``when_empty`` where the array at ``path`` has no elements. Where there are ``labels``, the
     discriminator at ``path`` tells: each alternative but the last is written for its label, the last for any other.
+
+    The first ``tried`` are what an earlier attempt at the message reads. It has failed where they come here, and a reader makes nothing of
+    them. It looks at them where that attempt knows messages by their length, and so does not say what is wrong with another.
     """
 
     path: Path
@@ -168,6 +171,7 @@ class Choice:
     when_empty: int = 0
     order: Order = "<"
     labels: tuple[int, ...] = ()
+    tried: int = 0
 
 
 @dataclass(frozen=True, slots=True)

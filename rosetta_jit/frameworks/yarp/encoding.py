@@ -18,8 +18,8 @@ from rosetta_jit.frameworks.yarp.bottle_codec import Bottles
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4, YARP2012, Dialect
 from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Array, Map, Ref, Schema, String, Struct, Type, Union
-from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.wire.codec import Codec, Encoding
+from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.wire.codec import Choice, Codec, Constant, Encoding, Seq
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Choices
@@ -73,8 +73,17 @@ def _attempts(struct: Struct, schema: Schema, dialect: Dialect) -> tuple[_Attemp
         thrift = Thrift(schema, dialect, recursive_structs(Ref(struct.name), schema))
         return (_Attempt(thrift.message(struct), tuple(thrift.nested().items())),)
     expected = _Attempt(Bottles(schema, dialect, exact=True).message(struct))
-    general = _Attempt(Bottles(schema, dialect).message(struct))
+    general = _Attempt(_behind(expected.codec, Bottles(schema, dialect).message(struct)))
     return (expected, general) if expected != general else (general,)
+
+
+def _behind(expected: Codec, general: Codec) -> Codec:
+    """The general form as a reader takes it that has tried the expected one, which is the first of its alternatives or something else."""
+    match expected, general:
+        case Seq((Constant(_, code, _, _, "tag"), body)), Choice(_, _, ((first, same), *_)) if (code, body) == (first, same):
+            return replace(general, tried=1)
+        case _:
+            return general
 
 
 def _missing(struct: Struct, schema: Schema, dialect: Dialect) -> bool:

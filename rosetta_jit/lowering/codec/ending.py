@@ -68,6 +68,17 @@ def length_first(writer: Writer, body: Block) -> Block:
             return body
 
 
+def refuse_other_length(writer: Writer) -> None:
+    """Behind what an attempt with that length would have read, which has failed: the message is longer, or the attempt has said why."""
+    writer.expect(Compare("eq", writer.position, END), "trailing", MESSAGE, LEFT_OVER)
+    refuse_tried(writer)
+
+
+def refuse_tried(writer: Writer) -> None:
+    """Fail where an earlier attempt has, which has said why."""
+    writer.expect(Const("bool", value=False), "trailing", MESSAGE, UNUSUAL_LENGTH, at=NOT_TRIED)
+
+
 def _skip(writer: Writer, ending: Ending) -> Expr:
     """Exactly as much padding as is announced, whatever its bytes are; gives its size."""
     place = add(BEGIN, ending.size_byte)

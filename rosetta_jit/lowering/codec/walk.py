@@ -8,10 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.kernel.nodes import Assign, Binary, Block, Compare, Const, Convert, Expect, Expr, For, If, Local, Switch, While
+from rosetta_jit.kernel.nodes import Assign, Binary, Block, Compare, Const, Convert, Expect, Expr, For, If, Let, Local, Switch, While
+from rosetta_jit.kernel.rewrite import names_read
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.codec import leaves
+from rosetta_jit.lowering.codec.ending import refuse_other_length, refuse_tried
 from rosetta_jit.lowering.codec.fields import Elements, Fields, scalar_name
+from rosetta_jit.lowering.codec.wire_fields import Found, WireFields
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, block, integer
 from rosetta_jit.startup.late import late
@@ -148,15 +151,33 @@ def _choice(writer: Writer, fields: Fields, choice: wire.Choice) -> None:
         return
     where, scalar, begin = fields.shown(choice.path), scalar_name(choice.scalar), writer.position
     code = writer.let("code", integer(writer.load(scalar, where, choice.order)))
+    for value, codec in choice.alternatives[: choice.tried]:
+        writer.emit(If(Compare("eq", code, index(value)), _tried(writer, where, codec)))
+    known = ", ".join(str(value) for value, _ in choice.alternatives)
+    unknown = writer.failure("tag", where, f"must be one of {known}", at=begin)
+    remaining = choice.alternatives[choice.tried :]
+    if len(remaining) == 1:
+        writer.emit(Expect(Compare("eq", code, index(remaining[0][0])), unknown))
+        walk(remaining[0][1], fields, writer)
+        return
     fields.branch(choice)
     at = writer.var("next", writer.position)
-    cases = tuple((value, _alternative(writer, fields, codec, at)) for value, codec in choice.alternatives)
-    with writer.nested() as default:
-        known = ", ".join(str(value) for value, _ in choice.alternatives)
-        failure = writer.failure("tag", where, f"must be one of {known}", at=begin)
-        writer.emit(Expect(Const("bool", value=False), failure))
-    writer.emit(Switch(code, cases, block(default)))
+    cases = tuple((value, _alternative(writer, fields, codec, at)) for value, codec in remaining)
+    writer.emit(Switch(code, cases, (Expect(Const("bool", value=False), unknown),)))
     writer.position = at
+
+
+def _tried(writer: Writer, where: Where, codec: wire.Codec) -> Block:
+    """What an earlier attempt has failed at: it is read for what is wrong with it, where that attempt has not said so."""
+    with writer.nested() as body:
+        if fixed_size(codec) is None:
+            refuse_tried(writer)
+        else:
+            with writer.whole():
+                walk(codec, WireFields(writer, Found(), where=where, element=True), writer)
+            refuse_other_length(writer)
+    read = names_read(block(body))
+    return tuple(stmt for stmt in body if not isinstance(stmt, Let) or stmt.name in read)
 
 
 def _write_choice(writer: Writer, fields: Fields, choice: wire.Choice) -> None:

@@ -174,3 +174,48 @@ def test_a_form_that_is_the_only_one_says_itself_what_is_wrong():
     assert "body 1" not in decode.stage("kernel")
     with pytest.raises(rj.DecodeError, match=r"^truncated: .*`.b`, byte 8"):
         decode(bytes(8))
+
+
+NARROW = 'syntax = "proto3"; package t; message Narrow { int32 a = 1; int32 b = 2; }'
+NARROWED = """
+import "t.bottle-schema"
+import "narrow.proto"
+
+data-holder: t.Narrow
+wire-schema: t.T
+
+unpack-rules:
+  .a = int32(.a)
+  .b = int32(.b)
+"""
+
+
+@pytest.mark.parametrize("backend", ["interpreter", "python", "llvm"])
+def test_a_rule_that_fails_in_the_usual_form_says_so(backend):
+    """The general form does not read again what the usual one has: nothing would be told there."""
+    schema = {"t.bottle-schema": '"t.T"\n( ("a" :double) ("b" :double) )', "narrow.proto": NARROW, "t.mapping": NARROWED}
+    decode = rj.Decoder("t.mapping", schema=schema, encoding="yarp3", backend=backend)
+    forms = (struct.pack("<iidd", 256 | 10, 2, 1, 1e300), struct.pack("<iiidid", 256, 2, 10, 1, 10, 1e300))
+    told = []
+    for data in forms:
+        with pytest.raises(rj.DecodeError, match=r"^range: ") as found:
+            decode(data)
+        told.append(found.value.path)
+    assert told == [".b", ".b"]
+
+
+@pytest.mark.parametrize("backend", ["interpreter", "python", "llvm"])
+@pytest.mark.parametrize("encoding", ["yarp3", "yarp"])
+def test_a_list_of_any_length_is_read_in_both_forms(encoding, backend):
+    schema = {"t.bottle-schema": '"t.T"\n( ("xs" (:list :double) :rest) )'}
+    decode = rj.Decoder.of("t.T", schema=schema, encoding=encoding, backend=backend)
+    usual, other = struct.pack("<iidd", 256 | 10, 2, 1.5, -2.0), struct.pack("<iiidid", 256, 2, 10, 1.5, 10, -2.0)
+    for data in (usual, other):
+        assert list(decode(data).xs) == [1.5, -2.0]
+        for cut in range(len(data)):
+            with pytest.raises(rj.DecodeError, match=r"^truncated: "):
+                decode(data[:cut])
+        with pytest.raises(rj.DecodeError, match=rf"^trailing: .* at byte {len(data)}"):
+            decode(data + b"\0")
+    with pytest.raises(rj.DecodeError, match=r"^tag: must be"):
+        decode(struct.pack("<ii", 5, 0))

@@ -245,7 +245,7 @@ static const struct part decode_parts_5[] = {
     {20, 8, TEXT(".pitch")},
 };
 
-static const struct part decode_parts_6[] = {
+static const struct part decode_parts_8[] = {
     {0, 4, ""},
     {4, 4, TEXT(".yaw")},
     {8, 8, TEXT(".yaw")},
@@ -262,12 +262,12 @@ static const struct site decode_sites[] = {
     {TORSO_STATE_COUNT, 0, "", TEXT("must be 3"), "", NULL},
     {TORSO_STATE_TRUNCATED, 0, "", TEXT("the message ends here"), "", NULL},
     {TORSO_STATE_TRUNCATED, 4, "", TEXT("the message ends here"), "", decode_parts_5},
-    {TORSO_STATE_TRUNCATED, 7, "", TEXT("the message ends here"), "", decode_parts_6},
+    {TORSO_STATE_TRAILING, 0, "", TEXT("bytes are left over"), "", NULL},
+    {TORSO_STATE_TAG, 0, "", TEXT("must be one of 266, 256"), "", NULL},
+    {TORSO_STATE_TRUNCATED, 7, "", TEXT("the message ends here"), "", decode_parts_8},
     {TORSO_STATE_TAG, 0, TEXT(".yaw"), TEXT("must be 10"), "", NULL},
     {TORSO_STATE_TAG, 0, TEXT(".roll"), TEXT("must be 10"), "", NULL},
     {TORSO_STATE_TAG, 0, TEXT(".pitch"), TEXT("must be 10"), "", NULL},
-    {TORSO_STATE_TAG, 0, "", TEXT("must be one of 266, 256"), "", NULL},
-    {TORSO_STATE_TRAILING, 0, "", TEXT("bytes are left over"), "", NULL},
 };
 
 static int64_t decode_1(torso_state_holder *holder, const unsigned char *restrict bytes, int64_t end, struct failure *failure)
@@ -310,49 +310,35 @@ static int64_t decode_2(torso_state_holder *holder, const unsigned char *restric
         return fail(failure, 4, 0); /* truncated: the message ends here */
     }
     const int64_t code = (int64_t)load_i32_le(bytes + 0);
-    double yaw_2 = 0.0;
-    double roll_2 = 0.0;
-    double pitch_2 = 0.0;
-    int64_t next = 4;
-    switch (code) {
-    case 266: {
+    if (code == 266) {
         if (end < 32) {
             return fail(failure, 5, 4); /* truncated: the message ends here */
         }
         if (load_i32_le(bytes + 4) != 3) {
             return fail(failure, 3, 4); /* count: must be 3 */
         }
-        yaw_2 = load_f64_le(bytes + 8);
-        roll_2 = load_f64_le(bytes + 16);
-        pitch_2 = load_f64_le(bytes + 24);
-        next = 32;
-        break;
+        if (32 != end) {
+            return fail(failure, 6, 32); /* trailing: bytes are left over */
+        }
+        return fail(failure, 1, -1); /* trailing: not of the usual length */
     }
-    case 256: {
-        if (end < 44) {
-            return fail(failure, 6, 4); /* truncated: the message ends here */
-        }
-        if (load_i32_le(bytes + 4) != 3) {
-            return fail(failure, 3, 4); /* count: must be 3 */
-        }
-        if (load_i32_le(bytes + 8) != 10) {
-            return fail(failure, 7, 8); /* tag .yaw: must be 10 */
-        }
-        yaw_2 = load_f64_le(bytes + 12);
-        if (load_i32_le(bytes + 20) != 10) {
-            return fail(failure, 8, 20); /* tag .roll: must be 10 */
-        }
-        roll_2 = load_f64_le(bytes + 24);
-        if (load_i32_le(bytes + 32) != 10) {
-            return fail(failure, 9, 32); /* tag .pitch: must be 10 */
-        }
-        pitch_2 = load_f64_le(bytes + 36);
-        next = 44;
-        break;
+    if (code != 256) {
+        return fail(failure, 7, 0); /* tag: must be one of 266, 256 */
     }
-    default: {
-        return fail(failure, 10, 0); /* tag: must be one of 266, 256 */
+    if (end < 44) {
+        return fail(failure, 8, 4); /* truncated: the message ends here */
     }
+    if (load_i32_le(bytes + 4) != 3) {
+        return fail(failure, 3, 4); /* count: must be 3 */
+    }
+    if (load_i32_le(bytes + 8) != 10) {
+        return fail(failure, 9, 8); /* tag .yaw: must be 10 */
+    }
+    if (load_i32_le(bytes + 20) != 10) {
+        return fail(failure, 10, 20); /* tag .roll: must be 10 */
+    }
+    if (load_i32_le(bytes + 32) != 10) {
+        return fail(failure, 11, 32); /* tag .pitch: must be 10 */
     }
     if (3 > holder->angles.capacity - angles_used) {
         return full(failure, 2, 3 - (holder->angles.capacity - angles_used));
@@ -361,15 +347,15 @@ static int64_t decode_2(torso_state_holder *holder, const unsigned char *restric
     angles_used += 3;
     message->angles.start = start_2; /* torso_state.mapping:10: len(.angles) <-> 3 */
     message->angles.count = 3; /* torso_state.mapping:10: len(.angles) <-> 3 */
-    angles[start_2] = (float)(yaw_2 * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
-    angles[start_2 + 1] = (float)(roll_2 * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
-    angles[start_2 + 2] = (float)(pitch_2 * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
-    if (next != end) {
-        return fail(failure, 11, next); /* trailing: bytes are left over */
+    angles[start_2] = (float)(load_f64_le(bytes + 12) * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
+    angles[start_2 + 1] = (float)(load_f64_le(bytes + 24) * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
+    angles[start_2 + 2] = (float)(load_f64_le(bytes + 36) * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
+    if (44 != end) {
+        return fail(failure, 6, 44); /* trailing: bytes are left over */
     }
     holder->unknown.used = 0;
     holder->angles.used = angles_used;
-    return next;
+    return 44;
 }
 
 torso_state_status torso_state_decode(torso_state_holder *holder, const void *bytes, size_t size, torso_state_error *error)
