@@ -13,7 +13,8 @@ from rosetta_jit.startup.garbage import object_at
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.definitions import Definition
     from rosetta_jit.frameworks.probe import Probes
-    from rosetta_jit.parsing.idl import FrontEnd
+    from rosetta_jit.parsing.idl import FrontEnd, Load
+    from rosetta_jit.source import Source
     from rosetta_jit.wire.codec import Encoding
     from rosetta_jit.wire.other_type import Partners
     from rosetta_jit.wire.self_describing import Tree
@@ -180,7 +181,9 @@ class Framework:
 
 
 def _lazy(place: str) -> FrontEnd:
-    def parse(*arguments: object) -> Schema:
-        return cast("FrontEnd", object_at(place))(*arguments)  # pyright: ignore[reportArgumentType] - passed on as they are
+    def parse(source: Source, load: Load) -> Schema:
+        from rosetta_jit.parsing.remembered import parsed
+
+        return parsed(cast("FrontEnd", object_at(place)), source, load)
 
     return parse

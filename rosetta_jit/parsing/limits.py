@@ -4,3 +4,9 @@ from __future__ import annotations
 
 MAX_ERRORS = 20
 """syntax errors of a text, after which reading stops: later ones are mostly consequences of earlier ones"""
+
+MAX_REMEMBERED = 64
+"""files of which a process remembers what they declare"""
+
+MAX_REMEMBERED_CHARACTERS = 16 * 1024
+"""characters that one of these may have, with all that it imports"""
