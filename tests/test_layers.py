@@ -158,7 +158,7 @@ MAY_IMPORT = {
     "api.cacheable": REPORTS | {"runtime.functions", "runtime.cache", "pipeline.request"},
     "api": COMPILER | API | {"in_numba", "stubs", "pipeline", "pipeline.request"},
     "logs": LOG_READER
-    | {"api", "api.options", "file_errors", "recording", "language.imports", "model.units", "frameworks.installed", "frameworks.lcm"}
+    | {"api", "api.options", "file_errors", "recording", "parsing", "model.units", "frameworks.installed", "frameworks.lcm"}
     | {"frameworks.ros2", "logs.folder_names", "runtime", "runtime.arrow", "runtime.holder"},
     "logs.base": REPORTS | {"logs.reading.storage", "logs.reading.walking"},
     "logs.limits": set(),

@@ -14,7 +14,6 @@ from rosetta_jit.errors import MappingError
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language.check.mapping import check
 from rosetta_jit.language.imports.declarations import Imports, merge, read_imports
-from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.language.parse.unit_file import UnitFile
 from rosetta_jit.language.parse.unit_file import parse as parse_units
@@ -22,6 +21,7 @@ from rosetta_jit.language.scope import Message
 from rosetta_jit.language.units.side_files import annotated
 from rosetta_jit.model.mapping import Mapping
 from rosetta_jit.model.types import Schema, Struct, same_name
+from rosetta_jit.parsing.search import Reading, SearchPath
 from rosetta_jit.pipeline.similar_types import similar_types
 from rosetta_jit.source import Source
 

@@ -22,7 +22,6 @@ from rosetta_jit.explain.walk import nodes
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.mapping import Checked, check
-from rosetta_jit.language.imports.search import SearchPath
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.language.places import rules_within, shown_fields, shown_names
 from rosetta_jit.language.scope import Message
@@ -30,6 +29,7 @@ from rosetta_jit.language.typed import Rule
 from rosetta_jit.language.untouched import unread, unset
 from rosetta_jit.model.expr import Side as SideName
 from rosetta_jit.model.mapping import Mapping
+from rosetta_jit.parsing.search import SearchPath
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request
 from rosetta_jit.startup.dataclass import dataclass, replace

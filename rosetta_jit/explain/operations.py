@@ -15,12 +15,12 @@ from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.mapping import check
 from rosetta_jit.language.function import Operation
-from rosetta_jit.language.imports.search import SearchPath
 from rosetta_jit.language.installed import functions
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.language.typed import Expr, Place, Rule
 from rosetta_jit.model.expr import COMPARISONS, LOGIC
 from rosetta_jit.model.types import Array, Bytes, Float, Int, String
+from rosetta_jit.parsing.search import SearchPath
 
 OPERATIONS: tuple[Operation, ...] = get_args(Operation)
 

@@ -58,15 +58,6 @@ MAX_UNIT = 64
 MAX_MAPPINGS = 64
 """mappings that one mapping uses, those that they use included"""
 
-MAX_FILE_BYTES = 4 << 20
-"""bytes of one file that a program is made from"""
-
-MAX_TEXT_BYTES = 64 << 20
-"""bytes of all files that a program is made from"""
-
-MAX_LISTED_FILES = 1000
-"""files of a folder among which the one is looked for that an import means"""
-
 MAX_USES = 1000
 """uses of mappings in all: each is a copy of their rules"""
 

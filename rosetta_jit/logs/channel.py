@@ -330,7 +330,7 @@ def _of_fingerprint(connection: Connection, options: dict[str, Any]) -> tuple[st
     """The type of LCM's messages, and the files that declare it: those that are named, or one on the search path; empty if none does."""
     from rosetta_jit.catalogue.pipeline import no_such_file
     from rosetta_jit.frameworks.lcm.idl import files_in, type_of
-    from rosetta_jit.language.imports.search import Reading, SearchPath
+    from rosetta_jit.parsing.search import Reading, SearchPath
 
     search, imports = SearchPath.of(options.get("search_path", ())), tuple(map(str, options.get("imports", ())))
     for name in imports or files_in(search.folders):

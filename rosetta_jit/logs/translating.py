@@ -14,8 +14,8 @@ import numpy as np
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.frameworks.ros2.successors import definition, successor
-from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.logs.base import Block, Connection
+from rosetta_jit.parsing.search import Reading, SearchPath
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

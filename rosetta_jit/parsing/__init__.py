@@ -1,1 +1,1 @@
-"""From text to trees: what every front end shares."""
+"""From text to trees: what every front end shares, and where files are searched for."""

@@ -10,3 +10,12 @@ MAX_REMEMBERED = 64
 
 MAX_REMEMBERED_CHARACTERS = 16 * 1024
 """characters that one of these may have, with all that it imports"""
+
+MAX_FILE_BYTES = 4 << 20
+"""bytes of one file that a program is made from"""
+
+MAX_TEXT_BYTES = 64 << 20
+"""bytes of all files that a program is made from"""
+
+MAX_LISTED_FILES = 1000
+"""files of a folder among which the one is looked for that an import means"""

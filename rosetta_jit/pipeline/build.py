@@ -23,12 +23,12 @@ from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError
 from rosetta_jit.kernel.traits import LARGE, LARGE_WITHOUT_RULES, HostUse, use_of_host
-from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.lowering.lower import lower
 from rosetta_jit.lowering.writer import References, TooManyStatementsError
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct
+from rosetta_jit.parsing.search import Reading, SearchPath
 from rosetta_jit.pipeline.declared import declared_types, files_of, of_a_size, readers_of, report
 from rosetta_jit.pipeline.kept_state import kept_of
 from rosetta_jit.pipeline.recent import recently

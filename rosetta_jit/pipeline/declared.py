@@ -10,10 +10,10 @@ from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.installed import Readers, installed
-from rosetta_jit.language.imports.search import UNITS_SUFFIX, Reading, SearchPath, refusal
 from rosetta_jit.model.expansion import excess
 from rosetta_jit.model.serial import from_plain
 from rosetta_jit.model.types import Array, Declaration, Map, Optional, Schema, String, Struct, Type, Union, same_name
+from rosetta_jit.parsing.search import UNITS_SUFFIX, Reading, SearchPath, refusal
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.source import Source

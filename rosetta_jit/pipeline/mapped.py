@@ -14,12 +14,12 @@ from rosetta_jit.catalogue import wires
 from rosetta_jit.errors import MappingError
 from rosetta_jit.frameworks.installed import Readers
 from rosetta_jit.language.check.mapping import Checked, check
-from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.installed import GROUP
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.lowering.mapped import Mapped
 from rosetta_jit.model.layout import Layout
 from rosetta_jit.model.types import Ref, Schema
+from rosetta_jit.parsing.search import Reading, SearchPath
 from rosetta_jit.pipeline.declared import Files, readers_of
 from rosetta_jit.pipeline.request import Request
 from rosetta_jit.pipeline.types import Types

@@ -8,9 +8,9 @@ from itertools import islice
 from pathlib import Path
 
 from rosetta_jit.errors import ReportError
-from rosetta_jit.language.imports.search import SearchPath, refusal
 from rosetta_jit.model.types import name_parts
 from rosetta_jit.parsing.idl import FrontEnds
+from rosetta_jit.parsing.search import SearchPath, refusal
 from rosetta_jit.pipeline.limits import MAX_FILES, MAX_GUESSES, MAX_READ
 from rosetta_jit.source import shipped_folders
 

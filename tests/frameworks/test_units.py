@@ -9,9 +9,9 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.frameworks.protobuf.descriptors import from_file_descriptor_set
-from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Ref
+from rosetta_jit.parsing.search import Reading, SearchPath
 from rosetta_jit.source import shipped_folders
 from tests.frameworks.protobuf.proto_files import SHIPPED
 

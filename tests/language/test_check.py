@@ -12,9 +12,9 @@ from rosetta_jit.errors import MappingError
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.mapping import Checked, check
-from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.model.types import Float, Int
+from rosetta_jit.parsing.search import Reading, SearchPath
 from rosetta_jit.source import Source
 from tests.golden import GOLDEN
 

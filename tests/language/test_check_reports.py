@@ -15,8 +15,8 @@ from rosetta_jit.diagnostics import MAX_LINE, render, render_all, to_json
 from rosetta_jit.errors import MappingError
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language.check.mapping import check
-from rosetta_jit.language.imports.search import SearchPath
 from rosetta_jit.language.parse.mapping import parse
+from rosetta_jit.parsing.search import SearchPath
 from rosetta_jit.source import Source
 from rosetta_jit.startup.late import Late
 from rosetta_jit.terminal import cells

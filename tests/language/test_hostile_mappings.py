@@ -11,9 +11,9 @@ from rosetta_jit.diagnostics import MAX_REPORTED, Diagnostic, render, render_all
 from rosetta_jit.errors import MappingError
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language.check.mapping import check
-from rosetta_jit.language.imports.search import SearchPath
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.lowering import writer
+from rosetta_jit.parsing.search import SearchPath
 from rosetta_jit.source import Source, Span
 
 FIELDS = range(300)

@@ -10,10 +10,10 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.frameworks.installed import Readers, installed
-from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parse.unit_file import parse
 from rosetta_jit.language.units.side_files import annotated
 from rosetta_jit.model.types import Schema, Struct
+from rosetta_jit.parsing.search import Reading, SearchPath
 
 UREG = pint.UnitRegistry()
 BACKENDS = ["llvm", "python", "interpreter"]

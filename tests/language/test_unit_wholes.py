@@ -10,10 +10,10 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language.check.mapping import check
-from rosetta_jit.language.imports.search import SearchPath
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.language.typed import EachElement, Rescale
 from rosetta_jit.language.units.wholes import inserted
+from rosetta_jit.parsing.search import SearchPath
 
 UREG = pint.UnitRegistry()
 BACKENDS = ["llvm", "python", "interpreter"]

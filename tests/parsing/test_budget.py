@@ -12,11 +12,11 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.catalogue.limits import MAX_CANDIDATES, MAX_COMPARED
 from rosetta_jit.catalogue.suggestions import closest
-from rosetta_jit.language.imports import search
 from rosetta_jit.lowering.limits import MAX_STATEMENTS
 from rosetta_jit.model.expansion import excess
 from rosetta_jit.model.limits import MAX_BYTES, MAX_INITIAL_BYTES, MAX_LINKS, MAX_NESTED, MAX_SLOTS
 from rosetta_jit.model.types import Array, Field, Int, Ref, Schema, Struct
+from rosetta_jit.parsing import search
 from rosetta_jit.recording import MAX_MESSAGE_BYTES
 from rosetta_jit.runtime.run import ELEMENTS_A_BYTE, GRACE_BYTES
 

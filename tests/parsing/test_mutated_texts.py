@@ -18,10 +18,10 @@ from rosetta_jit.frameworks.protobuf.descriptors import from_file_descriptor_set
 from rosetta_jit.frameworks.protobuf.proto import syntax
 from rosetta_jit.frameworks.yarp import sexpr
 from rosetta_jit.language.check.mapping import check
-from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parse import templates
 from rosetta_jit.language.parse.mapping import parse as parse_mapping
 from rosetta_jit.model.types import Struct
+from rosetta_jit.parsing.search import Reading, SearchPath
 from rosetta_jit.recording import read_messages
 from tests.parsing.mutations import Derivation, corpus, mutated, mutated_bytes
 

@@ -26,7 +26,6 @@ from rosetta_jit.language.check.unreachable import unreachable
 from rosetta_jit.language.check.wires import message_of_wires
 from rosetta_jit.language.imports.declarations import Imported, Imports, merge, reached, read_imports
 from rosetta_jit.language.imports.mappings import read_usable
-from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parameters.bind import bind, handed_on
 from rosetta_jit.language.parameters.state import NO_STATE, Declared, declared
 from rosetta_jit.language.resolve.relations import derived
@@ -40,6 +39,7 @@ from rosetta_jit.model.expr import Side
 from rosetta_jit.model.mapping import Mapping
 from rosetta_jit.model.types import Schema, name_parts
 from rosetta_jit.parsing.idl import FrontEnds
+from rosetta_jit.parsing.search import Reading, SearchPath
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass, replace
 from rosetta_jit.startup.late import Late

@@ -1,1 +1,1 @@
-"""What mappings import, and where it is found."""
+"""What mappings import."""

@@ -9,10 +9,10 @@ from rosetta_jit.catalogue import suggestions
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import MappingError, ReportError
 from rosetta_jit.language.imports.mappings import MAPPING_SUFFIX
-from rosetta_jit.language.imports.search import UNITS_SUFFIX, Reading, SearchPath, refusal
 from rosetta_jit.model.mapping import Import, Mapping
 from rosetta_jit.model.types import Array, Declaration, Enum, Map, NamedConstant, Optional, Ref, Schema, Struct, Type, Union
 from rosetta_jit.parsing.idl import FrontEnds
+from rosetta_jit.parsing.search import UNITS_SUFFIX, Reading, SearchPath, refusal
 from rosetta_jit.source import Source
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.late import Late

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 from rosetta_jit.catalogue import nested as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import ReportError
-from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.limits import MAX_MAPPINGS
 from rosetta_jit.language.parameters.bind import bind
 from rosetta_jit.language.parse.mapping import parse
@@ -15,6 +14,7 @@ from rosetta_jit.language.uses import UsableMappings
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.mapping import Assign, Relation, Rule, Via
 from rosetta_jit.model.walk import every_rule
+from rosetta_jit.parsing.search import Reading, SearchPath
 from rosetta_jit.source import Source, Span
 
 MAPPING_SUFFIX = ".mapping"

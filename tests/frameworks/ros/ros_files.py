@@ -12,7 +12,7 @@ import pytest
 
 from rosetta_jit.frameworks.ros1 import idl as ros1
 from rosetta_jit.frameworks.ros2 import idl as ros2
-from rosetta_jit.language.imports.search import SearchPath
+from rosetta_jit.parsing.search import SearchPath
 from rosetta_jit.source import Source
 
 TESTS = Path(__file__).parents[2]

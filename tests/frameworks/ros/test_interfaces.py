@@ -8,7 +8,7 @@ import rosetta_jit as rj
 from rosetta_jit.frameworks.ros1.idl import parse as parse1
 from rosetta_jit.frameworks.ros2.idl import parse as parse2
 from rosetta_jit.frameworks.ros2.type_hash import rihs01
-from rosetta_jit.language.imports.search import SearchPath
+from rosetta_jit.parsing.search import SearchPath
 from rosetta_jit.source import Source
 from tests.frameworks.ros.ros_files import debian
 

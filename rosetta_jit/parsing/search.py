@@ -17,8 +17,8 @@ from pathlib import Path, PurePosixPath
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.catalogue import suggestions
 from rosetta_jit.errors import MappingError, SchemaError
-from rosetta_jit.language.limits import MAX_FILE_BYTES, MAX_LISTED_FILES, MAX_TEXT_BYTES
 from rosetta_jit.parsing.idl import Load
+from rosetta_jit.parsing.limits import MAX_FILE_BYTES, MAX_LISTED_FILES, MAX_TEXT_BYTES
 from rosetta_jit.source import Source, shipped_folders
 from rosetta_jit.startup.dataclass import dataclass, field, replace
 from rosetta_jit.startup.sha import sha256

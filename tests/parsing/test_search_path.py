@@ -9,8 +9,8 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.errors import MappingError, SchemaError
-from rosetta_jit.language.imports.search import Reading, SearchPath
-from rosetta_jit.language.limits import MAX_FILE_BYTES
+from rosetta_jit.parsing.limits import MAX_FILE_BYTES
+from rosetta_jit.parsing.search import Reading, SearchPath
 from rosetta_jit.source import Source, shipped_folders
 
 
