@@ -82,10 +82,11 @@ def _alternatives(codec: wire.Choice | wire.Cases, depth: int) -> Iterator[str]:
     """What follows a number that says which of several it is."""
     indent = "  " * depth
     match codec:
-        case wire.Choice(path, scalar, alternatives, _, order, labels):
+        case wire.Choice(path, scalar, alternatives, _, order, labels, tried):
             yield f"{indent}{_scalar(scalar, order)} that says the form of {_path(path)}"
             for number, (value, each) in enumerate(alternatives):
-                yield f"{indent}{value}{f', written for {labels[number]}' if number < len(labels) else ''}:"
+                why = ", which has been tried" if number < tried else f", written for {labels[number]}" if number < len(labels) else ""
+                yield f"{indent}{value}{why}:"
                 yield from _lines(each, depth + 1)
         case wire.Cases(path, discriminator, cases, default):
             yield from _lines(discriminator, depth)

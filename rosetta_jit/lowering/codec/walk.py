@@ -152,7 +152,7 @@ def _choice(writer: Writer, fields: Fields, choice: wire.Choice) -> None:
     where, scalar, begin = fields.shown(choice.path), scalar_name(choice.scalar), writer.position
     code = writer.let("code", integer(writer.load(scalar, where, choice.order)))
     for value, codec in choice.alternatives[: choice.tried]:
-        writer.emit(If(Compare("eq", code, index(value)), _tried(writer, where, codec)))
+        writer.emit(If(Compare("eq", code, index(value)), _tried(writer, fields.where, codec)))
     known = ", ".join(str(value) for value, _ in choice.alternatives)
     unknown = writer.failure("tag", where, f"must be one of {known}", at=begin)
     remaining = choice.alternatives[choice.tried :]
