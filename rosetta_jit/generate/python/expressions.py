@@ -18,6 +18,7 @@ from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import NUMPY
 from rosetta_jit.generate.python.conversions import bits_of, converted, wrapped
+from rosetta_jit.generate.python.descents import Visit
 from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.generate.python.groups import zigzag_of
 from rosetta_jit.kernel import nodes
@@ -134,6 +135,14 @@ class Scope:
         """The local for a text that is decoded where it is checked."""
         start = flat_name(self.lanes, offset, "i64") if lane == 0 else self.own(lane, offset, "i64")
         return self.locals.identifier(f"{start.removesuffix('_start')}\0text")
+
+    def visited(self, visit: Visit) -> str:
+        """The list of the messages, of a type that contains itself, that fill a span."""
+        return self.locals.identifier(f"{self.lanes.rows(visit.lane)}\0list")
+
+    def reader(self, lane: int) -> str:
+        """The function that reads such a message of a lane."""
+        return f"_read_{self.lanes.rows(lane)}"
 
     def piece(self, lane: int, offset: int) -> str:
         """The local for bytes that are taken where a statement says where they are."""

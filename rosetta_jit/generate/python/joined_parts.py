@@ -122,7 +122,7 @@ class Written:
 
         Neither are entries of maps, but in types that contain themselves, whose texts may be long as they are bound.
         """
-        recursive, around = bool(self.unit.layout.recursive), [*self.around.values()][-1:]
+        recursive, around = self.scope.keeps_long, [*self.around.values()][-1:]
         is_within = (around and not around[0].is_entry) or self.result or (around and recursive)
         if not is_within or self.unit.layout.lanes[sequence.lane].name.endswith(UNKNOWN):
             return sequence.local

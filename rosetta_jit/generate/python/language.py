@@ -15,7 +15,7 @@ from rosetta_jit.generate.python.classes import WORDS, classes, names_of
 from rosetta_jit.generate.python.collecting import Collect
 from rosetta_jit.generate.python.encoder import encoder_in_parts
 from rosetta_jit.generate.python.expressions import CODES, TRUTH, Scope, view_name
-from rosetta_jit.generate.python.functions import Attempt, is_flat, print_kernel
+from rosetta_jit.generate.python.functions import Attempt, beside_lanes, is_flat, print_kernel
 from rosetta_jit.generate.python.making import Make, arrays_of
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.python.printed import Objects
@@ -56,7 +56,8 @@ class _Module:
 
     def __init__(self, unit: Unit) -> None:
         self.unit, self.names = unit, names_of(unit)
-        self.lanes = named_lanes(unit, WORDS | frozenset(self.names.values()))
+        reserved = WORDS | frozenset(self.names.values())
+        self.lanes = named_lanes(unit, reserved | beside_lanes(named_lanes(unit, reserved)(())))
         self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.loads, self.structs = set[str](), dict[str, str]()
         self.root, self.guesses = self.names[unit.type], False
@@ -154,14 +155,16 @@ class _Module:
                 lines += [f"def made_{scope.lanes.rows(lane)}(index):", f"    return {text}", ""]
             return lines
 
-        arrays = arrays_of(self.unit)
+        arrays, in_all = arrays_of(self.unit), arrays_of(self.unit, in_recursive=True)
+        rows = {**in_all, **{lane: Ref(struct) for lane, struct in self.unit.layout.recursive}}
 
         def row(scope: Scope, lane: int) -> str:
-            return Make(self.unit, scope, self.names, taken).value(arrays[lane], self.unit.layout.lanes[lane].element, lane, "")
+            return Make(self.unit, scope, self.names, taken).value(rows[lane], self.unit.layout.lanes[lane].element, lane, "")
 
         origins, lanes = self.unit.origins.get("borrow", ()), self._lanes(kernel)
-        blobs = frozenset(lane for lane, type_ in arrays.items() if isinstance(self.unit.schema.resolve(type_), Bytes))
-        objects = Objects(made, row, inner, self.unit.layout, frozenset(arrays), blobs, self.unit.numpy, frozenset(self.names.values()))
+        blobs = frozenset(lane for lane, type_ in in_all.items() if isinstance(self.unit.schema.resolve(type_), Bytes))
+        lists = frozenset(arrays), frozenset(in_all), blobs
+        objects = Objects(made, row, inner, self.unit.layout, *lists, self.unit.numpy, frozenset(self.names.values()))
         text, attempts = print_kernel(kernel, lanes, "borrow", self.loads, origins, objects, self.paths, flat=is_flat(kernel, lanes))
         return "\n\n".join([self._sites("borrow"), f"\n{text.rstrip()}", f"\n{self._decode(attempts)}"])
 
@@ -233,7 +236,7 @@ class _Module:
         self._from_call(writer, {f"call_{what}" for what in made.from_call}, "encode")
         writer.lines += made.lines
         writer.depth = 1
-        fails = any("raise _Failed(" in line for line in made.lines)
+        fails = any("raise _Failed(" in line for line in (*made.routines, *made.lines))
         if fails:
             writer.line("except _Failed as failed:")
             writer.line("    raise _error(_ENCODE_SITES, failed, None) from None")

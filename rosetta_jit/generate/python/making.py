@@ -148,6 +148,8 @@ class Make:
     def _direct(self, type_: Type, slot: Span, lane: int, row: str) -> str | None:
         """What is a list or a string already."""
         known = self.scope.direct
+        if (visit := known.visit_at(lane, slot.offset)) is not None:
+            return self.scope.visited(visit)
         element = self.unit.layout.lanes[slot.lane].element
         if (lane, slot.offset) in known.pieces:
             piece = self.scope.piece(lane, slot.offset)
@@ -184,10 +186,11 @@ class Make:
         return self.value(type_, self.unit.layout.lanes[lane].element, lane, index)
 
 
-def arrays_of(unit: Unit) -> dict[int, Type]:
-    """The types of the elements of arrays by their lanes; not those of types that contain themselves."""
+def arrays_of(unit: Unit, *, in_recursive: bool = False) -> dict[int, Type]:
+    """The types of the elements of arrays by their lanes; not those of types that contain themselves, nor by default what is in these."""
     found: dict[int, Type] = {}
     pending: list[tuple[Type, Slot]] = [(Ref(unit.type), unit.layout.root)]
+    pending += [(Ref(struct), unit.layout.lanes[lane].element) for lane, struct in unit.layout.recursive if in_recursive]
     while pending:
         type_, slot = pending.pop()
         match unit.schema.resolve(type_), slot:

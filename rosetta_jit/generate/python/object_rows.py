@@ -61,7 +61,7 @@ class ObjectScope(Scope):
     program has set, and that may be no numbers of their type; ``float_fields`` has the types of the fields that are floats, by lane, row
     and offset: the cases of a union share a local. ``maybe`` has what is there under a condition, by the field that says so and the bit
     or number of it. ``messages`` are the locals that hold messages of types that contain themselves, by lane and row, ``linked`` those
-    which are fields, by lane.
+    which are fields, by lane. ``keeps_long``: long texts stay what they are until all parts are joined.
     """
 
     objects: dict[tuple[int, Expr], dict[int, str]] = field(default_factory=dict[tuple[int, "Expr"], dict[int, str]])
@@ -73,6 +73,7 @@ class ObjectScope(Scope):
     maybe: dict[tuple[Place, int], Maybe] = field(default_factory=dict[tuple[Place, int], Maybe])
     messages: dict[tuple[int, Expr], str] = field(default_factory=dict[tuple[int, "Expr"], str])
     linked: dict[int, str] = field(default_factory=dict[int, str])
+    keeps_long: bool = False
 
     def place(self, place: Place, scalar: str) -> str:
         """A scalar of a row of an object."""
@@ -293,7 +294,7 @@ class Binder:
         if isinstance(type_, String) and type_.encoding == "utf-16":
             raise NotInParts
         own = self.local((at if at.replace(".", "").isidentifier() and "." in at else lane.name).rpartition(".")[2] or "value")
-        encoded = f"_utf8({at})" if self.unit.layout.recursive else f'{at}.encode("utf-8", "surrogateescape")'
+        encoded = f"_utf8({at})" if self.scope.keeps_long else f'{at}.encode("utf-8", "surrogateescape")'
         self.function.line(f"{own} = {encoded if isinstance(type_, String) else at}")
         element = type_.element if isinstance(type_, Array) else None
         self.scope.sequences[slot.lane] = Listed(own, slot.lane, element, lane.element, is_text=isinstance(type_, String))

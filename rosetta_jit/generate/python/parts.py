@@ -16,13 +16,13 @@ from rosetta_jit.generate.python.defaults import asked_first, reads_of
 from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.flags import Flags, flags_of
 from rosetta_jit.generate.python.groups import turned
-from rosetta_jit.generate.python.joined_parts import Written
+from rosetta_jit.generate.python.messages_in_parts import Messages
 from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope, lanes_within
 from rosetta_jit.generate.python.packed import Part
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
 from rosetta_jit.generate.python.presence import bit_tested, case_tested, named_in_rounds, places_read
 from rosetta_jit.generate.python.printed import Function
-from rosetta_jit.generate.python.recursive_rows import is_hidden, row_function
+from rosetta_jit.generate.python.recursive_rows import is_hidden
 from rosetta_jit.generate.python.statements import fail, print_statement
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel import nodes
@@ -32,13 +32,11 @@ from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.model.layout import Number
 
 
-class Parts(Written):
+class Parts(Messages):
     """Prints a body.
 
     ``routines`` are the functions that give the bytes which routines write, ``called`` those of them that are. ``lengths`` are the locals
-    of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has. Messages of types that
-    contain themselves are made by functions, of the lanes ``rows_called``: ``bodies`` are the locals that have them by those for their
-    ``sizes``, which have names by the rows of the messages.
+    of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has.
     """
 
     def __init__(self, unit: Unit, function: Function, scope: ObjectScope, body: nodes.Block, routines: Mapping[str, str]) -> None:
@@ -48,7 +46,6 @@ class Parts(Written):
         self.body, self.routines, self.called, self.depth = body, routines, set[str](), function.writer.depth
         self.lengths, self.words = set[str](), dict[str, nodes.Place]()
         self.counted, self.reads = named_in_rounds(body), reads_of(body)
-        self.bodies, self.sizes, self.rows_called = dict[str, str](), dict[nodes.Expr, str](), set[int]()
 
     # --- statements ------------------------------------------------------------------------------------------------------------------
 
@@ -156,15 +153,6 @@ class Parts(Written):
         if stmt.name in self.function.read:
             print_statement(self.function, stmt)
 
-    def _message(self, size: str, place: nodes.Place) -> None:
-        """A message of a type that contains itself, whose size is a local of the kernel."""
-        body = self.binder.local("body")
-        self.line(f"{body} = {row_function(self.scope.lanes, place.lane)}({self.scope.message(place)})")
-        self.bodies[size], self.sizes[place.row] = body, size
-        self.rows_called.add(place.lane)
-        self.has_long = True
-        self.positions.values[size] = self.positions.new()
-
     def _note(self, condition: nodes.Expr) -> None:
         """How many elements an array has, where that is checked."""
         match condition:
@@ -185,6 +173,9 @@ class Parts(Written):
 
     def _call(self, call: nodes.Call) -> None:
         """A routine that writes from its first argument on, and gives the position behind."""
+        if (visit := self.visits.get(call.routine)) is not None:
+            self._visit(call, visit)
+            return
         if call.routine not in self.routines or call.results[0].name in self.function.read:
             raise NotInParts
         match call.arguments[1:]:
@@ -325,16 +316,6 @@ class Parts(Written):
         """The bools that a loop writes, if those are all of a sequence."""
         is_round = self.scope.behind(flags.place) == nodes.Local("i64", loop.variable)
         return self.scope.sequences.get(flags.place.lane) if is_round and self._is_count_of(flags.place.lane, loop.count) else None
-
-    def _is_count_of(self, lane: int, count: nodes.Expr) -> bool:
-        """Whether a number is that of all elements of a sequence."""
-        match count:
-            case nodes.Local(_, name):
-                return self.scope.counts.get(name) == lane
-            case nodes.Const(_, number):
-                return self.exact.get(lane) == number
-            case _:
-                return False
 
     def _head(self, loop: nodes.For) -> str:
         sequence, own = self._sequence_of(loop), self.scope.locals.identifier(loop.variable)

@@ -39,8 +39,8 @@ class Objects:
     """How a function comes to objects: ``result`` is what a return of success gives at a position.
 
     Of decoders ``row`` is the object of a lane's row, ``inner`` are the lines of functions for rows that contain rows of their own type,
-    ``arrays`` are the lanes of arrays in the ``layout``, and ``blobs`` those of bytes among them. ``numpy``: arrays of numbers are numpy's;
-    ``classes`` are the names of classes, which no local hides.
+    ``arrays`` are the lanes of arrays in the ``layout``, ``inner_arrays`` these and those in types that contain themselves, and ``blobs``
+    those of bytes among them. ``numpy``: arrays of numbers are numpy's; ``classes`` are the names of classes, which no local hides.
     """
 
     result: Callable[[Scope, str], str]
@@ -48,6 +48,7 @@ class Objects:
     inner: Callable[[Scope], list[str]] = lambda _: []
     layout: Layout | None = None
     arrays: frozenset[int] = frozenset()
+    inner_arrays: frozenset[int] = frozenset()
     blobs: frozenset[int] = frozenset()
     numpy: bool = False
     classes: frozenset[str] = frozenset()
