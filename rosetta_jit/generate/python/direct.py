@@ -23,7 +23,7 @@ from rosetta_jit.generate.python.mentions import blocks_within, changes, counted
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.terms import add, index, mul
-from rosetta_jit.kernel.walk import expressions_of, statements
+from rosetta_jit.kernel.walk import bound_names, expressions_of, statements
 from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span
 from rosetta_jit.startup.dataclass import dataclass, field
 
@@ -59,6 +59,11 @@ class Direct:
     gathered: dict[int, tuple[nodes.Expr, nodes.Expr]] = field(default_factory=dict[int, "tuple[nodes.Expr, nodes.Expr]"])
     visits: dict[str, Visit] = field(default_factory=dict[str, Visit])
     left: dict[int, int] | None = None
+
+    def read(self) -> set[str]:
+        """The locals that say where texts and bytes are, which no statement may say any more."""
+        spans = (*self.texts.values(), *self.pieces.values(), *self.gathered.values())
+        return {name for place in spans for expr in place for name in locals_in(expr)}
 
     def visit_at(self, lane: int, offset: int) -> Visit | None:
         """What fills the span of a row."""
@@ -155,6 +160,8 @@ class _Search:
             begin, end = (places.get(nodes.Place(row.lane, row.row, offset + behind)) for behind in (0, 8))
             once = all(len(self.fields.get((row.lane, offset + behind), ())) == 1 for behind in (0, 8))
             if begin is None or end is None or not once or self.mentions.get(lane) or (row.lane, offset) in self.direct.texts:
+                continue
+            if _binds_behind(block, begin, locals_in(end.value)):
                 continue
             match end.value:
                 case nodes.Binary("sub", nodes.Const(_, -1), size):
@@ -330,6 +337,12 @@ class _Search:
         self.direct.loops[loop.variable] = lane
         self.arrays(loop.body, nodes.Place(lane, row))
         return True
+
+
+def _binds_behind(block: nodes.Block, stmt: nodes.Stmt, names: set[str]) -> bool:
+    """Whether a block binds some locals behind a statement of it."""
+    number = next(number for number, each in enumerate(block) if each is stmt)
+    return any(names & {*bound_names(each)} for each in block[number:])
 
 
 def _first_row(loop: nodes.For) -> nodes.Place | None:

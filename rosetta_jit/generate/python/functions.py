@@ -150,7 +150,9 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
     if descents is not None:
         scope.direct.visits, scope.direct.left, behind = descents.visits, descents.left, descents.behind()
     function.settled = settled(body)
-    function.read, function.positive = read_names(body), not_negative(body, behind)
+    if kernel.direction == "decode" and scope.flat:
+        scope.attributes = objects.attributes(body, function.settled, scope.direct)
+    function.read, function.positive = read_names(body, scope.direct.read()), not_negative(body, behind)
     function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, nodes.Reserve))
     blocks = (body, *(routine.body for routine in kernel.routines))
     exprs = (expr for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt))
@@ -164,7 +166,7 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
     lines = [each for line in function.writer.lines for each in _completed(line, function)]
     is_bounded = kernel.direction != "decode" or any(re.search(r"\bmost\b", line) for line in (*made, *lines))
     writer.line(f"def {name}({', '.join(['data', 'end', *(['most'] if is_bounded else []), *parameters])}):")
-    for line in (*_begin(function, role), *made):
+    for line in (*_begin(function, role), *made, *objects.begun(scope)):
         writer.line(f"    {line}" if line else "")
     writer.lines += lines
     return Attempt(name, tuple(parameters), is_bounded=is_bounded)
@@ -180,7 +182,7 @@ def _completed(line: str, function: Function) -> list[str]:
             rows = scope.rows - {flat_name(scope.lanes, *each) for each in function.settled}
         else:
             rows = {name for name, offset in scope.offsets.items() if begin <= offset < begin + size}
-        late = [span for span in scope.direct.late if begin <= span[1] < begin + size]
+        late = [span for span in scope.direct.late if begin <= span[1] < begin + size and span[1] not in (scope.attributes or ())]
         texts = {scope.text(*span) for span in late if span in scope.direct.texts}
         pieces = {scope.piece(*span) for span in late if span in scope.direct.pieces}
         numbers = rows - scope.floats - scope.bools
@@ -219,6 +221,16 @@ def _lanes(function: Function) -> set[int]:
     return {lane for lane, _ in scope.views} | scope.rooms | scope.counted | function.moved
 
 
+def chained(lines: list[str]) -> list[str]:
+    """Assignments, of which those of the same number, view or rows are one."""
+    found: dict[str, list[str]] = {}
+    for line in lines:
+        name, _, value = line.partition(" = ")
+        is_constant = value in ("0", "_NOTHING") or value.startswith("_EMPTY_")
+        found.setdefault(value if is_constant else line, []).append(name)
+    return [f"{' = '.join(names)} = {value}" if " = " not in value else value for value, names in found.items()]
+
+
 def _begin(function: Function, role: Role) -> list[str]:
     """Lanes that start empty, or as another message has left them, and views of those that are given."""
     kept, moved, kind = function.kernel.kept, moved_lanes(function.kernel), kind_of(role)
@@ -239,11 +251,12 @@ def _begin(function: Function, role: Role) -> list[str]:
             lines += [f"{name}_room = len({name}) // {scope.lanes.stride(lane)}"] if lane in scope.rooms else []
             lines += [f'{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
         else:
-            lines.append(f"{name} = {'[]' if lane in scope.direct.gathered else 'bytearray()'}")
+            lines.append(f"{name} = {'[]' if lane in scope.direct.gathered else '_NOTHING'}")
             lines += [f"{name}_room = 0"] if lane in scope.rooms else []
             lines += [f"{name}_{code} = _EMPTY_{code}" for code in codes]
             scope.loads.update(f"_EMPTY_{code}" for code in codes)
         lines += [f"{name}_used = 0"] if lane in scope.counted else []
+    lines = chained(lines)
     if not scope.flat and kind in ("decode", "borrow"):
         lines.append('message = bytearray(_rows["message"])' if kept else f"message = bytearray({scope.lanes.stride(0)})")
         lines += [f'message_{code} = memoryview(message).cast("{code}")' for lane, code in sorted(scope.views) if lane == 0 and code]

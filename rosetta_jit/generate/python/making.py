@@ -57,6 +57,18 @@ class Make:
     def _count(self, slot: Span, lane: int, row: str) -> str:
         return self.scope.field(lane, row, slot.offset + 8, "i64")
 
+    def count(self, slot: Span) -> str:
+        """How many elements a sequence of the message has; nothing where it is an object already."""
+        direct = self.scope.direct
+        known = {*direct.whole, *direct.appended, *direct.elements}
+        places = {*direct.pieces, *direct.texts}
+        is_known = slot.lane in known or (0, slot.offset) in places or direct.visit_at(0, slot.offset) is not None
+        return "" if is_known else self._count(slot, 0, "0")
+
+    def unknown(self, slot: Span) -> str:
+        """The fields that the schema does not know."""
+        return self._text("_bytes", slot, 0, "0")
+
     def struct(self, struct: Struct, slot: Row, lane: int, row: str) -> str:
         arguments = [self.member(each, member, slot, lane, row) for each, member in zip(struct.fields, slot.members, strict=True)]
         if slot.unknown is not None:

@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 from rosetta_jit.generate.parentheses import bare
@@ -20,7 +21,7 @@ from rosetta_jit.generate.python.messages_in_parts import Messages
 from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope, lanes_within
 from rosetta_jit.generate.python.packed import Part
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
-from rosetta_jit.generate.python.presence import bit_tested, case_tested, named_in_rounds, places_read
+from rosetta_jit.generate.python.presence import bit_tested, case_tested, may_be_empty, places_read, words_tested
 from rosetta_jit.generate.python.printed import Function
 from rosetta_jit.generate.python.recursive_rows import is_hidden
 from rosetta_jit.generate.python.statements import fail, print_statement
@@ -36,16 +37,20 @@ class Parts(Messages):
     """Prints a body.
 
     ``routines`` are the functions that give the bytes which routines write, ``called`` those of them that are. ``lengths`` are the locals
-    of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has.
+    of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has: ``tested`` are
+    those of them of which nothing but single bits is asked for.
     """
 
     def __init__(self, unit: Unit, function: Function, scope: ObjectScope, body: nodes.Block, routines: Mapping[str, str]) -> None:
-        exprs = (expr for stmt, _ in statements(body) for expr in expressions_of(stmt))
+        self.tested = words_tested(body)
+        lets = (stmt for stmt, _ in statements(body) if not (isinstance(stmt, nodes.Let) and stmt.name in self.tested))
+        exprs = (expr for stmt in lets for expr in expressions_of(stmt))
         needed = {(place.lane, place.offset) for expr in exprs for place in places_read(expr)}
         super().__init__(unit, function, scope, needed)
         self.body, self.routines, self.called, self.depth = body, routines, set[str](), function.writer.depth
         self.lengths, self.words = set[str](), dict[str, nodes.Place]()
-        self.counted, self.reads = named_in_rounds(body), reads_of(body)
+        self.reads = reads_of(body)
+        self.binder.lacking = may_be_empty(body)
 
     # --- statements ------------------------------------------------------------------------------------------------------------------
 
@@ -150,7 +155,7 @@ class Parts(Messages):
             case _:
                 pass
         self.positions.constant(stmt.name, stmt.value)
-        if stmt.name in self.function.read:
+        if stmt.name in self.function.read and stmt.name not in self.tested:
             print_statement(self.function, stmt)
 
     def _note(self, condition: nodes.Expr) -> None:
@@ -281,10 +286,12 @@ class Parts(Messages):
         exact, objects = dict(self.exact), dict(self.scope.objects)
         lines = self.function.writer.lines
         before = len(lines)
-        with self.function.writer.indented(self._head(loop)):
+        with self.function.writer.indented(self._head(loop, is_counted=True)):
             self._rows(loop)
             self.block(loop.body)
             self.flush()
+        if not any(re.search(rf"\b{self.scope.locals.identifier(loop.variable)}\b", line) for line in lines[before + 1 :]):
+            lines[before] = lines[before][: -len(lines[before].lstrip())] + f"{self._head(loop, is_counted=False)}"
         if len(lines) == before + 1:
             lines.pop()  # the loop does nothing
         elif (flags := flags_of(loop)) is not None and (sequence := self._sequence_of_flags(loop, flags)) is not None:
@@ -317,14 +324,18 @@ class Parts(Messages):
         is_round = self.scope.behind(flags.place) == nodes.Local("i64", loop.variable)
         return self.scope.sequences.get(flags.place.lane) if is_round and self._is_count_of(flags.place.lane, loop.count) else None
 
-    def _head(self, loop: nodes.For) -> str:
+    def _head(self, loop: nodes.For, *, is_counted: bool) -> str:
         sequence, own = self._sequence_of(loop), self.scope.locals.identifier(loop.variable)
         if sequence is None:
             return f"for {own} in range({self.function.text(loop.count)}):"
         rows = ", ".join(self._row_names(loop, sequence))
-        if loop.variable not in self.counted:
-            return f"for {rows} in {sequence.local}:"
-        return f"for {own}, {f'({rows})' if sequence.is_map else rows} in enumerate({sequence.local}):"
+        if not is_counted:
+            return f"for {rows} in {self._elements(loop, sequence)}:"
+        return f"for {own}, {f'({rows})' if sequence.is_map else rows} in enumerate({self._elements(loop, sequence)}):"
+
+    def _elements(self, loop: nodes.For, sequence: Listed) -> str:
+        """What a loop goes through: most maps have no entries."""
+        return f"{sequence.local}.items() if {self.function.text(loop.count)} else ()" if sequence.is_map else sequence.local
 
     def _row_names(self, loop: nodes.For, sequence: Listed) -> list[str]:
         """The locals for an element, or for key and value of a map."""

@@ -82,14 +82,8 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
             reserve(function, lane, function.text(count))
         case nodes.Advance(lane, count):
             function.line(f"{function.scope.used(lane)} += {function.text(count)}")
-        case nodes.Return(position, ()):
-            function.line(f"return {function.objects.result(function.scope, function.text(position))}")
-        case nodes.Return(position, registers):
-            function.scope.from_call.add("registers")
-            words = "".join(f"call_registers[{number}], " for number, _ in registers)
-            values = "".join(f"{function.text(value)}, " for _, value in registers)
-            function.line(f"{words}call_end = {values}{function.text(position)}")
-            function.line(f"return {function.objects.result(function.scope, 'call_end')}")
+        case nodes.Return():
+            _return(function, stmt)
         case nodes.For() | nodes.While() | nodes.If() | nodes.Switch():
             _nested(function, stmt)
         case nodes.Call():
@@ -98,6 +92,20 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
             _host_call(function, stmt)
         case _:
             assert_never(stmt)
+
+
+def _return(function: Function, stmt: nodes.Return) -> None:
+    """The end of an attempt that has succeeded."""
+    position, objects = function.text(stmt.position), function.objects
+    if stmt.registers:
+        function.scope.from_call.add("registers")
+        words = "".join(f"call_registers[{number}], " for number, _ in stmt.registers)
+        values = "".join(f"{function.text(value)}, " for _, value in stmt.registers)
+        function.line(f"{words}call_end = {values}{position}")
+        position = "call_end"
+    for line in objects.settings(function.scope):
+        function.line(line)
+    function.line(f"return {objects.result(function.scope, position)}")
 
 
 def _origin(function: Function, stmt: nodes.Stmt) -> str:

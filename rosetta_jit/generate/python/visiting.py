@@ -56,7 +56,7 @@ def _reader(lane: int, descents: Descents, function: Function) -> tuple[Scope, l
     *stmts, last = block
     assert isinstance(last, nodes.Return)
     scope.direct.visits, scope.direct.left = descents.visits, descents.left
-    function.read, function.positive = read_names(block), not_negative(block, descents.behind())
+    function.read, function.positive = read_names(block, scope.direct.read()), not_negative(block, descents.behind())
     at, depth = (scope.locals.identifier(each.name) for each in (descents.at, descents.depth))
     print_block(function, tuple(stmts))
     result = f"{objects.row(scope, lane)}, {function.text(last.position)}"
