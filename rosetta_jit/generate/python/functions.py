@@ -13,6 +13,7 @@ from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.bools import with_bytes
 from rosetta_jit.generate.python.classes import WORDS
+from rosetta_jit.generate.python.constants import with_constants
 from rosetta_jit.generate.python.descents import Descents, NotNested, descended
 from rosetta_jit.generate.python.direct import FEW, direct
 from rosetta_jit.generate.python.expressions import CODES, Scope, expression, flat_name, view_name
@@ -143,7 +144,7 @@ def _nested(writer: Writer, role: Role, number: int, function: Callable[[], Func
 def _attempt(writer: Writer, role: Role, number: int, function: Function, descents: Descents | None = None) -> Attempt:
     kernel, scope, objects = function.kernel, function.scope, function.objects
     body = reached(kernel.bodies[number]) if descents is None else descents.body
-    body = with_locals(with_bytes(body)) if kernel.direction == "decode" else undamaged(body, kernel.sites)
+    body = with_locals(with_bytes(with_constants(body))) if kernel.direction == "decode" else undamaged(body, kernel.sites)
     if kernel.direction == "decode" and scope.flat and objects.layout is not None:
         body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, objects.blobs, few=0 if scope.numpy else FEW)
     behind = frozenset[str]()

@@ -14,7 +14,7 @@ def grouped(block: nodes.Block) -> Iterator[list[nodes.Stmt]]:
     """The statements of a block: those that read, or write, scalars one behind the other in the message together."""
     group: list[nodes.Stmt] = []
     for stmt in block:
-        if group and not _continues(group, stmt):
+        if group and not continues(group, stmt):
             yield group
             group = []
         group.append(stmt)
@@ -47,7 +47,8 @@ def _as_loaded(value: nodes.Expr) -> nodes.Load | None:
             return None
 
 
-def _continues(group: list[nodes.Stmt], stmt: nodes.Stmt) -> bool:
+def continues(group: list[nodes.Stmt], stmt: nodes.Stmt) -> bool:
+    """Whether a statement has to do with the number behind those that some others have to do with."""
     before = group[-1]
     one, other = scalar_of(before), scalar_of(stmt)
     if one is None or other is None or isinstance(before, nodes.Store) != isinstance(stmt, nodes.Store):

@@ -210,7 +210,8 @@ class _Module:
         said = "; without ``copy`` arrays are views of it, where they can be, which nothing writes to. Raises"
         never = "; no array can be a view of it, whatever ``copy`` says. Raises"
         writer.line(f'"""Read a message{said if copies else never if has_arrays else "; raises"} `DecodeError`."""')
-        writer.line("data = bytes(data)")
+        with writer.indented("if type(data) is not bytes:"):
+            writer.line("data = bytes(data)")
         writer.line("end = len(data)")
         if any(attempt.is_bounded for attempt in attempts):
             writer.line("most = 1048576 + 64 * end")

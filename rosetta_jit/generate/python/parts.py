@@ -20,7 +20,7 @@ from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.messages_in_parts import Messages
 from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope, lanes_within
 from rosetta_jit.generate.python.packed import Part
-from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
+from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum, known_width
 from rosetta_jit.generate.python.presence import bit_tested, case_tested, may_be_empty, places_read, words_tested
 from rosetta_jit.generate.python.printed import Function
 from rosetta_jit.generate.python.recursive_rows import is_hidden
@@ -28,7 +28,7 @@ from rosetta_jit.generate.python.statements import fail, print_statement
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
-from rosetta_jit.kernel.terms import index, type_of
+from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.model.layout import Number
 
@@ -275,7 +275,7 @@ class Parts(Messages):
         if (bools := bools_written(loop)) is not None and self._is_count_of(bools.first.lane, loop.count):
             self._bools(loop, bools)
             return
-        width = sum(nodes.WIDTH[type_of(each.value)] for each in loop.body if isinstance(each, nodes.Store))
+        width = known_width(loop.body)
         self.flush()
         outer = self.positions.at
         holds = self.positions.loop(stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, nodes.Assign))

@@ -122,8 +122,7 @@ def _within(number: Any, least: int, most: int) -> int:
 
 def _many(part: Any, code: str) -> list[Any]:
     """The numbers that lie in a message."""
-    view: Any = memoryview(part)
-    return view.cast(code).tolist()
+    return array(code, part).tolist()
 
 
 def _many_turned(part: Any, code: str) -> list[Any]:
