@@ -103,6 +103,29 @@ def test_messages_ask_for_no_more_rows_than_their_size_allows():
     answers_as_the_library(module(type_request("decode", "t.m", given)), (decode, encode), kids)
 
 
+def test_arrays_of_several_dimensions():
+    """They are written from the object, whatever of their dimensions is fixed."""
+    given = lcm("""
+        struct m { int32_t n; byte a[n][8]; double b[2][2][3]; int8_t c[2][3]; byte d[2][3]; float e[3][n];
+            string f[n][2]; boolean g[2][2]; p h[3]; }
+        struct p { double x, y; }
+    """)
+    values = {
+        "n": 2,
+        "a": [b"abcdefgh", bytes(8)],
+        "b": [[[1.0, 2.0, 3.0]] * 2, [[-1.0, 0.5, 0.0]] * 2],
+        "c": [[-1, 2, 3], [4, 5, -6]],
+        "d": [b"abc", b"def"],
+        "e": [[1.0, 2.0]] * 3,
+        "f": [["a", "é"], ["", "b"]],
+        "g": [[True, False], [False, True]],
+        "h": [{"x": 1.0, "y": 2.0}] * 3,
+    }
+    for wishes in ARRAYS:
+        assert "_size_1" not in text_of(given, wishes)
+    compare(given, values, {**values, "n": 0, "a": [], "e": [[]] * 3, "f": []})
+
+
 @pytest.mark.parametrize("name", ["b", "q", "d", "used", "room", "b_lane"])
 def test_arrays_are_called_otherwise_than_what_generated_source_has_beside_others(name):
     """A lane `u_b`, of the field `b` of elements of `u`, and the view of `u` as numbers of one byte."""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 JOIN = 'b"".join'
 
-MOST_STARRED = 40
+MOST_STARRED = 256
 """Numbers of an array of a fixed length that are packed together with those around it."""
 
 FEW_STARRED = 4

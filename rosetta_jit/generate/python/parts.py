@@ -284,6 +284,7 @@ class Parts(Messages):
             self.positions.at = outer.plus(self.positions.values[loop.variable], width)
         begin = self.positions.at
         exact, objects = dict(self.exact), dict(self.scope.objects)
+        self._as_python_has_them(loop)
         lines = self.function.writer.lines
         before = len(lines)
         with self.function.writer.indented(self._head(loop, is_counted=True)):
@@ -301,6 +302,15 @@ class Parts(Messages):
         self._end(holds, begin, width)
         if holds is None:
             self.positions.at = outer.plus(self.positions.sum(loop.count), width)
+
+    def _as_python_has_them(self, loop: nodes.For) -> None:
+        """Elements of arrays of numpy's become Python's at once, where a loop goes through them."""
+        parts = [part for stmt, _ in statements(loop.body) for expr in expressions_of(stmt) for part in subexpressions(expr)]
+        lanes = {part.place.lane for part in parts if isinstance(part, nodes.Get) and part.place.row != index(0)}
+        for lane in sorted(lanes) if self.unit.numpy else ():
+            sequence = self.scope.sequences.get(lane)
+            if sequence is not None and isinstance(sequence.slot, Number) and sequence.element is not None:
+                self.line(f"{sequence.local} = _few({sequence.local})")
 
     def _end(self, holds: str | None, begin: Sum, width: int) -> None:
         now = self.positions.at
