@@ -34,10 +34,11 @@ class _Copy:
 
 def borrowed(kernel: ir.Kernel, layout: Layout) -> ir.Kernel:
     """A kernel without the copies."""
-    return with_bodies(kernel, tuple(_borrowed(body, kernel, layout) for body in kernel.bodies))
+    return with_bodies(kernel, tuple(borrowed_block(body, kernel, layout) for body in kernel.bodies))
 
 
-def _borrowed(block: nodes.Block, kernel: ir.Kernel, layout: Layout) -> nodes.Block:
+def borrowed_block(block: nodes.Block, kernel: ir.Kernel, layout: Layout) -> nodes.Block:
+    """A block of a kernel without them."""
     blocks, parts = blocks_within(block), [stmt for stmt, _ in statements(block)]
     mentions: dict[int, set[int]] = {}
     for stmt in (*parts, *(stmt for routine in kernel.routines for stmt, _ in statements(routine.body))):
@@ -77,12 +78,20 @@ def _copy(block: nodes.Block, lane: int, parts: Sequence[nodes.Stmt]) -> _Copy |
                 return None
             place = nodes.Place(starts[0].place.lane, starts[0].place.row, starts[0].place.offset + 8)
             counts = [each for each in block if isinstance(each, nodes.SetField) and (each.place, each.value) == (place, size)]
-            changed = {each.name for each in parts if isinstance(each, nodes.Assign)}
-            if len(counts) != 1 or changed & (locals_in(at) | locals_in(size)):
+            if len(counts) != 1 or _changes_between(block, (*copying, starts[0], counts[0]), at, size):
                 return None
             return _Copy(tuple(copying), starts[0], counts[0], at, size)
         case _:
             return None
+
+
+def _changes_between(block: nodes.Block, own: Sequence[nodes.Stmt], at: nodes.Expr, size: nodes.Expr) -> bool:
+    """Whether a block sets a local of a text's place or size, from where the text is checked, if it is, to where it is said where it is."""
+    ids = {id(each) for each in own}
+    check = nodes.IsText(nodes.Wire(at), size)
+    found = [number for number, each in enumerate(block) if id(each) in ids or (isinstance(each, nodes.Expect) and each.condition == check)]
+    between = (stmt for stmt, _ in statements(block[min(found) : max(found) + 1]))
+    return bool({each.name for each in between if isinstance(each, nodes.Assign)} & (locals_in(at) | locals_in(size)))
 
 
 def _rewritten(block: nodes.Block, instead: dict[int, nodes.Block]) -> nodes.Block:

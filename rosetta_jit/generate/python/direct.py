@@ -17,12 +17,13 @@ from typing import cast
 from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.python.bools import bools_read
 from rosetta_jit.generate.python.counted import counted
+from rosetta_jit.generate.python.descents import Visit
 from rosetta_jit.generate.python.groups import turned
-from rosetta_jit.generate.python.mentions import blocks_within, changes, counted_lanes, places_of, reads_any
+from rosetta_jit.generate.python.mentions import blocks_within, changes, counted_lanes, places_of, reads_any, reads_behind
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.terms import add, index, mul
-from rosetta_jit.kernel.walk import expressions_of, statements
+from rosetta_jit.kernel.walk import bound_names, expressions_of, statements
 from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span
 from rosetta_jit.startup.dataclass import dataclass, field
 
@@ -39,7 +40,8 @@ class Direct:
     they are checked, by lane and offset, with the place and size of the check: ``late`` are those of them that may not come.
     ``pieces`` are spans of bytes, with their place and size: they are taken where a statement sets where they start.
     ``gathered`` are lanes of texts and of bytes, with the place and size of one in the message: it is appended where a statement sets where
-    it starts.
+    it starts. ``visits`` are the calls of `Descents` by name, whose rows become lists; of messages within others ``left`` has the lanes
+    that all of them share, by number: a list says how many more rows each may have.
     """
 
     whole: set[int] = field(default_factory=set[int])
@@ -55,24 +57,49 @@ class Direct:
         default_factory=dict[tuple[int, int], "tuple[nodes.Expr, nodes.Expr]"]
     )
     gathered: dict[int, tuple[nodes.Expr, nodes.Expr]] = field(default_factory=dict[int, "tuple[nodes.Expr, nodes.Expr]"])
+    visits: dict[str, Visit] = field(default_factory=dict[str, Visit])
+    left: dict[int, int] | None = None
+
+    def read(self) -> set[str]:
+        """The locals that say where texts and bytes are, which no statement may say any more."""
+        spans = (*self.texts.values(), *self.pieces.values(), *self.gathered.values())
+        return {name for place in spans for expr in place for name in locals_in(expr)}
+
+    def visit_at(self, lane: int, offset: int) -> Visit | None:
+        """What fills the span of a row."""
+        places = ((each, each.place) for each in self.visits.values())
+        return next((each for each, place in places if place is not None and (place.lane, place.offset) == (lane, offset)), None)
 
     def text_at(self, at: nodes.Expr, size: nodes.Expr) -> tuple[int, int] | None:
         """The span of the text that is checked there."""
         return next((span for span, place in self.texts.items() if place == (at, size)), None)
 
 
+MESSAGE = nodes.Place(0, index(0))
+
+
 def direct(
-    block: nodes.Block, kernel: ir.Kernel, layout: Layout, arrays: Collection[int], blobs: Collection[int], *, few: int = FEW
+    block: nodes.Block,
+    kernel: ir.Kernel,
+    layout: Layout,
+    arrays: Collection[int],
+    blobs: Collection[int],
+    *,
+    few: int = FEW,
+    row: nodes.Place = MESSAGE,
 ) -> tuple[nodes.Block, Direct]:
-    """A body of a decoder whose message's row is locals, without the statements that lanes of ``arrays`` needed; and what is direct.
+    """A block of a decoder whose ``row`` is locals, without the statements that lanes of ``arrays`` needed; and what is direct.
 
     Arrays of a fixed length, up to ``few`` elements, are read together with the numbers around them; ``blobs`` are arrays of bytes.
     """
     found = _Search(counted(block), kernel, layout, arrays, blobs, few)
-    found.arrays(found.block, nodes.Place(0, index(0)))
+    found.arrays(found.block, row)
     for inner in blocks_within(found.block):
         found.texts(inner)
-        found.texts_of_message(inner)
+        if row == MESSAGE:
+            found.texts_of_message(inner)
+    if row != MESSAGE:
+        found.direct.appended.add(row.lane)
     return found.rewritten(found.block), found.direct
 
 
@@ -133,6 +160,8 @@ class _Search:
             begin, end = (places.get(nodes.Place(row.lane, row.row, offset + behind)) for behind in (0, 8))
             once = all(len(self.fields.get((row.lane, offset + behind), ())) == 1 for behind in (0, 8))
             if begin is None or end is None or not once or self.mentions.get(lane) or (row.lane, offset) in self.direct.texts:
+                continue
+            if _binds_behind(block, begin, locals_in(end.value)):
                 continue
             match end.value:
                 case nodes.Binary("sub", nodes.Const(_, -1), size):
@@ -299,12 +328,21 @@ class _Search:
         row = nodes.Binary("add", start, nodes.Local("i64", loop.variable))
         here = {id(each) for each in loop.body}
         sets = [each for each in fills if isinstance(each, nodes.SetField) and id(each) in here and each.place.row == row]
-        if len(sets) != len(fills) or sorted(each.place.offset for each in sets) != sorted(needed):
+        read = [each for each in fills if not changes(each, lane)]
+        if len(sets) + len(read) != len(fills) or sorted(each.place.offset for each in sets) != sorted(needed):
+            return False
+        if not reads_behind(loop.body, {id(each) for each in read}, nodes.Place(lane, row)):
             return False
         self.direct.appended.add(lane)
         self.direct.loops[loop.variable] = lane
         self.arrays(loop.body, nodes.Place(lane, row))
         return True
+
+
+def _binds_behind(block: nodes.Block, stmt: nodes.Stmt, names: set[str]) -> bool:
+    """Whether a block binds some locals behind a statement of it."""
+    number = next(number for number, each in enumerate(block) if each is stmt)
+    return any(names & {*bound_names(each)} for each in block[number:])
 
 
 def _first_row(loop: nodes.For) -> nodes.Place | None:

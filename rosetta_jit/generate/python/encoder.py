@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Namespace, Writer
 from rosetta_jit.generate.python.bools import with_stored_bools
 from rosetta_jit.generate.python.counted import counted
+from rosetta_jit.generate.python.descents import Descents, NotNested, descended
 from rosetta_jit.generate.python.functions import words_of
 from rosetta_jit.generate.python.object_rows import ObjectScope
 from rosetta_jit.generate.python.parts import Parts
@@ -46,28 +48,30 @@ def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str,
     """The encoder of a unit; raises NotInParts where it cannot be printed so."""
     if len(kernel.bodies) != 1:
         raise NotInParts
-    loads, written, texts = set[str](), dict(KNOWN), dict[str, list[str]]()
-    for routine in kernel.routines:
-        if routine.name in KNOWN:
-            continue
-        try:
-            texts[routine.name] = _routine(unit, kernel, routine, _scope(kernel, lanes, paths, loads), written)
-        except NotInParts:
-            continue
-        written[routine.name] = f"_encode_{routine.name}"
+    loads, written = set[str](), dict(KNOWN)
+    texts = _routines(unit, kernel, lambda: _scope(kernel, lanes, paths, loads), written)
     scope = _scope(kernel, lanes, paths, loads)
     scope.numpy = unit.numpy
-    body, rows = without_work_list(undamaged(reached(kernel.bodies[0]), kernel.sites), unit.layout)
+    body = undamaged(reached(kernel.bodies[0]), kernel.sites)
+    descents = _descents(body, unit)
+    body, rows = without_work_list(body, unit.layout) if descents is None else (descents.body, dict[int, RowBody]())
+    scope.keeps_long = bool(rows)
     parts = _parts(unit, kernel, scope, body, written, depth=2)
-    parts.has_long = bool(unit.layout.recursive)
+    parts.has_long = bool(rows)
+    parts.visits = {} if descents is None else descents.visits
     parts.binder.bind(0, index(0), "target", Ref(unit.type), unit.layout.root)
     parts.block(parts.body)
     called, pending, inner = set[str](), set(parts.called), dict[int, str]()
     for lane, struct in unit.layout.recursive:
-        if lane in rows:
-            of_row, inner[lane] = _row(unit, kernel, _scope(kernel, lanes, paths, loads), (lane, struct, rows[lane]), written)
-            pending |= of_row.called
-            parts.rows_called |= of_row.rows_called
+        of_lane = _scope(kernel, lanes, paths, loads)
+        if descents is not None and lane in descents.rows:
+            of_row, inner[lane] = _visited(unit, kernel, of_lane, (lane, struct), descents, written)
+        elif lane in rows:
+            of_row, inner[lane] = _row(unit, kernel, of_lane, (lane, struct, rows[lane]), written)
+        else:
+            continue
+        pending |= of_row.called
+        parts.rows_called |= of_row.rows_called
     if not parts.rows_called <= {*inner}:
         raise NotInParts
     while pending:
@@ -79,6 +83,49 @@ def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str,
     return InParts(
         (*routines, *(inner[lane] for lane in sorted(parts.rows_called))), tuple(lines), frozenset(loads), frozenset(scope.from_call)
     )
+
+
+def _routines(unit: Unit, kernel: Kernel, scope: Callable[[], ObjectScope], written: dict[str, str]) -> dict[str, list[str]]:
+    """The functions of routines, by name; ``written`` gets what those that can be printed are called."""
+    texts = dict[str, list[str]]()
+    for routine in kernel.routines:
+        if routine.name in KNOWN:
+            continue
+        try:
+            texts[routine.name] = _routine(unit, kernel, routine, scope(), written)
+        except NotInParts:
+            continue
+        written[routine.name] = f"_encode_{routine.name}"
+    return texts
+
+
+def _descents(body: Block, unit: Unit) -> Descents | None:
+    try:
+        return descended(body, unit.layout)
+    except NotNested:
+        return None
+
+
+def _visited(
+    unit: Unit, kernel: Kernel, scope: ObjectScope, of: tuple[int, str], descents: Descents, written: dict[str, str]
+) -> tuple[Parts, str]:
+    """The function that adds the parts of a message of a lane, of a type that contains itself."""
+    lane, struct = of
+    scope.numpy = unit.numpy
+    depth = scope.locals.identifier(descents.depth.name)
+    parts = _parts(unit, kernel, scope, descents.rows[lane], written, depth=1)
+    *block, last = parts.body
+    assert isinstance(last, Return)
+    parts.visits, parts.begun = descents.visits, True
+    begin = descents.at.name
+    parts.positions.at = parts.positions.values[begin] = Sum(0, frozenset({(begin, 1)}))
+    element = parts.binder.local("element")
+    parts.binder.bind(lane, descents.row, element, Ref(struct), unit.layout.lanes[lane].element)
+    parts.block(tuple(block))
+    if parts.positions.sum(last.position) != parts.positions.at:
+        raise NotInParts
+    parts.flush()
+    return parts, "\n".join([f"def {row_function(scope.lanes, lane)}({element}, parts, {depth}):", *parts.function.writer.lines])
 
 
 def _scope(kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], loads: set[str]) -> ObjectScope:
@@ -112,7 +159,7 @@ def _routine(unit: Unit, kernel: Kernel, routine: Routine, scope: ObjectScope, w
 def _row(unit: Unit, kernel: Kernel, scope: ObjectScope, of: tuple[int, str, RowBody], written: dict[str, str]) -> tuple[Parts, str]:
     """The function for messages of a lane, of a type that contains itself."""
     lane, struct, row = of
-    scope.numpy = unit.numpy
+    scope.numpy, scope.keeps_long = unit.numpy, True
     parts = _parts(unit, kernel, scope, (*row.block, Return(row.end)), written, depth=1)
     parts.result = "_joined"
     if any(isinstance(stmt, Expect) and not is_behind_message(stmt) for stmt, _ in statements(parts.body)):

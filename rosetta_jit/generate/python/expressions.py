@@ -18,6 +18,7 @@ from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import NUMPY
 from rosetta_jit.generate.python.conversions import bits_of, converted, wrapped
+from rosetta_jit.generate.python.descents import Visit
 from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.generate.python.groups import zigzag_of
 from rosetta_jit.kernel import nodes
@@ -59,6 +60,7 @@ class Scope:
     that lanes belong to; ``counted`` and ``rooms`` are lanes, ``loads`` functions that it needs, ``from_call`` what each call brings:
     its time and number, registers, object. ``small`` are the locals of 64 bits, without a sign, that are known to be below 2**63,
     ``sums`` those that are sums.
+    ``attributes`` are the fields of the message's row that are the object's at once, by offset, if it is made first.
     """
 
     locals: Namespace
@@ -76,6 +78,7 @@ class Scope:
     rooms: set[int] = field(default_factory=set[int])
     from_call: set[str] = field(default_factory=set[str])
     direct: Direct = field(default_factory=Direct)
+    attributes: dict[int, str] | None = None
     numpy: bool = False
     small: set[str] = field(default_factory=set[str])
     sums: dict[nodes.Expr, str] = field(default_factory=dict[nodes.Expr, str])
@@ -131,16 +134,30 @@ class Scope:
         return self.locals.identifier(f"{self.lanes.rows(lane)}\0{offset}" if path is None else re.sub(r"\W+", "_", path).strip("_"))
 
     def text(self, lane: int, offset: int) -> str:
-        """The local for a text that is decoded where it is checked."""
+        """The local for a text that is decoded where it is checked, or the attribute."""
+        if lane == 0 and self.attributes and offset in self.attributes:
+            return self.attributes[offset]
         start = flat_name(self.lanes, offset, "i64") if lane == 0 else self.own(lane, offset, "i64")
         return self.locals.identifier(f"{start.removesuffix('_start')}\0text")
 
+    def visited(self, visit: Visit) -> str:
+        """The list of the messages, of a type that contains itself, that fill a span."""
+        return self.locals.identifier(f"{self.lanes.rows(visit.lane)}\0list")
+
+    def reader(self, lane: int) -> str:
+        """The function that reads such a message of a lane."""
+        return f"_read_{self.lanes.rows(lane)}"
+
     def piece(self, lane: int, offset: int) -> str:
-        """The local for bytes that are taken where a statement says where they are."""
+        """The local for bytes that are taken where a statement says where they are, or the attribute."""
+        if lane == 0 and self.attributes and offset in self.attributes:
+            return self.attributes[offset]
         return self.locals.identifier(f"{self.text(lane, offset).removesuffix('_text')}\0bytes")
 
     def field(self, lane: int, row: str, offset: int, scalar: str) -> str:
         """A scalar of a row."""
+        if lane == 0 and self.attributes and offset in self.attributes:
+            return self.attributes[offset]
         if lane == 0 and self.flat:
             name = flat_name(self.lanes, offset, scalar)
             self.rows.add(name)

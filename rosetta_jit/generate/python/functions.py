@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Namespace, Writer
@@ -13,12 +13,15 @@ from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.bools import with_bytes
 from rosetta_jit.generate.python.classes import WORDS
+from rosetta_jit.generate.python.constants import with_constants
+from rosetta_jit.generate.python.descents import Descents, NotNested, descended
 from rosetta_jit.generate.python.direct import FEW, direct
 from rosetta_jit.generate.python.expressions import CODES, Scope, expression, flat_name, view_name
 from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.printed import Attempt, Function, Objects
 from rosetta_jit.generate.python.statements import print_block
 from rosetta_jit.generate.python.sums import with_locals
+from rosetta_jit.generate.python.visiting import OF_READERS, counts_of_rows, print_readers, with_copy
 from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.shares import moved_lanes
 from rosetta_jit.generate.undamaged import undamaged
@@ -29,6 +32,9 @@ from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
+
+
+NONE = frozenset[str]()
 
 
 def is_flat(kernel: ir.Kernel, lanes: Lanes) -> bool:
@@ -73,9 +79,13 @@ def _set(stmt: nodes.Stmt) -> list[nodes.Place]:
 
 def words_of(lanes: Lanes) -> frozenset[str]:
     """What no local may be called."""
-    codes = ("", *sorted(set(CODES.values())))
-    words = WORDS | {view_name(lanes, lane, code) for lane in range(len(lanes.all)) for code in codes}
-    return words | {f"{lanes.rows(lane)}_{what}" for lane in range(len(lanes.all)) for what in ("used", "room")}
+    return WORDS.union(beside_lanes(lanes), (each.identifier for each in lanes.all))
+
+
+def beside_lanes(lanes: Lanes) -> frozenset[str]:
+    """What the views of lanes are called, and the locals that say how many rows there are: no lane may be called so."""
+    whats = (*sorted(set(CODES.values())), "used", "room")
+    return frozenset(f"{each.identifier}_{what}" for each in lanes.all for what in whats)
 
 
 def print_kernel(
@@ -92,43 +102,72 @@ def print_kernel(
 ) -> tuple[str, tuple[Attempt, ...]]:
     """The functions of a kernel as text, and how they are called; an encoder gets the hidden lanes that were ``measured``."""
     writer, routines = Writer(), dict[str, Attempt]()
-    words = words_of(lanes) | objects.classes
+    words = words_of(lanes) | objects.classes | (OF_READERS if objects.layout is not None and objects.layout.recursive else NONE)
 
-    def scope() -> Scope:
-        return Scope(Namespace(words), lanes, flat, loads, kernel.name, paths, numpy=objects.numpy)
+    def scope(needed: set[str] = loads) -> Scope:
+        return Scope(Namespace(words), lanes, flat, needed, kernel.name, paths, numpy=objects.numpy)
 
     for routine in kernel.routines:
         function = Function(scope(), kernel, routine.sites, routines, (), objects, is_routine=True)
         routines[routine.name] = _routine(writer, role, routine, function)
-    attempts = [
-        _attempt(writer, role, number, Function(scope(), kernel, kernel.sites, routines, origins, objects, measured=measured))
-        for number in range(len(kernel.bodies))
-    ]
+    attempts: list[Attempt] = []
+    for number in range(len(kernel.bodies)):
+        needed = set(loads)
+
+        def new(needed: set[str] = needed) -> Function:
+            return Function(scope(needed), kernel, kernel.sites, routines, origins, objects, measured=measured)
+
+        try:
+            attempts.append(_nested(writer, role, number, new))
+        except NotNested:
+            needed.clear()
+            attempts.append(_attempt(writer, role, number, new()))
+        loads |= needed
     return writer.text(), tuple(attempts)
 
 
-def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Attempt:
+def _nested(writer: Writer, role: Role, number: int, function: Callable[[], Function]) -> Attempt:
+    """A decoder of messages of a type that contains itself, with a function for those within others; NotNested where it needs rows."""
+    own = function()
+    kernel, objects = own.kernel, own.objects
+    if kernel.direction != "decode" or not own.scope.flat or objects.layout is None:
+        raise NotNested
+    descents, readers = descended(reached(kernel.bodies[number]), objects.layout), Writer()
+    if copies := print_readers(readers, descents, function):
+        own.scope.from_call.add("copy")
+    attempt = _attempt(readers, role, number, own, descents)
+    _blank(writer)
+    writer.lines += [with_copy(line, copies=copies) for line in readers.lines]
+    return attempt
+
+
+def _attempt(writer: Writer, role: Role, number: int, function: Function, descents: Descents | None = None) -> Attempt:
     kernel, scope, objects = function.kernel, function.scope, function.objects
-    body = reached(kernel.bodies[number])
-    body = with_locals(with_bytes(body)) if kernel.direction == "decode" else undamaged(body, kernel.sites)
+    body = reached(kernel.bodies[number]) if descents is None else descents.body
+    body = with_locals(with_bytes(with_constants(body))) if kernel.direction == "decode" else undamaged(body, kernel.sites)
     if kernel.direction == "decode" and scope.flat and objects.layout is not None:
         body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, objects.blobs, few=0 if scope.numpy else FEW)
+    behind = frozenset[str]()
+    if descents is not None:
+        scope.direct.visits, scope.direct.left, behind = descents.visits, descents.left, descents.behind()
     function.settled = settled(body)
-    function.read, function.positive = read_names(body), not_negative(body)
+    if kernel.direction == "decode" and scope.flat:
+        scope.attributes = objects.attributes(body, function.settled, scope.direct)
+    function.read, function.positive = read_names(body, scope.direct.read()), not_negative(body, behind)
     function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, nodes.Reserve))
     blocks = (body, *(routine.body for routine in kernel.routines))
     exprs = (expr for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt))
     measured = {part.lane for expr in exprs for part in subexpressions(expr) if isinstance(part, nodes.Capacity)}
     function.outside = {stmt.lane for stmt in body if isinstance(stmt, nodes.Reserve)} - measured - {*kernel.kept}
     print_block(function, body)
-    made = objects.inner(scope)
+    made = objects.inner(scope) if descents is None else counts_of_rows(descents, scope)
     name = f"_{role}_{number + 1}"
     parameters = _parameters(function, own_only=kernel.direction != "decode")
     _blank(writer)
     lines = [each for line in function.writer.lines for each in _completed(line, function)]
-    is_bounded = kernel.direction != "decode" or any(re.search(r"\bmost\b", line) for line in lines)
+    is_bounded = kernel.direction != "decode" or any(re.search(r"\bmost\b", line) for line in (*made, *lines))
     writer.line(f"def {name}({', '.join(['data', 'end', *(['most'] if is_bounded else []), *parameters])}):")
-    for line in (*_begin(function, role), *made):
+    for line in (*_begin(function, role), *made, *objects.begun(scope)):
         writer.line(f"    {line}" if line else "")
     writer.lines += lines
     return Attempt(name, tuple(parameters), is_bounded=is_bounded)
@@ -144,7 +183,7 @@ def _completed(line: str, function: Function) -> list[str]:
             rows = scope.rows - {flat_name(scope.lanes, *each) for each in function.settled}
         else:
             rows = {name for name, offset in scope.offsets.items() if begin <= offset < begin + size}
-        late = [span for span in scope.direct.late if begin <= span[1] < begin + size]
+        late = [span for span in scope.direct.late if begin <= span[1] < begin + size and span[1] not in (scope.attributes or ())]
         texts = {scope.text(*span) for span in late if span in scope.direct.texts}
         pieces = {scope.piece(*span) for span in late if span in scope.direct.pieces}
         numbers = rows - scope.floats - scope.bools
@@ -183,6 +222,16 @@ def _lanes(function: Function) -> set[int]:
     return {lane for lane, _ in scope.views} | scope.rooms | scope.counted | function.moved
 
 
+def chained(lines: list[str]) -> list[str]:
+    """Assignments, of which those of the same number, view or rows are one."""
+    found: dict[str, list[str]] = {}
+    for line in lines:
+        name, _, value = line.partition(" = ")
+        is_constant = value in ("0", "_NOTHING") or value.startswith("_EMPTY_")
+        found.setdefault(value if is_constant else line, []).append(name)
+    return [f"{' = '.join(names)} = {value}" if " = " not in value else value for value, names in found.items()]
+
+
 def _begin(function: Function, role: Role) -> list[str]:
     """Lanes that start empty, or as another message has left them, and views of those that are given."""
     kept, moved, kind = function.kernel.kept, moved_lanes(function.kernel), kind_of(role)
@@ -203,11 +252,12 @@ def _begin(function: Function, role: Role) -> list[str]:
             lines += [f"{name}_room = len({name}) // {scope.lanes.stride(lane)}"] if lane in scope.rooms else []
             lines += [f'{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
         else:
-            lines.append(f"{name} = {'[]' if lane in scope.direct.gathered else 'bytearray()'}")
+            lines.append(f"{name} = {'[]' if lane in scope.direct.gathered else '_NOTHING'}")
             lines += [f"{name}_room = 0"] if lane in scope.rooms else []
             lines += [f"{name}_{code} = _EMPTY_{code}" for code in codes]
             scope.loads.update(f"_EMPTY_{code}" for code in codes)
         lines += [f"{name}_used = 0"] if lane in scope.counted else []
+    lines = chained(lines)
     if not scope.flat and kind in ("decode", "borrow"):
         lines.append('message = bytearray(_rows["message"])' if kept else f"message = bytearray({scope.lanes.stride(0)})")
         lines += [f'message_{code} = memoryview(message).cast("{code}")' for lane, code in sorted(scope.views) if lane == 0 and code]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
 
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
@@ -15,7 +14,7 @@ def grouped(block: nodes.Block) -> Iterator[list[nodes.Stmt]]:
     """The statements of a block: those that read, or write, scalars one behind the other in the message together."""
     group: list[nodes.Stmt] = []
     for stmt in block:
-        if group and not _continues(group, stmt):
+        if group and not continues(group, stmt):
             yield group
             group = []
         group.append(stmt)
@@ -48,7 +47,8 @@ def _as_loaded(value: nodes.Expr) -> nodes.Load | None:
             return None
 
 
-def _continues(group: list[nodes.Stmt], stmt: nodes.Stmt) -> bool:
+def continues(group: list[nodes.Stmt], stmt: nodes.Stmt) -> bool:
+    """Whether a statement has to do with the number behind those that some others have to do with."""
     before = group[-1]
     one, other = scalar_of(before), scalar_of(stmt)
     if one is None or other is None or isinstance(before, nodes.Store) != isinstance(stmt, nodes.Store):
@@ -77,8 +77,8 @@ def _reads(stmt: nodes.Stmt, name: str) -> bool:
     return isinstance(base, nodes.Local) and base.name == name
 
 
-def not_negative(block: nodes.Block) -> frozenset[str]:
-    """The integers of a body that are never negative, whatever the message: Python's have no end."""
+def not_negative(block: nodes.Block, others: frozenset[str] = frozenset()) -> frozenset[str]:
+    """The integers of a body that are never negative, whatever the message, as ``others`` are not: Python's have no end."""
     values: dict[str, list[nodes.Expr]] = {}
     unknown: set[str] = set()
     for stmt, _ in statements(block):
@@ -93,7 +93,7 @@ def not_negative(block: nodes.Block) -> frozenset[str]:
                 pass
     for name in _checked(block):
         values[name] = []
-    known = {name for name in values if name not in unknown} | {END.name}
+    known = {name for name in values if name not in unknown} | {END.name} | others
     while True:
         kept = {name for name in known if all(is_not_negative(value, known) for value in values.get(name, ()))}
         if kept == known:
@@ -102,15 +102,17 @@ def not_negative(block: nodes.Block) -> frozenset[str]:
 
 
 def _checked(block: nodes.Block) -> Iterator[str]:
-    """Names of constants of which the next statement says that they are 0 or more."""
-    for (stmt, _), (after, _) in pairwise(statements(block)):
-        match stmt, after:
-            case nodes.Let(name, _), nodes.Expect(nodes.Compare("ge" | "gt", nodes.Local(_, same), nodes.Const(_, least)), _) if (
-                name == same and least >= 0
-            ):
+    """Names of constants of which a statement says, behind other constants at most, that they are 0 or more."""
+    before = set[str]()
+    for stmt, _ in statements(block):
+        match stmt:
+            case nodes.Let(name, _):
+                before.add(name)
+            case nodes.Expect(nodes.Compare("ge" | "gt", nodes.Local(_, name), nodes.Const(_, least)), _) if name in before and least >= 0:
                 yield name
+                before.clear()
             case _:
-                pass
+                before.clear()
 
 
 def is_not_negative(expr: nodes.Expr, known: frozenset[str] | set[str]) -> bool:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 JOIN = 'b"".join'
 
-MOST_STARRED = 40
+MOST_STARRED = 256
 """Numbers of an array of a fixed length that are packed together with those around it."""
 
 FEW_STARRED = 4
@@ -122,7 +122,7 @@ class Written:
 
         Neither are entries of maps, but in types that contain themselves, whose texts may be long as they are bound.
         """
-        recursive, around = bool(self.unit.layout.recursive), [*self.around.values()][-1:]
+        recursive, around = self.scope.keeps_long, [*self.around.values()][-1:]
         is_within = (around and not around[0].is_entry) or self.result or (around and recursive)
         if not is_within or self.unit.layout.lanes[sequence.lane].name.endswith(UNKNOWN):
             return sequence.local
@@ -132,7 +132,8 @@ class Written:
     def _numbers(self, sequence: Listed, order: str, exact: int | None) -> None:
         assert isinstance(sequence.slot, Number)
         code, own = "?" if sequence.slot.scalar == "bool" else CODES[sequence.slot.scalar], sequence.local
-        if exact is not None and 0 < exact <= (FEW_STARRED if self.unit.numpy else MOST_STARRED):
+        is_alone = self.unit.numpy and order == "<" and not self.pending
+        if exact is not None and 0 < exact <= (FEW_STARRED if self.unit.numpy else MOST_STARRED) and not is_alone:
             self._add(order if WIDTH[sequence.slot.scalar] > 1 else "", code * exact, (starred(own, self.scope),))
         elif self.unit.numpy:
             dtype, is_bool = self.scope.dtype(sequence.slot.scalar, order), sequence.slot.scalar == "bool"
@@ -179,7 +180,7 @@ class Written:
             return f"{join}({self.list_name})"
         texts = [part_text(each, self.scope, self.exact) for each in self.pending]
         if len(texts) == 1 and (self.pending[0].codes or join == JOIN):
-            return texts[0] if self.pending[0].codes else f"bytes({texts[0]})"
+            return texts[0] if self.pending[0].codes or texts[0].startswith("_raw(") else f"bytes({texts[0]})"
         return f"{join}(({', '.join(texts)}{',' if len(texts) == 1 else ''}))" if texts else 'b""'
 
     # --- a message behind its length ---------------------------------------------------------------------------------------------------

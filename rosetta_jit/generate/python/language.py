@@ -13,17 +13,19 @@ from rosetta_jit.generate.c.unit_lanes import named_lanes
 from rosetta_jit.generate.python.borrowed import borrowed
 from rosetta_jit.generate.python.classes import WORDS, classes, names_of
 from rosetta_jit.generate.python.collecting import Collect
+from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.generate.python.encoder import encoder_in_parts
 from rosetta_jit.generate.python.expressions import CODES, TRUTH, Scope, view_name
-from rosetta_jit.generate.python.functions import Attempt, is_flat, print_kernel
+from rosetta_jit.generate.python.functions import Attempt, beside_lanes, is_flat, print_kernel
 from rosetta_jit.generate.python.making import Make, arrays_of
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.python.printed import Objects
+from rosetta_jit.generate.python.sparse import OBJECT, attributes_of, settings
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.nodes import Advance, Const, Direction, Return
+from rosetta_jit.kernel.nodes import Advance, Block, Const, Direction, Return
 from rosetta_jit.kernel.traits import asks_host
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.types import Bytes, Ref
@@ -56,7 +58,8 @@ class _Module:
 
     def __init__(self, unit: Unit) -> None:
         self.unit, self.names = unit, names_of(unit)
-        self.lanes = named_lanes(unit, WORDS | frozenset(self.names.values()))
+        reserved = WORDS | frozenset(self.names.values())
+        self.lanes = named_lanes(unit, reserved | beside_lanes(named_lanes(unit, reserved)(())))
         self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.loads, self.structs = set[str](), dict[str, str]()
         self.root, self.guesses = self.names[unit.type], False
@@ -145,6 +148,8 @@ class _Module:
         taken = frozenset(stmt.lane for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, Advance))
 
         def made(scope: Scope, _: str) -> str:
+            if scope.attributes is not None:
+                return OBJECT
             return Make(self.unit, scope, self.names, taken).value(type_, self.unit.layout.root, 0, "0")
 
         def inner(scope: Scope) -> list[str]:
@@ -154,14 +159,27 @@ class _Module:
                 lines += [f"def made_{scope.lanes.rows(lane)}(index):", f"    return {text}", ""]
             return lines
 
-        arrays = arrays_of(self.unit)
+        arrays, in_all = arrays_of(self.unit), arrays_of(self.unit, in_recursive=True)
+        rows = {**in_all, **{lane: Ref(struct) for lane, struct in self.unit.layout.recursive}}
 
         def row(scope: Scope, lane: int) -> str:
-            return Make(self.unit, scope, self.names, taken).value(arrays[lane], self.unit.layout.lanes[lane].element, lane, "")
+            return Make(self.unit, scope, self.names, taken).value(rows[lane], self.unit.layout.lanes[lane].element, lane, "")
+
+        def attributes(body: Block, settled: frozenset[tuple[int, str]], direct: Direct) -> dict[int, str] | None:
+            return attributes_of(self.unit, body, settled, direct)
+
+        def begun(scope: Scope) -> list[str]:
+            return [f"{OBJECT} = {self.root}()"] if scope.attributes is not None else []
+
+        def set_in_the_end(scope: Scope) -> list[str]:
+            return [*settings(Make(self.unit, scope, self.names, taken))] if scope.attributes is not None else []
 
         origins, lanes = self.unit.origins.get("borrow", ()), self._lanes(kernel)
-        blobs = frozenset(lane for lane, type_ in arrays.items() if isinstance(self.unit.schema.resolve(type_), Bytes))
-        objects = Objects(made, row, inner, self.unit.layout, frozenset(arrays), blobs, self.unit.numpy, frozenset(self.names.values()))
+        blobs = frozenset(lane for lane, type_ in in_all.items() if isinstance(self.unit.schema.resolve(type_), Bytes))
+        lists = frozenset(arrays), frozenset(in_all), blobs
+        objects = Objects(
+            made, attributes, begun, set_in_the_end, row, inner, self.unit.layout, *lists, self.unit.numpy, frozenset(self.names.values())
+        )
         text, attempts = print_kernel(kernel, lanes, "borrow", self.loads, origins, objects, self.paths, flat=is_flat(kernel, lanes))
         return "\n\n".join([self._sites("borrow"), f"\n{text.rstrip()}", f"\n{self._decode(attempts)}"])
 
@@ -192,7 +210,8 @@ class _Module:
         said = "; without ``copy`` arrays are views of it, where they can be, which nothing writes to. Raises"
         never = "; no array can be a view of it, whatever ``copy`` says. Raises"
         writer.line(f'"""Read a message{said if copies else never if has_arrays else "; raises"} `DecodeError`."""')
-        writer.line("data = bytes(data)")
+        with writer.indented("if type(data) is not bytes:"):
+            writer.line("data = bytes(data)")
         writer.line("end = len(data)")
         if any(attempt.is_bounded for attempt in attempts):
             writer.line("most = 1048576 + 64 * end")
@@ -233,7 +252,7 @@ class _Module:
         self._from_call(writer, {f"call_{what}" for what in made.from_call}, "encode")
         writer.lines += made.lines
         writer.depth = 1
-        fails = any("raise _Failed(" in line for line in made.lines)
+        fails = any("raise _Failed(" in line for line in (*made.routines, *made.lines))
         if fails:
             writer.line("except _Failed as failed:")
             writer.line("    raise _error(_ENCODE_SITES, failed, None) from None")

@@ -57,6 +57,18 @@ class Make:
     def _count(self, slot: Span, lane: int, row: str) -> str:
         return self.scope.field(lane, row, slot.offset + 8, "i64")
 
+    def count(self, slot: Span) -> str:
+        """How many elements a sequence of the message has; nothing where it is an object already."""
+        direct = self.scope.direct
+        known = {*direct.whole, *direct.appended, *direct.elements}
+        places = {*direct.pieces, *direct.texts}
+        is_known = slot.lane in known or (0, slot.offset) in places or direct.visit_at(0, slot.offset) is not None
+        return "" if is_known else self._count(slot, 0, "0")
+
+    def unknown(self, slot: Span) -> str:
+        """The fields that the schema does not know."""
+        return self._text("_bytes", slot, 0, "0")
+
     def struct(self, struct: Struct, slot: Row, lane: int, row: str) -> str:
         arguments = [self.member(each, member, slot, lane, row) for each, member in zip(struct.fields, slot.members, strict=True)]
         if slot.unknown is not None:
@@ -148,6 +160,8 @@ class Make:
     def _direct(self, type_: Type, slot: Span, lane: int, row: str) -> str | None:
         """What is a list or a string already."""
         known = self.scope.direct
+        if (visit := known.visit_at(lane, slot.offset)) is not None:
+            return self.scope.visited(visit)
         element = self.unit.layout.lanes[slot.lane].element
         if (lane, slot.offset) in known.pieces:
             piece = self.scope.piece(lane, slot.offset)
@@ -184,10 +198,11 @@ class Make:
         return self.value(type_, self.unit.layout.lanes[lane].element, lane, index)
 
 
-def arrays_of(unit: Unit) -> dict[int, Type]:
-    """The types of the elements of arrays by their lanes; not those of types that contain themselves."""
+def arrays_of(unit: Unit, *, in_recursive: bool = False) -> dict[int, Type]:
+    """The types of the elements of arrays by their lanes; not those of types that contain themselves, nor by default what is in these."""
     found: dict[int, Type] = {}
     pending: list[tuple[Type, Slot]] = [(Ref(unit.type), unit.layout.root)]
+    pending += [(Ref(struct), unit.layout.lanes[lane].element) for lane, struct in unit.layout.recursive if in_recursive]
     while pending:
         type_, slot = pending.pop()
         match unit.schema.resolve(type_), slot:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
-from rosetta_jit.kernel.walk import expressions_of, extents_of, subexpressions
+from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
 
 
 def places_of(stmt: nodes.Stmt) -> Iterator[nodes.Place]:
@@ -65,3 +65,18 @@ def counted_lanes(stmt: nodes.Stmt) -> set[int]:
     found = {stmt.lane} if isinstance(stmt, nodes.Reserve | nodes.Advance) else set[int]()
     parts = (part for expr in expressions_of(stmt) for part in subexpressions(expr))
     return found | {part.lane for part in parts if isinstance(part, nodes.Used)}
+
+
+def reads_behind(block: nodes.Block, readers: set[int], row: nodes.Place) -> bool:
+    """Whether some statements of a block read fields of its row alone, each behind the one that sets it."""
+    known, seen = set[int](), set[int]()
+    for outer in block:
+        for stmt, _ in statements((outer,)):
+            if id(stmt) in readers:
+                seen.add(id(stmt))
+                places = [each for each in places_of(stmt) if each.lane == row.lane]
+                if any(each.row != row.row or each.offset not in known for each in places):
+                    return False
+        if isinstance(outer, nodes.SetField) and (outer.place.lane, outer.place.row) == (row.lane, row.row):
+            known.add(outer.place.offset)
+    return seen == readers

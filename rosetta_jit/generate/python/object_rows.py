@@ -61,7 +61,7 @@ class ObjectScope(Scope):
     program has set, and that may be no numbers of their type; ``float_fields`` has the types of the fields that are floats, by lane, row
     and offset: the cases of a union share a local. ``maybe`` has what is there under a condition, by the field that says so and the bit
     or number of it. ``messages`` are the locals that hold messages of types that contain themselves, by lane and row, ``linked`` those
-    which are fields, by lane.
+    which are fields, by lane. ``keeps_long``: long texts stay what they are until all parts are joined.
     """
 
     objects: dict[tuple[int, Expr], dict[int, str]] = field(default_factory=dict[tuple[int, "Expr"], dict[int, str]])
@@ -73,6 +73,7 @@ class ObjectScope(Scope):
     maybe: dict[tuple[Place, int], Maybe] = field(default_factory=dict[tuple[Place, int], Maybe])
     messages: dict[tuple[int, Expr], str] = field(default_factory=dict[tuple[int, "Expr"], str])
     linked: dict[int, str] = field(default_factory=dict[int, str])
+    keeps_long: bool = False
 
     def place(self, place: Place, scalar: str) -> str:
         """A scalar of a row of an object."""
@@ -97,8 +98,9 @@ class ObjectScope(Scope):
         if known.startswith(FLAG):
             return self.truth(place)
         if (float_ := self.float_fields.get((place.lane, place.row, place.offset))) is None:
-            return f"_index({bare(known)}) != 0"
-        return f"{self.struct('<', CODES[float_], 'whole')}({bare(known)}) != {bytes(WIDTH[float_])!r}"
+            return f"{known} is not _ZERO and _index({bare(known)}) != 0"
+        bits = f"{self.struct('<', CODES[float_], 'whole')}({bare(known)})"
+        return f"{known} is not _ZERO_FLOAT and {bits} != {bytes(WIDTH[float_])!r}"
 
     def truth_of(self, place: Place) -> str | None:
         known = self.objects.get((place.lane, place.row), {}).get(place.offset, "")
@@ -175,13 +177,15 @@ def _checked(text: str, scalar: str) -> str:
 class Binder:
     """Prints the statements that take objects apart.
 
-    ``needed`` are the fields, by lane and offset, that anything reads; ``row`` is that at hand.
+    ``needed`` are the fields, by lane and offset, that anything reads, ``lacking`` the sequences of which some statement asks whether they
+    are empty; ``row`` is that at hand.
     """
 
     unit: Unit
     function: Function
     scope: ObjectScope
     needed: set[tuple[int, int]]
+    lacking: frozenset[tuple[int, int]] = frozenset()
     row: Expr = field(default_factory=lambda: index(0))
 
     def local(self, what: str) -> str:
@@ -226,7 +230,7 @@ class Binder:
             case Struct(), Row():
                 self._struct(lane, at, resolved, slot, found)
             case ((String() | Bytes() | Array()), Span()):
-                self._sequence(at, resolved, slot, found)
+                self._sequence(lane, at, resolved, slot, found)
             case Map(key, value), Span():
                 self._map(at, map_entry(key, value), slot, found)
             case Union(), Variant():
@@ -240,7 +244,7 @@ class Binder:
     def _map(self, at: str, entry: Struct, slot: Span, found: dict[int, str]) -> None:
         lane = self.unit.layout.lanes[slot.lane]
         own = self.local(lane.name.rpartition(".")[2] or "entries")
-        self.function.line(f"{own} = {at}.items()")
+        self.function.line(f"{own} = {at}")
         self.scope.sequences[slot.lane] = Listed(own, slot.lane, entry, lane.element, is_map=True)
         found[slot.offset], found[slot.offset + 8] = f"{START}{slot.lane}", f"len({own})"
 
@@ -266,7 +270,7 @@ class Binder:
             elif self._is_needed(lane, member.slot):
                 self.value(lane, f"{at}.{name}", each.type, member.slot, found)
         if slot.unknown is not None and self._is_needed(lane, slot.unknown):
-            self._sequence(f"{at}.unknown_fields", Bytes(), slot.unknown, found)
+            self._sequence(lane, f"{at}.unknown_fields", Bytes(), slot.unknown, found)
         for number, bits in enumerate(words):
             if (lane, slot.offset + 8 * number) in self.needed:
                 word = found[slot.offset + 8 * number] = self.local("presence")
@@ -288,12 +292,14 @@ class Binder:
         if isinstance(member.slot, Number) and self._is_needed(lane, member.slot):
             self.value(lane, f"(0 if {own} is None else {own})", type_.value, member.slot, found)
 
-    def _sequence(self, at: str, type_: String | Bytes | Array, slot: Span, found: dict[int, str]) -> None:
+    def _sequence(self, of: int, at: str, type_: String | Bytes | Array, slot: Span, found: dict[int, str]) -> None:
         lane = self.unit.layout.lanes[slot.lane]
         if isinstance(type_, String) and type_.encoding == "utf-16":
             raise NotInParts
         own = self.local((at if at.replace(".", "").isidentifier() and "." in at else lane.name).rpartition(".")[2] or "value")
-        encoded = f"_utf8({at})" if self.unit.layout.recursive else f'{at}.encode("utf-8", "surrogateescape")'
+        encoded = f"_utf8({at})" if self.scope.keeps_long else f'{at}.encode("utf-8", "surrogateescape")'
+        if isinstance(type_, String) and (of, slot.offset) in self.lacking:
+            encoded = f'b"" if {at} == "" else {encoded}'
         self.function.line(f"{own} = {encoded if isinstance(type_, String) else at}")
         element = type_.element if isinstance(type_, Array) else None
         self.scope.sequences[slot.lane] = Listed(own, slot.lane, element, lane.element, is_text=isinstance(type_, String))

@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 from rosetta_jit.generate.parentheses import bare
@@ -16,39 +17,40 @@ from rosetta_jit.generate.python.defaults import asked_first, reads_of
 from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.flags import Flags, flags_of
 from rosetta_jit.generate.python.groups import turned
-from rosetta_jit.generate.python.joined_parts import Written
+from rosetta_jit.generate.python.messages_in_parts import Messages
 from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope, lanes_within
 from rosetta_jit.generate.python.packed import Part
-from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
-from rosetta_jit.generate.python.presence import bit_tested, case_tested, named_in_rounds, places_read
+from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum, known_width
+from rosetta_jit.generate.python.presence import bit_tested, case_tested, may_be_empty, places_read, words_tested
 from rosetta_jit.generate.python.printed import Function
-from rosetta_jit.generate.python.recursive_rows import is_hidden, row_function
+from rosetta_jit.generate.python.recursive_rows import is_hidden
 from rosetta_jit.generate.python.statements import fail, print_statement
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
-from rosetta_jit.kernel.terms import index, type_of
+from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.model.layout import Number
 
 
-class Parts(Written):
+class Parts(Messages):
     """Prints a body.
 
     ``routines`` are the functions that give the bytes which routines write, ``called`` those of them that are. ``lengths`` are the locals
-    of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has. Messages of types that
-    contain themselves are made by functions, of the lanes ``rows_called``: ``bodies`` are the locals that have them by those for their
-    ``sizes``, which have names by the rows of the messages.
+    of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has: ``tested`` are
+    those of them of which nothing but single bits is asked for.
     """
 
     def __init__(self, unit: Unit, function: Function, scope: ObjectScope, body: nodes.Block, routines: Mapping[str, str]) -> None:
-        exprs = (expr for stmt, _ in statements(body) for expr in expressions_of(stmt))
+        self.tested = words_tested(body)
+        lets = (stmt for stmt, _ in statements(body) if not (isinstance(stmt, nodes.Let) and stmt.name in self.tested))
+        exprs = (expr for stmt in lets for expr in expressions_of(stmt))
         needed = {(place.lane, place.offset) for expr in exprs for place in places_read(expr)}
         super().__init__(unit, function, scope, needed)
         self.body, self.routines, self.called, self.depth = body, routines, set[str](), function.writer.depth
         self.lengths, self.words = set[str](), dict[str, nodes.Place]()
-        self.counted, self.reads = named_in_rounds(body), reads_of(body)
-        self.bodies, self.sizes, self.rows_called = dict[str, str](), dict[nodes.Expr, str](), set[int]()
+        self.reads = reads_of(body)
+        self.binder.lacking = may_be_empty(body)
 
     # --- statements ------------------------------------------------------------------------------------------------------------------
 
@@ -153,17 +155,8 @@ class Parts(Written):
             case _:
                 pass
         self.positions.constant(stmt.name, stmt.value)
-        if stmt.name in self.function.read:
+        if stmt.name in self.function.read and stmt.name not in self.tested:
             print_statement(self.function, stmt)
-
-    def _message(self, size: str, place: nodes.Place) -> None:
-        """A message of a type that contains itself, whose size is a local of the kernel."""
-        body = self.binder.local("body")
-        self.line(f"{body} = {row_function(self.scope.lanes, place.lane)}({self.scope.message(place)})")
-        self.bodies[size], self.sizes[place.row] = body, size
-        self.rows_called.add(place.lane)
-        self.has_long = True
-        self.positions.values[size] = self.positions.new()
 
     def _note(self, condition: nodes.Expr) -> None:
         """How many elements an array has, where that is checked."""
@@ -185,6 +178,9 @@ class Parts(Written):
 
     def _call(self, call: nodes.Call) -> None:
         """A routine that writes from its first argument on, and gives the position behind."""
+        if (visit := self.visits.get(call.routine)) is not None:
+            self._visit(call, visit)
+            return
         if call.routine not in self.routines or call.results[0].name in self.function.read:
             raise NotInParts
         match call.arguments[1:]:
@@ -279,7 +275,7 @@ class Parts(Written):
         if (bools := bools_written(loop)) is not None and self._is_count_of(bools.first.lane, loop.count):
             self._bools(loop, bools)
             return
-        width = sum(nodes.WIDTH[type_of(each.value)] for each in loop.body if isinstance(each, nodes.Store))
+        width = known_width(loop.body)
         self.flush()
         outer = self.positions.at
         holds = self.positions.loop(stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, nodes.Assign))
@@ -288,12 +284,15 @@ class Parts(Written):
             self.positions.at = outer.plus(self.positions.values[loop.variable], width)
         begin = self.positions.at
         exact, objects = dict(self.exact), dict(self.scope.objects)
+        self._as_python_has_them(loop)
         lines = self.function.writer.lines
         before = len(lines)
-        with self.function.writer.indented(self._head(loop)):
+        with self.function.writer.indented(self._head(loop, is_counted=True)):
             self._rows(loop)
             self.block(loop.body)
             self.flush()
+        if not any(re.search(rf"\b{self.scope.locals.identifier(loop.variable)}\b", line) for line in lines[before + 1 :]):
+            lines[before] = lines[before][: -len(lines[before].lstrip())] + f"{self._head(loop, is_counted=False)}"
         if len(lines) == before + 1:
             lines.pop()  # the loop does nothing
         elif (flags := flags_of(loop)) is not None and (sequence := self._sequence_of_flags(loop, flags)) is not None:
@@ -303,6 +302,15 @@ class Parts(Written):
         self._end(holds, begin, width)
         if holds is None:
             self.positions.at = outer.plus(self.positions.sum(loop.count), width)
+
+    def _as_python_has_them(self, loop: nodes.For) -> None:
+        """Elements of arrays of numpy's become Python's at once, where a loop goes through them."""
+        parts = [part for stmt, _ in statements(loop.body) for expr in expressions_of(stmt) for part in subexpressions(expr)]
+        lanes = {part.place.lane for part in parts if isinstance(part, nodes.Get) and part.place.row != index(0)}
+        for lane in sorted(lanes) if self.unit.numpy else ():
+            sequence = self.scope.sequences.get(lane)
+            if sequence is not None and isinstance(sequence.slot, Number) and sequence.element is not None:
+                self.line(f"{sequence.local} = _few({sequence.local})")
 
     def _end(self, holds: str | None, begin: Sum, width: int) -> None:
         now = self.positions.at
@@ -326,24 +334,18 @@ class Parts(Written):
         is_round = self.scope.behind(flags.place) == nodes.Local("i64", loop.variable)
         return self.scope.sequences.get(flags.place.lane) if is_round and self._is_count_of(flags.place.lane, loop.count) else None
 
-    def _is_count_of(self, lane: int, count: nodes.Expr) -> bool:
-        """Whether a number is that of all elements of a sequence."""
-        match count:
-            case nodes.Local(_, name):
-                return self.scope.counts.get(name) == lane
-            case nodes.Const(_, number):
-                return self.exact.get(lane) == number
-            case _:
-                return False
-
-    def _head(self, loop: nodes.For) -> str:
+    def _head(self, loop: nodes.For, *, is_counted: bool) -> str:
         sequence, own = self._sequence_of(loop), self.scope.locals.identifier(loop.variable)
         if sequence is None:
             return f"for {own} in range({self.function.text(loop.count)}):"
         rows = ", ".join(self._row_names(loop, sequence))
-        if loop.variable not in self.counted:
-            return f"for {rows} in {sequence.local}:"
-        return f"for {own}, {f'({rows})' if sequence.is_map else rows} in enumerate({sequence.local}):"
+        if not is_counted:
+            return f"for {rows} in {self._elements(loop, sequence)}:"
+        return f"for {own}, {f'({rows})' if sequence.is_map else rows} in enumerate({self._elements(loop, sequence)}):"
+
+    def _elements(self, loop: nodes.For, sequence: Listed) -> str:
+        """What a loop goes through: most maps have no entries."""
+        return f"{sequence.local}.items() if {self.function.text(loop.count)} else ()" if sequence.is_map else sequence.local
 
     def _row_names(self, loop: nodes.For, sequence: Listed) -> list[str]:
         """The locals for an element, or for key and value of a map."""

@@ -6,6 +6,7 @@ from collections.abc import Hashable, Iterable, Iterator
 from itertools import count
 
 from rosetta_jit.kernel.nodes import (
+    WIDTH,
     Binary,
     Block,
     Call,
@@ -16,6 +17,7 @@ from rosetta_jit.kernel.nodes import (
     Expr,
     Failure,
     Fill,
+    For,
     If,
     Local,
     Require,
@@ -27,7 +29,7 @@ from rosetta_jit.kernel.nodes import (
     Wire,
 )
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
-from rosetta_jit.kernel.terms import index
+from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 
@@ -128,6 +130,22 @@ class Positions:
         if holds is not None:
             self.at = self.values[holds]
         return holds
+
+
+def known_width(block: Block) -> int:
+    """How many bytes a block writes of which the number is fixed."""
+    found = 0
+    for stmt in block:
+        match stmt:
+            case Store(_, value):
+                found += WIDTH[type_of(value)]
+            case Copy(Wire(), _, Const(_, size)) | Fill(Wire(), Const(_, size)):
+                found += int(size)
+            case For(_, Const(_, count), inner):
+                found += int(count) * known_width(inner)
+            case _:
+                pass
+    return found
 
 
 def without_positions(block: Block) -> Block:

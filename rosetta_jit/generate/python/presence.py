@@ -7,11 +7,26 @@ length      let size = get i64 lane 14[n].0         measured before; behind the 
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from typing import TypeGuard
 
 from rosetta_jit.kernel.ir import Site
-from rosetta_jit.kernel.nodes import Assign, Binary, Block, Call, Compare, Const, Expect, Expr, Get, Let, Local, Place, SetField, Stmt, Var
+from rosetta_jit.kernel.nodes import (
+    Assign,
+    Binary,
+    Block,
+    Compare,
+    Const,
+    Expect,
+    Expr,
+    Get,
+    If,
+    Let,
+    Local,
+    Place,
+    Stmt,
+    Var,
+)
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 
@@ -36,6 +51,38 @@ def case_tested(condition: Expr, words: Mapping[str, Place]) -> tuple[Place, int
             return None if place is None else (place, int(number))
         case _:
             return None
+
+
+def words_tested(block: Block) -> frozenset[str]:
+    """The locals for presence words of which a block asks for one bit each time: objects say by themselves what they have."""
+    words = {stmt.name: stmt.value.place for stmt, _ in statements(block) if isinstance(stmt, Let) and _is_word(stmt.value)}
+    found = set(words)
+    for stmt, _ in statements(block):
+        for expr in expressions_of(stmt):
+            tested = bit_tested(expr, words) if isinstance(stmt, If | Expect) else None
+            if tested is None or tested[1].bit_count() != 1:
+                found -= locals_in(expr)
+    return frozenset(found)
+
+
+def _is_word(value: Expr) -> TypeGuard[Get]:
+    return isinstance(value, Get) and value.type == "u64"
+
+
+def may_be_empty(block: Block) -> frozenset[tuple[int, int]]:
+    """The sequences of rows, by lane and offset, that a block leaves out where they are empty."""
+    counts = {stmt.name: stmt.value.place for stmt, _ in statements(block) if isinstance(stmt, Let) and isinstance(stmt.value, Get)}
+    asked = {each.condition.left for each, _ in statements(block) if isinstance(each, If) and _asks_for_any(each.condition)}
+    places = (counts.get(each.name) if isinstance(each, Local) else each.place if isinstance(each, Get) else None for each in asked)
+    return frozenset((place.lane, place.offset - 8) for place in places if place is not None)
+
+
+def _asks_for_any(condition: Expr) -> TypeGuard[Compare]:
+    match condition:
+        case Compare("ne" | "gt", _, Const(_, 0)):
+            return True
+        case _:
+            return False
 
 
 def _place(value: Expr, words: Mapping[str, Place]) -> Place | None:
@@ -96,19 +143,3 @@ def _without(block: Block, sites: Sequence[Site], measured: frozenset[str], numb
             case _:
                 found.append(with_blocks(stmt, lambda inner: _without(inner, sites, measured, numbers)))
     return tuple(found)
-
-
-def named_in_rounds(block: Block) -> frozenset[str]:
-    """The locals that anything needs but the rows of elements: of variables of loops, whose elements have to be counted."""
-    found = set[str]()
-    for stmt, _ in statements(block):
-        if isinstance(stmt, SetField):
-            continue  # of the row of a message alone
-        for expr in stmt.arguments if isinstance(stmt, Call) else expressions_of(stmt):
-            rows = Counter(name for part in subexpressions(expr) for place in _read(part) for name in _names(place.row))
-            found |= {name for name, count in Counter(_names(expr)).items() if count > rows[name]}
-    return frozenset(found)
-
-
-def _names(expr: Expr) -> Iterator[str]:
-    return (part.name for part in subexpressions(expr) if isinstance(part, Local))

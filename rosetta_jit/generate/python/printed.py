@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.generate.python.expressions import Scope, expression
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.model.layout import Layout
@@ -38,16 +39,22 @@ class Attempt:
 class Objects:
     """How a function comes to objects: ``result`` is what a return of success gives at a position.
 
+    Where a body sets ``attributes`` of the object (`sparse`), ``begun`` makes it, and ``settings`` are the lines before a return.
+
     Of decoders ``row`` is the object of a lane's row, ``inner`` are the lines of functions for rows that contain rows of their own type,
-    ``arrays`` are the lanes of arrays in the ``layout``, and ``blobs`` those of bytes among them. ``numpy``: arrays of numbers are numpy's;
-    ``classes`` are the names of classes, which no local hides.
+    ``arrays`` are the lanes of arrays in the ``layout``, ``inner_arrays`` these and those in types that contain themselves, and ``blobs``
+    those of bytes among them. ``numpy``: arrays of numbers are numpy's; ``classes`` are the names of classes, which no local hides.
     """
 
     result: Callable[[Scope, str], str]
+    attributes: Callable[[nodes.Block, frozenset[tuple[int, str]], Direct], dict[int, str] | None] = lambda _, __, ___: None
+    begun: Callable[[Scope], list[str]] = lambda _: []
+    settings: Callable[[Scope], list[str]] = lambda _: []
     row: Callable[[Scope, int], str] = lambda _, lane: f"<row {lane}>"
     inner: Callable[[Scope], list[str]] = lambda _: []
     layout: Layout | None = None
     arrays: frozenset[int] = frozenset()
+    inner_arrays: frozenset[int] = frozenset()
     blobs: frozenset[int] = frozenset()
     numpy: bool = False
     classes: frozenset[str] = frozenset()

@@ -51,7 +51,8 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
         count = Const("i64", int(size.value) // stride) if isinstance(size, Const) else _divided(size, stride)
         number = f"{count.value}" if isinstance(count, Const) else f"{{{bare(expression(scope, count))}}}"
         code = "?" if slot.scalar == "bool" else CODES[slot.scalar]
-        few, many = f'"{order.replace("<", "")}{number}{code}"', f'_many{"_turned" if order == ">" else ""}({part}, "{code}")'
+        many = f'_many{"_turned" if order == ">" else ""}({part}, "{code}")'
+        few, many = f'"{order.replace("<", "")}{number}{code}"', f'[*memoryview({part}).cast("?")]' if code == "?" else many
         if isinstance(count, Const):
             return many if count.value > SOME else f"[*_unpack({few}, data, {begin})]"
         return f"[*_unpack(f{few}, data, {begin})] if {expression(scope, count)} < {SOME} else {many}"

@@ -12,6 +12,10 @@ if TYPE_CHECKING:
 def reserve(function: Function, lane: int, count: str) -> None:
     """The lines that make room for more rows."""
     scope, name = function.scope, function.scope.lanes.rows(lane)
+    if lane in scope.direct.appended and scope.direct.left is not None:
+        take(function, lane, count)
+        function.line(f"{name} = []")
+        return
     if lane in scope.direct.appended:
         with function.writer.indented(f"if {count} > most:"):
             function.line(f"raise _Failed(0, 0, ({_path(scope, lane)},))")
@@ -29,6 +33,16 @@ def reserve(function: Function, lane: int, count: str) -> None:
             f"{name}, {room} = _more({scope.view(lane, '')}, {room}, {count} - ({free}), {scope.lanes.stride(lane)}, most, {path})"
         )
         function.line(f"<views {lane}>")
+
+
+def take(function: Function, lane: int, count: str) -> None:
+    """The lines that count the rows of a lane which all messages of a type that contains itself share."""
+    left = function.scope.direct.left
+    assert left is not None
+    number = left.setdefault(lane, len(left))
+    function.line(f"left[{number}] -= {count}")
+    with function.writer.indented(f"if left[{number}] < 0:"):
+        function.line(f"raise _Failed(0, 0, ({_path(function.scope, lane)},))")
 
 
 def _reserve_once(function: Function, lane: int, count: str) -> None:

@@ -7,15 +7,18 @@ from typing import assert_never
 from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.bools import Bools, bools_read
+from rosetta_jit.generate.python.descents import Visit
 from rosetta_jit.generate.python.expressions import CODES, expression, is_small, location, slice_of, view_name
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
 from rosetta_jit.generate.python.printed import Attempt, Function
 from rosetta_jit.generate.python.reading import gathered, numbers_read, takes_text
-from rosetta_jit.generate.python.reserving import reserve
+from rosetta_jit.generate.python.reserving import reserve, take
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import mul, type_of
 
+COPY = "<copy>"
+"""Stands for what functions of rows get besides, where some arrays are views of the message."""
 OF_SEVERAL_BYTES = {**dict.fromkeys(("read_varint", "read_element", "read_packed"), "_several_bytes"), "read_size": "_long_length"}
 """Routines for integers of protobuf that often have several bytes, with the function that reads those that end by one call."""
 
@@ -79,14 +82,8 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
             reserve(function, lane, function.text(count))
         case nodes.Advance(lane, count):
             function.line(f"{function.scope.used(lane)} += {function.text(count)}")
-        case nodes.Return(position, ()):
-            function.line(f"return {function.objects.result(function.scope, function.text(position))}")
-        case nodes.Return(position, registers):
-            function.scope.from_call.add("registers")
-            words = "".join(f"call_registers[{number}], " for number, _ in registers)
-            values = "".join(f"{function.text(value)}, " for _, value in registers)
-            function.line(f"{words}call_end = {values}{function.text(position)}")
-            function.line(f"return {function.objects.result(function.scope, 'call_end')}")
+        case nodes.Return():
+            _return(function, stmt)
         case nodes.For() | nodes.While() | nodes.If() | nodes.Switch():
             _nested(function, stmt)
         case nodes.Call():
@@ -95,6 +92,20 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
             _host_call(function, stmt)
         case _:
             assert_never(stmt)
+
+
+def _return(function: Function, stmt: nodes.Return) -> None:
+    """The end of an attempt that has succeeded."""
+    position, objects = function.text(stmt.position), function.objects
+    if stmt.registers:
+        function.scope.from_call.add("registers")
+        words = "".join(f"call_registers[{number}], " for number, _ in stmt.registers)
+        values = "".join(f"{function.text(value)}, " for _, value in stmt.registers)
+        function.line(f"{words}call_end = {values}{position}")
+        position = "call_end"
+    for line in objects.settings(function.scope):
+        function.line(line)
+    function.line(f"return {objects.result(function.scope, position)}")
 
 
 def _origin(function: Function, stmt: nodes.Stmt) -> str:
@@ -260,6 +271,9 @@ def _turn(function: Function, count: nodes.Expr, found: tuple[nodes.Place, nodes
 
 def _call(function: Function, call: nodes.Call) -> None:
     """A routine gets the numbers of the sites at which the caller fails where it does, and the indices there."""
+    if (visit := function.scope.direct.visits.get(call.routine)) is not None:
+        _visit(function, call, visit)
+        return
     scope, routine = function.scope, function.routines[call.routine]
     _pass_on(function, routine)
     results = [scope.locals.identifier(result.name) for result in call.results]
@@ -282,6 +296,21 @@ def _call(function: Function, call: nodes.Call) -> None:
             function.line(f"if not {after}:")
         bound = f"    {bound}"
     function.line(f"{bound}{routine.name}({arguments})")
+
+
+def _visit(function: Function, call: nodes.Call, visit: Visit) -> None:
+    """The messages of an array, of a type that contains itself, each read by a function."""
+    scope = function.scope
+    name, at, count = scope.visited(visit), scope.locals.identifier(call.results[0].name), function.text(visit.count)
+    function.line(f"{name} = []")
+    function.line(f"{at} = {function.text(call.arguments[0])}")
+    with function.writer.indented(f"if {count} > 0:"):
+        take(function, visit.lane, count)
+        if visit.shallow is not None:
+            print_statement(function, visit.shallow)
+        with function.writer.indented(f"for _ in range({count}):"):
+            function.line(f"element, {at} = {scope.reader(visit.lane)}(data, end, left, {at}, {function.text(visit.depth)}{COPY})")
+            function.line(f"{name}.append(element)")
 
 
 def _pass_on(function: Function, routine: Attempt) -> None:

@@ -44,8 +44,11 @@ def _few(numbers: Any) -> Any:
 
 def _raw(dtype: "np.dtype[Any]", numbers: Any, is_bool: bool = False) -> bytes:
     """The bytes of numbers; raises `ValueError` where they are not of one dimension, or cannot be what the field has."""
-    if type(numbers) is np.ndarray and numbers.dtype.type is dtype.type and numbers.ndim == 1:
-        return (numbers if numbers.dtype is dtype else numbers.astype(dtype)).tobytes()
+    if type(numbers) is np.ndarray and numbers.ndim == 1:
+        if numbers.dtype is dtype:
+            return numbers.tobytes()
+        if numbers.dtype.type is dtype.type:
+            return numbers.astype(dtype).tobytes()
     found: npt.NDArray[Any] = np.asarray(numbers, np.bool_ if is_bool else None)
     if found.ndim != 1:
         raise ValueError(f"an array of {found.ndim} dimensions in place of one")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from io import BytesIO
 from typing import Any
 
-_LONG = 8192
+_LONG = 65536
 
 
 class _Long:

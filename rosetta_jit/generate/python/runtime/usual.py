@@ -78,6 +78,13 @@ def _error(sites: tuple[tuple[Any, ...], ...], failed: _Failed, end: int | None)
     return EncodeError(kind, path, detail, line) if end is None else DecodeError(kind, path, detail, line, at)
 
 
+_ZERO, _ZERO_FLOAT = 0, 0.0
+"""What numbers are that nobody has set: the same objects as defaults, so that it takes no call to see that."""
+
+_NOTHING = bytearray()
+"""Rows of lanes that have no room yet."""
+
+
 def _more(lane: Any, room: int, missing: int, size: int, most: int, path: str) -> tuple[bytearray, int]:
     """A lane with room for more rows of ``size`` bytes; a message that asks for more than ``most`` takes a length from what it says."""
     wanted = room + missing
@@ -115,8 +122,7 @@ def _within(number: Any, least: int, most: int) -> int:
 
 def _many(part: Any, code: str) -> list[Any]:
     """The numbers that lie in a message."""
-    view: Any = memoryview(part)
-    return view.cast(code).tolist()
+    return array(code, part).tolist()
 
 
 def _many_turned(part: Any, code: str) -> list[Any]:

@@ -1,0 +1,143 @@
+"""Messages that may lack most of their fields: the object is made first, and gets those that come as its attributes.
+
+made = M()                                          what is not in the message has its default
+while at < end:
+    ...
+        made.speed = _load_d(data, at)[0]
+if m_joints_count:
+    made.joints = ...                               what comes in parts is set in the end
+return made
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rosetta_jit.generate.cleared import slots_of
+from rosetta_jit.generate.python.classes import member_names
+from rosetta_jit.generate.python.direct import Direct
+from rosetta_jit.generate.python.making import Make
+from rosetta_jit.generate.python.mentions import blocks_within
+from rosetta_jit.generate.unit import Unit
+from rosetta_jit.kernel.nodes import Assign, Binary, Block, Const, Expect, Fill, IsText, Local, Place, SetField, Stmt, Wire
+from rosetta_jit.kernel.terms import index
+from rosetta_jit.kernel.walk import statements
+from rosetta_jit.model.layout import Member, Number, Row, Span
+from rosetta_jit.model.types import Array, Bytes, Map, Optional, String, Struct
+
+OBJECT = "made"
+LEAST = 8
+"""Fields of a message, from which on its object is made first."""
+
+
+def attributes_of(unit: Unit, body: Block, settled: frozenset[tuple[int, str]], direct: Direct) -> dict[int, str] | None:
+    """The fields of the message that a body sets at once if they come, by their offset; nothing where the object is made in the end."""
+    root, slot = unit.schema.types[unit.type], unit.layout.root
+    assert isinstance(root, Struct)
+    cleared = _cleared_again(body)
+    if not isinstance(slot, Row) or cleared is None:
+        return None
+    always = {offset for offset, _ in settled if not _comes_in_parts(offset, unit, direct)}
+    names = dict(zip(member_names(root), slot.members, strict=True))
+    late = {name: member for name, member in names.items() if getattr(member.slot, "offset", None) not in always}
+    if len(late) < LEAST:
+        return None
+    blocks = blocks_within(body)
+    found = ((name, member, _setting(blocks, member, direct)) for name, member in late.items())
+    return {
+        member.slot.offset: f"{OBJECT}.{name}"
+        for name, member, setting in found
+        if isinstance(member.slot, Number | Span) and setting and _says_presence(blocks, slot, member, setting)
+        if not any(member.slot.offset in each for each in cleared)
+    }
+
+
+def _comes_in_parts(offset: int, unit: Unit, direct: Direct) -> bool:
+    """Whether a field is a sequence of which the rows of a lane become objects in the end."""
+    spans = [each for each in slots_of(unit.layout.root) if isinstance(each, Span) and each.offset == offset]
+    lanes = {*direct.whole, *direct.appended, *direct.elements}
+    return bool(spans) and spans[0].lane not in lanes and direct.visit_at(0, offset) is None
+
+
+def _cleared_again(body: Block) -> list[range] | None:
+    """The parts of the message's row that are cleared where a case of a union comes; nothing if it is not cleared as a whole at first."""
+    fills = [stmt for stmt, _ in statements(body) if isinstance(stmt, Fill) and isinstance(stmt.target, Place) and stmt.target.lane == 0]
+    if not fills or body[0] is not fills[0] or fills[0].target != Place(0, index(0)):
+        return None
+    found: list[range] = []
+    for fill in fills[1:]:
+        match fill:
+            case Fill(Place(_, _, offset), Const(_, size)):
+                found.append(range(offset, offset + int(size)))
+            case _:
+                return None
+    return found
+
+
+def _setting(blocks: list[Block], member: Member, direct: Direct) -> list[Block]:
+    """The blocks that set a field; none where it is not set at once."""
+    slot = member.slot
+    match slot:
+        case Number(offset, _):
+            return [block for block in blocks for stmt in block if isinstance(stmt, SetField) and stmt.place == Place(0, index(0), offset)]
+        case Span(offset, _) if (0, offset) in direct.texts:
+            at, size = direct.texts[0, offset]
+            check = IsText(Wire(at), size)
+            return [block for block in blocks for stmt in block if isinstance(stmt, Expect) and stmt.condition == check]
+        case Span(offset, _) if (0, offset) in direct.pieces:
+            return [block for block in blocks for stmt in block if isinstance(stmt, SetField) and stmt.place == Place(0, index(0), offset)]
+        case _:
+            return []
+
+
+def _says_presence(blocks: list[Block], slot: Row, member: Member, setting: list[Block]) -> bool:
+    """Whether a field that may be absent is said to be there where it is set, and nowhere else."""
+    if member.presence is None:
+        return True
+    word, bit = divmod(member.presence, 64)
+    place = Place(0, index(0), slot.offset + 8 * word)
+    words = [stmt.value for block in blocks for stmt in block if isinstance(stmt, SetField) and stmt.place == place]
+    if len(words) != 1 or not isinstance(words[0], Local):
+        return False
+    name = words[0].name
+    told = [block for block in blocks if any(_tells(stmt, name, 1 << bit) for stmt in block)]
+    return [*map(id, told)] == [*map(id, setting)]
+
+
+def _tells(stmt: Stmt, name: str, bit: int) -> bool:
+    match stmt:
+        case Assign(of, Binary("or", Local(_, same), Const(_, bits))):
+            return name == of == same and bool(int(bits) & bit)
+        case Assign(of, _):
+            return name == of
+        case _:
+            return False
+
+
+def settings(make: Make) -> Iterator[str]:
+    """The lines that set the other fields of the object, which is made."""
+    attributes = make.scope.attributes or {}
+    unit = make.unit
+    root, slot = unit.schema.types[unit.type], unit.layout.root
+    assert isinstance(root, Struct)
+    assert isinstance(slot, Row)
+    for each, member, name in zip(root.fields, slot.members, member_names(root), strict=True):
+        if getattr(member.slot, "offset", None) in attributes:
+            continue
+        value = None
+        if member.presence is not None:
+            assert isinstance(each.type, Optional)
+            there, value = make.is_there(member.presence, slot, 0, "0"), make.value(each.type.value, member.slot, 0, "0")
+        elif isinstance(unit.schema.resolve(each.type), Array | Map | String | Bytes) and isinstance(member.slot, Span):
+            there = make.count(member.slot)
+        else:
+            there = ""
+        value = make.member(each, member, slot, 0, "0") if value is None else value
+        yield from _set(name, value, there)
+    if slot.unknown is not None:
+        yield from _set("unknown_fields", make.unknown(slot.unknown), make.count(slot.unknown))
+
+
+def _set(name: str, value: str, there: str) -> list[str]:
+    line = f"{OBJECT}.{name} = {value}"
+    return [f"if {there}:", f"    {line}"] if there else [line]

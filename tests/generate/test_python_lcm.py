@@ -1,0 +1,136 @@
+"""Types of LCM in generated Python: those that contain themselves, and arrays of arrays."""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.api.options import type_request
+from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
+from tests.generate.driver import harmed
+from tests.generate.python import BOTH, answers_as_the_library, module
+
+ARRAYS = (NO_WISHES, Wishes(numpy=True))
+
+
+def lcm(body: str) -> dict[str, Any]:
+    return {"encoding": "lcm", "schema": {"t/m.lcm": f"package t; {body}"}}
+
+
+def text_of(given: dict[str, Any], wishes: Wishes = NO_WISHES) -> str:
+    return generated(type_request("decode", "t.m", given), "python", BOTH, "unit", wishes)["unit.py"]
+
+
+def compare(given: dict[str, Any], *values: dict[str, Any]) -> None:
+    decode, encode = rj.Decoder.of("t.m", **given), rj.Encoder.of("t.m", **given)
+    messages = [bytes(encode(encode.holder_type.from_dict(each))) for each in values]
+    for wishes in ARRAYS:
+        unit = module(type_request("decode", "t.m", given), BOTH, wishes)
+        answers_as_the_library(unit, (decode, encode), harmed(messages, 60, "lcm"))
+
+
+TREE = """
+    struct m { int32_t n; string name; m kids[n]; double place[3]; int16_t k; o others[k]; leaf own; }
+    struct o { int8_t n; float numbers[n]; boolean flags[n]; leaf leaves[n]; byte raw[n]; m back[n]; }
+    struct leaf { int32_t n; string text; int64_t numbers[n]; int8_t last; }
+"""
+LEAF = {"n": 2, "text": "é", "numbers": [-1, 2], "last": -3}
+NODE = {"n": 0, "name": "leaf", "place": [1.5, -0.5, 0.0], "k": 0, "own": LEAF}
+OTHER = {"n": 1, "numbers": [0.5], "flags": [True], "leaves": [LEAF], "raw": b"x", "back": [NODE]}
+INNER = {**NODE, "n": 2, "kids": [NODE, {**NODE, "name": ""}], "k": 2, "others": [OTHER, {"n": 0}]}
+
+
+def test_messages_that_contain_their_own_type_are_read_and_written_by_functions():
+    """As lists, of more than one type, with fields behind, and with texts, arrays and lists of structs."""
+    given = lcm(TREE)
+    for wishes in ARRAYS:
+        text = text_of(given, wishes)
+        assert "def _read_kids(" in text
+        assert "def _encoded_kids(" in text
+        assert "state" not in text.partition("class m")[2]
+    compare(given, INNER, NODE, {**INNER, "n": 1, "kids": [INNER]})
+
+
+def nested(depth: int) -> bytes:
+    return struct.pack(">ii", 1, 1) * depth + struct.pack(">ii", 1, 0)
+
+
+def test_how_deep_they_are():
+    """More than 64 within each other are refused, when they are written too; an object that contains itself is no exception."""
+    given = lcm("struct m { int32_t v; int32_t n; m kids[n]; }")
+    decode, encode = rj.Decoder.of("t.m", **given), rj.Encoder.of("t.m", **given)
+    unit = module(type_request("decode", "t.m", given))
+    first = bytes(encode(encode.holder_type.from_dict({"v": 1})))[:8]
+    answers_as_the_library(unit, (decode, encode), [first + nested(depth) for depth in (0, 1, 63, 64, 65, 66, 200)])
+    itself = unit.m(n=1)
+    itself.kids = [itself]
+    for depth, kind in ((64, None), (65, "nesting")):
+        target = unit.m(v=1)
+        for _ in range(depth):
+            target = unit.m(v=1, n=1, kids=[target])
+        if kind is None:
+            assert unit.encode(target) == first + nested(depth)
+        else:
+            for each in (target, itself):
+                with pytest.raises(unit.EncodeError, match="nesting") as caught:
+                    unit.encode(each)
+                assert (caught.value.kind, caught.value.path) == (kind, ".kids[].kids")
+
+
+def test_what_cannot_be_written():
+    unit = module(type_request("decode", "t.m", lcm("struct m { int32_t v; int32_t n; m kids[n]; }")))
+    for target, kind, path in (
+        (unit.m(n=1), "count", ".kids"),
+        (unit.m(n=1, kids=[unit.m(n=1)]), "count", ".kids[].kids"),
+        (unit.m(n=1, kids=[unit.m(v=1 << 31)]), "range", ""),
+        (unit.m(n=1, kids=[7]), "range", ""),
+        (unit.m(n=1, kids=7), "range", ""),
+    ):
+        with pytest.raises(unit.EncodeError) as caught:
+            unit.encode(target)
+        assert (caught.value.kind, caught.value.path) == (kind, path)
+
+
+def test_messages_ask_for_no_more_rows_than_their_size_allows():
+    """Structs of no fields take no bytes: their number is bounded for all messages within each other together."""
+    given = lcm("struct none { } struct m { int32_t n; none many[n]; int32_t k; m kids[k]; }")
+    decode, encode = rj.Decoder.of("t.m", **given), rj.Encoder.of("t.m", **given)
+    first = bytes(encode(encode.holder_type.from_dict({})))[:8]
+    kids = [first + struct.pack(">ii", 0, 3) + struct.pack(">ii", each, 0) * 3 for each in (1000, 300_000, 500_000)]
+    answers_as_the_library(module(type_request("decode", "t.m", given)), (decode, encode), kids)
+
+
+def test_arrays_of_several_dimensions():
+    """They are written from the object, whatever of their dimensions is fixed."""
+    given = lcm("""
+        struct m { int32_t n; byte a[n][8]; double b[2][2][3]; int8_t c[2][3]; byte d[2][3]; float e[3][n];
+            string f[n][2]; boolean g[2][2]; p h[3]; }
+        struct p { double x, y; }
+    """)
+    values = {
+        "n": 2,
+        "a": [b"abcdefgh", bytes(8)],
+        "b": [[[1.0, 2.0, 3.0]] * 2, [[-1.0, 0.5, 0.0]] * 2],
+        "c": [[-1, 2, 3], [4, 5, -6]],
+        "d": [b"abc", b"def"],
+        "e": [[1.0, 2.0]] * 3,
+        "f": [["a", "é"], ["", "b"]],
+        "g": [[True, False], [False, True]],
+        "h": [{"x": 1.0, "y": 2.0}] * 3,
+    }
+    for wishes in ARRAYS:
+        assert "_size_1" not in text_of(given, wishes)
+    compare(given, values, {**values, "n": 0, "a": [], "e": [[]] * 3, "f": []})
+
+
+@pytest.mark.parametrize("name", ["b", "q", "d", "used", "room", "b_lane"])
+def test_arrays_are_called_otherwise_than_what_generated_source_has_beside_others(name):
+    """A lane `u_b`, of the field `b` of elements of `u`, and the view of `u` as numbers of one byte."""
+    body = f"struct s {{ int32_t n; string a; double {name}[n]; int8_t c; s2 more[n]; }} struct s2 {{ int16_t v; double {name}[2][2]; }}"
+    given = lcm(f"{body} struct m {{ int32_t n; s u[n]; }}")
+    more = {"v": -2, name: [[1.0, 2.0], [3.0, 4.0]]}
+    element = {"n": 1, "a": "x", name: [1.5], "c": -3, "more": [more]}
+    compare(given, {"n": 2, "u": [element, element]})
