@@ -81,7 +81,8 @@ class Lanes:
 
     The rows of ``addressed`` lanes are bytes anywhere in memory, by their addresses; those of ``viewed`` lanes are made of an object's
     elements when they are read. ``row``: the functions are given the message's row. ``straight`` are the fields, by lane and offset, that
-    no row keeps, as an object has them; the rows of ``opened`` lanes are elements of the object.
+    no row keeps, as an object has them; the rows of ``opened`` lanes are elements of the object. ``shared`` begins the names of functions
+    of the support, where they are those of a header.
     """
 
     prefix: str
@@ -93,6 +94,7 @@ class Lanes:
     row: bool = False
     straight: Mapping[tuple[int, int], Straight] = field(default_factory=dict[tuple[int, int], Straight])
     opened: frozenset[int] = frozenset()
+    shared: str = ""
 
     def stride(self, lane: int) -> int:
         """Bytes of a row."""

@@ -42,9 +42,9 @@ class Scope:
         return self.tables[type_, values]
 
     def calls(self, function: str) -> str:
-        """A function of the support, which will be part of the file."""
+        """A function of the support, which will be part of the file, or of the one that lanes say."""
         self.support.add(function)
-        return function
+        return f"{self.lanes.shared}{function}"
 
     def takes(self, parameter: str) -> str:
         """A parameter, which the function will have."""

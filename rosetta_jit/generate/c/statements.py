@@ -92,7 +92,7 @@ def _statement(function: Function, stmt: nodes.Stmt) -> None:
     scope = function.scope
     match stmt:
         case nodes.Require(at, size, failure):
-            _fail_if(function, _lacks(function, at, size), failure)
+            _fail_if(function, lacks(function, at, size), failure)
             function.known = after_require(function.known, at, size)
         case nodes.Expect(condition, failure):
             if condition == FALSE:
@@ -167,7 +167,7 @@ def _copy(scope: Scope, target: nodes.Address, source: nodes.Address, size: str)
     return f"{scope.calls('copy_bytes')}({copied});"
 
 
-def _lacks(function: Function, at: nodes.Expr, size: nodes.Expr) -> str:
+def lacks(function: Function, at: nodes.Expr, size: nodes.Expr) -> str:
     """Whether some of ``size`` bytes from ``at`` are missing."""
     scope = function.scope
     is_known = is_position(function.known, at)

@@ -54,8 +54,8 @@ SAID = """    if (where.scratch >= 0) { /* the mapping has put this text togethe
 """
 
 
-def header(unit: Unit, manners: Manners) -> str:
-    """The text of the header."""
+def header(unit: Unit, manners: Manners, at_once: str) -> str:
+    """The text of the header; ``at_once`` are the statements that read a message there, if it can be."""
     root = unit.schema.types[unit.type]
     assert isinstance(root, Struct)
     own = classes(unit) if manners.type is None else ""
@@ -76,7 +76,8 @@ def header(unit: Unit, manners: Manners) -> str:
         guard=f"{unit.name.upper()}_HPP",
         includes="\n".join(lines),
         classes=f"{own}\n/* What is filled and read. */\nusing holder = {named};\n",
-        declarations="\n".join(_declared(unit)),
+        declarations="\n".join(_declared(unit, at_once)),
+        hidden=Template(_declarations()["at_once_private"]).substitute(statements=at_once.rstrip()) if at_once else "",
         state=_state(unit),
         written="    std::unique_ptr<memory> written_;\n" if writes_apart(unit) else "",
         functions="".join(_function(unit, each.name, each.parameters, each.result) for each in unit.functions),
@@ -129,10 +130,10 @@ def _declarations() -> dict[str, str]:
     return dict(zip(parts[::2], parts[1::2], strict=True))
 
 
-def _declared(unit: Unit) -> list[str]:
+def _declared(unit: Unit, at_once: str) -> list[str]:
     """The codec's functions."""
     known = _declarations()
-    found = [known["decode"]] if "borrow" in unit.kernels else []
+    found = [known["at_once" if at_once else "decode"]] if "borrow" in unit.kernels else []
     for wire in wires_of(unit):
         every, last = unit.arrivals[wire]
         found.append(Template(known["wire"]).substitute(wire=wire, every=every, last=last))
@@ -150,8 +151,8 @@ def _filled(file: str, **values: str) -> str:
     return re.sub(r"\n{3,}", "\n\n", Template((FOLDER / file).read_text("utf-8")).substitute(values))
 
 
-def source(unit: Unit, parts: Parts, manners: Manners) -> str:
-    """The text of the source file."""
+def source(unit: Unit, parts: Parts, manners: Manners, at_once: str) -> str:
+    """The text of the source file; ``at_once`` as for `header`."""
     printed, lanes = parts.printed, parts.lanes
     walks = {direction: Walk(unit, lanes, manners, direction) for direction in ("decode", "encode")}
     opened = opened_lists(walks["decode"], "target") if "borrow" in printed else []
@@ -189,7 +190,7 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
         ),
         said=SAID if said else "",
         written=", written_(new memory)" if writes_apart(unit) else "",
-        functions="\n".join(_methods(unit, parts, directs, opened, walks["encode"])),
+        functions="\n".join(_methods(unit, parts, directs, opened, walks["encode"], "decode_any" if at_once else "try_decode")),
     )
 
 
@@ -306,7 +307,7 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
     return head, walk.writer.text()
 
 
-def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], opened: list[Opened], walk: Walk) -> list[str]:
+def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], opened: list[Opened], walk: Walk, function: str) -> list[str]:
     template = (FOLDER / "methods.cpp").read_text("utf-8")
     _, *sections = re.split(r"^/\* == (\w+) == \*/\n", template, flags=re.MULTILINE)
     known = dict(zip(sections[::2], sections[1::2], strict=True))
@@ -325,6 +326,7 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], opened:
         texts.append(
             Template(known["decode"]).substitute(
                 into,
+                function=function,
                 begin=BEGIN if any("holder" in each.parameters for each in (first, *others)) else "",
                 bind="\n".join(f"    {FILLED}->{lanes.rows(each.lane)}.fill({each.spot.at});" for each in directs["decode"]),
                 reset="\n".join(reset),

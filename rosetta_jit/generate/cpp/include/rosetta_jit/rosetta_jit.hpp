@@ -240,6 +240,52 @@ inline error error_of(const site &where, std::int64_t offset, const std::int64_t
     return error{where.kind, path_of(path, indices), offset, where.detail, where.line};
 }
 
+/* --- numbers of a message, and whether they are there --- */
+
+/* Whether some of `size` bytes from `at` are missing before `end`; `at` lies in the message, or is its end. */
+inline bool lacks_behind(std::int64_t at, std::int64_t size, std::int64_t end) noexcept
+{
+    return static_cast<std::uint64_t>(size) > static_cast<std::uint64_t>(end - at);
+}
+
+/* A number with its low byte first, as the machine has it. */
+template <class Number> Number load_le(const unsigned char *at) noexcept
+{
+    Number number;
+    std::memcpy(&number, at, sizeof number);
+    return number;
+}
+
+/* One with its high byte first. */
+template <class Number> Number load_be(const unsigned char *at) noexcept
+{
+    unsigned char bytes[sizeof(Number)];
+    for (std::size_t byte = 0; byte < sizeof bytes; byte++) {
+        bytes[byte] = at[sizeof bytes - 1 - byte];
+    }
+    return load_le<Number>(bytes);
+}
+
+inline bool load_bool(const unsigned char *at) noexcept { return *at != 0; }
+inline std::uint8_t load_u8(const unsigned char *at) noexcept { return *at; }
+inline std::int8_t load_i8(const unsigned char *at) noexcept { return static_cast<std::int8_t>(*at); }
+inline std::uint16_t load_u16_le(const unsigned char *at) noexcept { return load_le<std::uint16_t>(at); }
+inline std::uint16_t load_u16_be(const unsigned char *at) noexcept { return load_be<std::uint16_t>(at); }
+inline std::int16_t load_i16_le(const unsigned char *at) noexcept { return load_le<std::int16_t>(at); }
+inline std::int16_t load_i16_be(const unsigned char *at) noexcept { return load_be<std::int16_t>(at); }
+inline std::uint32_t load_u32_le(const unsigned char *at) noexcept { return load_le<std::uint32_t>(at); }
+inline std::uint32_t load_u32_be(const unsigned char *at) noexcept { return load_be<std::uint32_t>(at); }
+inline std::int32_t load_i32_le(const unsigned char *at) noexcept { return load_le<std::int32_t>(at); }
+inline std::int32_t load_i32_be(const unsigned char *at) noexcept { return load_be<std::int32_t>(at); }
+inline std::uint64_t load_u64_le(const unsigned char *at) noexcept { return load_le<std::uint64_t>(at); }
+inline std::uint64_t load_u64_be(const unsigned char *at) noexcept { return load_be<std::uint64_t>(at); }
+inline std::int64_t load_i64_le(const unsigned char *at) noexcept { return load_le<std::int64_t>(at); }
+inline std::int64_t load_i64_be(const unsigned char *at) noexcept { return load_be<std::int64_t>(at); }
+inline float load_f32_le(const unsigned char *at) noexcept { return load_le<float>(at); }
+inline float load_f32_be(const unsigned char *at) noexcept { return load_be<float>(at); }
+inline double load_f64_le(const unsigned char *at) noexcept { return load_le<double>(at); }
+inline double load_f64_be(const unsigned char *at) noexcept { return load_be<double>(at); }
+
 /* --- lanes: the elements of all arrays of one field --- */
 
 /* Rows for one message of `bytes`; a mapping that asks for more takes a length from what the message says. */
