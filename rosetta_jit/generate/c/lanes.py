@@ -81,7 +81,8 @@ class Lanes:
 
     The rows of ``addressed`` lanes are bytes anywhere in memory, by their addresses; those of ``viewed`` lanes are made of an object's
     elements when they are read. ``row``: the functions are given the message's row. ``straight`` are the fields, by lane and offset, that
-    no row keeps, as an object has them; the rows of ``opened`` lanes are elements of the object. ``shared`` begins the names of functions
+    no row keeps, as an object has them; the rows of ``opened`` lanes are elements of the object, and so are those of ``given`` ones, of
+    which there is a fixed count: the expressions for the first ones. ``shared`` begins the names of functions
     of the support, where they are those of a header.
     """
 
@@ -94,6 +95,7 @@ class Lanes:
     row: bool = False
     straight: Mapping[tuple[int, int], Straight] = field(default_factory=dict[tuple[int, int], Straight])
     opened: frozenset[int] = frozenset()
+    given: Mapping[int, str] = field(default_factory=dict[int, str])
     shared: str = ""
 
     def stride(self, lane: int) -> int:
@@ -121,6 +123,8 @@ class Lanes:
             return f"holder->scratch[{lane - self.own}].bytes"
         if lane == 0:
             return "&given_row" if self.row else "&holder->message"
+        if lane in self.given:
+            return self.given[lane]
         return f"holder->{self.rows(lane)}" if lane in self.viewed else f"holder->{self.rows(lane)}.rows"
 
     def pointer(self, lane: int) -> str:

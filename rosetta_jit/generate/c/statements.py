@@ -150,17 +150,20 @@ def _effect(scope: Scope, stmt: nodes.Effect) -> str:
         case nodes.SetField(place, value):
             return written(scope, place, value)
         case nodes.Copy(target, source, size):
-            return _copy(scope, target, source, bare(expression(scope, size)))
+            return _copy(scope, target, source, size)
         case nodes.Fill(target, size, byte):
             return _fill(scope, target, size, byte)
         case _:
             assert_never(stmt)
 
 
-def _copy(scope: Scope, target: nodes.Address, source: nodes.Address, size: str) -> str:
+def _copy(scope: Scope, target: nodes.Address, source: nodes.Address, count: nodes.Expr) -> str:
+    size = bare(expression(scope, count))
     if isinstance(source, nodes.Place) and source.lane in scope.lanes.viewed:
         taken = (scope.rows(source.lane), bare(expression(scope, source.row)), str(source.offset))
         return f"rosetta_jit::detail::copy_rows({', '.join((*location(scope, target), *taken, size))});"
+    if scope.lanes.dialect == "c++" and isinstance(count, nodes.Const):
+        return f"rosetta_jit::detail::copy_known<{size}>({', '.join((*location(scope, target), *location(scope, source)))});"
     copied = ", ".join((*location(scope, target), *location(scope, source), size))
     if scope.lanes.dialect == "c++" and isinstance(source, nodes.Place) and scope.lanes.stride(source.lane) == 1:
         return f"rosetta_jit::detail::copy_few({copied});"

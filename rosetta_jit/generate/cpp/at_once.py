@@ -53,7 +53,7 @@ def at_once(kernel: Kernel, lanes: Lanes) -> str:
         checks = tuple(_of_size(checks, size))
     for stmt in checks:
         _check(function, stmt)
-    print_block(function, effects)
+    _print_effects(function, effects)
     is_free = scope.parameters <= PARAMETERS and all(map(_is_shared, scope.support)) and not scope.tables
     return function.writer.text() if is_free and "given_object" in scope.parameters else ""
 
@@ -71,7 +71,7 @@ def _straightened(body: nodes.Block) -> tuple[nodes.Block, nodes.Block] | None:
         match stmt:
             case nodes.Require() | nodes.Expect() | nodes.Let():
                 checks.append(stmt)
-            case nodes.SetField():
+            case nodes.SetField() | nodes.Copy(nodes.Place(), nodes.Wire()):
                 effects.append(stmt)
             case nodes.If(condition, then, ()) if _only_checks(then):
                 failure = nodes.Failure(0, nodes.Const("i64", 0))
@@ -142,6 +142,16 @@ def _check(function: Function, stmt: nodes.Stmt) -> None:
             function.known = after_binding(function.known, name, value)
         case _:
             raise AssertionError(stmt)
+
+
+def _print_effects(function: Function, effects: nodes.Block) -> None:
+    """What sets the object, behind pointers to its arrays."""
+    lines, lanes = function.writer.lines, function.scope.lanes
+    before = len(lines)
+    print_block(function, effects)
+    lines[before:before] = [
+        f"        {lanes.type(lane)} *const {lanes.rows(lane)} = {lanes.member(lane)};" for lane in sorted(function.scope.touched)
+    ]
 
 
 def _give_up(function: Function, condition: str) -> None:

@@ -15,6 +15,7 @@ from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import C_TYPES, RESERVED
 from rosetta_jit.generate.cpp.classes import classes
+from rosetta_jit.generate.cpp.fixed_arrays import fixed_arrays
 from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
 from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
 from rosetta_jit.generate.cpp.read_in_place import is_local
@@ -156,7 +157,8 @@ def source(unit: Unit, parts: Parts, manners: Manners, at_once: str) -> str:
     printed, lanes = parts.printed, parts.lanes
     walks = {direction: Walk(unit, lanes, manners, direction) for direction in ("decode", "encode")}
     opened = opened_lists(walks["decode"], "target") if "borrow" in printed else []
-    walks["decode"].opened = frozenset(lane for each in opened for lane in each.lanes)
+    given = frozenset(each.lane for each in fixed_arrays(walks["decode"], "target"))
+    walks["decode"].opened = given.union(*(each.lanes for each in opened))
     walks["encode"].opened = frozenset(lane for each in opened for lane in each.containers)
     directs = {name: directs_of(walk, at) for (name, walk), at in zip(walks.items(), ("target", "source"), strict=True)}
     containers = {each.lane: each.spot.at for each in directs_of(walks["decode"], HOLDER)}
@@ -180,7 +182,7 @@ def source(unit: Unit, parts: Parts, manners: Manners, at_once: str) -> str:
         structs="\n\n".join(_struct(unit, parts, each, walks["decode"].taken) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
         holder=_row_structs(unit, parts, manners, [*views, *filled])
-        + _holder(unit, parts, containers, listed, {lane: kind for each in opened for lane, kind in each.kinds.items()})
+        + _holder(unit, parts, given, containers, listed, {lane: kind for each in opened for lane, kind in each.kinds.items()})
         + (source_struct(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
         support=SELDOM.sub(r"ROSETTA_JIT_COLD \g<0>", support(without_unused(called, printed))),
         kernels="\n\n".join(kernels),
@@ -190,7 +192,7 @@ def source(unit: Unit, parts: Parts, manners: Manners, at_once: str) -> str:
         ),
         said=SAID if said else "",
         written=", written_(new memory)" if writes_apart(unit) else "",
-        functions="\n".join(_methods(unit, parts, directs, opened, walks["encode"], "decode_any" if at_once else "try_decode")),
+        functions="\n".join(_methods(unit, parts, directs, given, opened, walks["encode"], "decode_any" if at_once else "try_decode")),
     )
 
 
@@ -220,7 +222,9 @@ def _struct(unit: Unit, parts: Parts, struct: RowStruct, taken: frozenset[int]) 
     return text.replace("typedef struct ", "typedef struct ROSETTA_JIT_MAY_ALIAS ", 1) if is_taken else text
 
 
-def _holder(unit: Unit, parts: Parts, containers: dict[int, str], listed: dict[int, str], opened: dict[int, str]) -> str:
+def _holder(
+    unit: Unit, parts: Parts, given: frozenset[int], containers: dict[int, str], listed: dict[int, str], opened: dict[int, str]
+) -> str:
     """What kernels work on: the message's row and the lanes."""
     lanes = parts.lanes
     lines = [
@@ -228,7 +232,7 @@ def _holder(unit: Unit, parts: Parts, containers: dict[int, str], listed: dict[i
         f"struct {unit.name}_holder {{",
         f"    {lanes.type(0)} message = {{}};",
     ]
-    for lane in range(1, lanes.own):
+    for lane in (each for each in range(1, lanes.own) if each not in given):
         kind = f"rosetta_jit::detail::lane<{lanes.type(lane)}>"
         if lane in containers:
             kind = f"rosetta_jit::detail::field_lane<{lanes.type(lane)}, {container_type(containers[lane])}>"
@@ -307,7 +311,9 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
     return head, walk.writer.text()
 
 
-def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], opened: list[Opened], walk: Walk, function: str) -> list[str]:
+def _methods(
+    unit: Unit, parts: Parts, directs: dict[str, list[Direct]], given: frozenset[int], opened: list[Opened], walk: Walk, function: str
+) -> list[str]:
     template = (FOLDER / "methods.cpp").read_text("utf-8")
     _, *sections = re.split(r"^/\* == (\w+) == \*/\n", template, flags=re.MULTILINE)
     known = dict(zip(sections[::2], sections[1::2], strict=True))
@@ -317,7 +323,7 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], opened:
     lanes, printed = parts.lanes, parts.printed
     if "borrow" in printed:
         first, *others = printed["borrow"].attempts
-        bound = {each.lane for each in directs["decode"]}
+        bound = {each.lane for each in directs["decode"]} | given
         finish = [f"    {FILLED}->{lanes.rows(each.lane)}.finish({each.row}, bytes);" for each in directs["decode"]]
         empty = [*finish, *(f"    rosetta_jit::detail::resize_to({each.at}, 0);" for each in opened if each.containers)]
         most = dict.fromkeys(walk.opened, f"{FILLED}->most")

@@ -34,6 +34,9 @@ rosetta_jit::detail::resize_to($at, $row.count);
 $row.count = rosetta_jit::detail::count_of($at);
 $row.start = rosetta_jit::detail::$take(to.$lane, $row.count);
 
+/* == numbers == */
+rosetta_jit::detail::rows_of<$row, $count>($at)
+
 /* == open == */
 $lane = holder->$lane.open($at, $count);
 

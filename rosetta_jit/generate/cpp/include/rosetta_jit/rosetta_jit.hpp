@@ -429,6 +429,22 @@ inline void copy_few(void *target, std::int64_t to, const void *source, std::int
     }
 }
 
+/* Copies bytes whose number compilers know: of more than these some take an instruction that starts slowly, and is slow where addresses are odd. */
+template <std::int64_t Size> ROSETTA_JIT_INLINE void copy_known(void *target, std::int64_t to, const void *source, std::int64_t from) noexcept
+{
+    constexpr std::int64_t AT_ONCE = 64, FEW = 256, MANY = 4096;
+    unsigned char *const at = static_cast<unsigned char *>(target) + to;
+    const unsigned char *const begin = static_cast<const unsigned char *>(source) + from;
+    if constexpr (Size <= FEW || Size > MANY) {
+        std::memcpy(at, begin, static_cast<std::size_t>(Size));
+    } else {
+        for (std::int64_t done = 0; done < Size - AT_ONCE; done += AT_ONCE) {
+            std::memcpy(at + done, begin + done, AT_ONCE);
+        }
+        std::memcpy(at + Size - AT_ONCE, begin + Size - AT_ONCE, AT_ONCE); /* some of them again, if there are fewer */
+    }
+}
+
 /* --- protobuf's integers, of which each byte has seven bits and says whether another one follows --- */
 
 constexpr std::uint64_t GOES_ON = 0x8080808080808080u; /* of each of eight bytes */
@@ -1288,6 +1304,14 @@ template <class Row, class Container> struct list_lane<Row, Container, false> : 
     void fill(Container &) { this->reset(); }
     template <class Span> void finish(const Span &, const unsigned char *) const noexcept {}
 };
+
+/* The numbers of an array that has a fixed count of them, as rows. */
+template <class Row, std::size_t Count, class Container> ROSETTA_JIT_INLINE Row *rows_of(Container &target) noexcept
+{
+    static_assert(same_numbers<std::remove_reference_t<decltype(*data_of(target))>, Row>, "the class has elements of another type than the schema");
+    static_assert(sizeof(Container) == Count * sizeof(Row), "the class has another number of elements than the schema");
+    return reinterpret_cast<Row *>(data_of(target));
+}
 
 /* Makes an object whose fields are all set afterwards: where a class can be made without initial values, as rclcpp's can, it is. */
 struct without_values {
