@@ -282,7 +282,7 @@ def location(scope: Scope, address: nodes.Address) -> tuple[str, str]:
         case nodes.Wire(at):
             return scope.takes("bytes"), bare(expression(scope, at))
         case nodes.Place(lane, row, offset):
-            stride = scope.lanes.stride(lane)
+            stride = 1 if lane in scope.lanes.addressed else scope.lanes.stride(lane)
             start = _scaled(scope, row, stride)
             if offset:
                 start = str(offset) if start == "0" else f"{start} + {offset}"

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
+from string import Template
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.printing import Writer
@@ -205,8 +206,11 @@ def _failed(function: Function, site: str, at: str, indices: tuple[nodes.Expr, .
 
 def _fill(scope: Scope, target: nodes.Address, size: nodes.Expr, byte: int) -> str:
     memory, start = location(scope, target)
-    if isinstance(target, nodes.Place) and isinstance(size, nodes.Const) and start == "0" and size.value > 0:
-        return f"memset({memory}, {byte}, {int(size.value)});"
+    is_known = isinstance(size, nodes.Const) and size.value > 0
+    if scope.lanes.dialect == "c++" and is_known:
+        return f"rosetta_jit::detail::fill_known<{expression(scope, size)}>({memory}, {start}, {byte});"
+    if isinstance(target, nodes.Place) and is_known and start == "0":
+        return f"memset({memory}, {byte}, {expression(scope, size)});"
     if scope.lanes.dialect == "c++":
         return f"rosetta_jit::detail::fill_few({memory}, {start}, {bare(expression(scope, size))}, {byte});"
     return f"{scope.calls('fill_bytes')}({memory}, {start}, {bare(expression(scope, size))}, {byte});"
@@ -214,6 +218,9 @@ def _fill(scope: Scope, target: nodes.Address, size: nodes.Expr, byte: int) -> s
 
 def _rows(function: Function, stmt: nodes.Reserve | nodes.Advance) -> None:
     scope, lanes, count = function.scope, function.scope.lanes, bare(expression(function.scope, stmt.count))
+    if stmt.lane in lanes.given:
+        _given_rows(function, stmt, count)
+        return
     used = scope.used(stmt.lane)
     if isinstance(stmt, nodes.Advance):
         function.line(f"{used} += {count};")
@@ -234,6 +241,19 @@ def _rows(function: Function, stmt: nodes.Reserve | nodes.Advance) -> None:
             function.line(fails)
         scope.moved.add(stmt.lane)
         function.line(moved(lanes, stmt.lane))
+
+
+def _given_rows(function: Function, stmt: nodes.Reserve | nodes.Advance, count: str) -> None:
+    """An array that an object has gets its length; one that takes more memory than a message may ask for is refused."""
+    scope = function.scope
+    if isinstance(stmt, nodes.Advance):
+        rows = scope.rows(stmt.lane)
+        scope.moved.add(stmt.lane)
+        function.line(f"{rows} = {Template(scope.lanes.given[stmt.lane].sized).substitute(count=count)};")
+        return
+    scope.takes("failure")
+    with function.block(f"if ({count} > {scope.takes('holder')}->most)"):
+        function.line(f"return {scope.calls('full')}(failure, {stmt.lane}, {count} - holder->most);")
 
 
 def moved(lanes: Lanes, lane: int) -> str:

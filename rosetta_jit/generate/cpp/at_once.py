@@ -60,7 +60,7 @@ def at_once(kernel: Kernel, lanes: Lanes) -> str:
 
 def _is_shared(function: str) -> bool:
     """Whether the header that all units share has a function of the support."""
-    return function.startswith("load_") or function == "lacks_behind"
+    return function.startswith("load_") or function in ("lacks", "lacks_behind")
 
 
 def _straightened(body: nodes.Block) -> tuple[nodes.Block, nodes.Block] | None:

@@ -10,8 +10,8 @@ from rosetta_jit.generate.c.functions import Printed, print_kernel
 from rosetta_jit.generate.c.lanes import Lanes, Straight
 from rosetta_jit.generate.c.language import parts_of
 from rosetta_jit.generate.cleared import without_clearing
+from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place, uncounted
 from rosetta_jit.generate.cpp.at_once import at_once
-from rosetta_jit.generate.cpp.fixed_arrays import fixed_arrays, uncounted
 from rosetta_jit.generate.cpp.lists_in_place import opened_lists
 from rosetta_jit.generate.cpp.manners import MANNERS, Manners
 from rosetta_jit.generate.cpp.opened import in_place
@@ -79,7 +79,7 @@ def _decoder(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes) -> tupl
     for each in lists:
         kernel, straight = in_place(kernel, each.fields) or kernel, straight | each.fields
     opened = frozenset(lane for each in lists for lane in each.containers.keys() - each.texts)
-    arrays = fixed_arrays(walk, "given_object")
+    arrays = arrays_in_place(walk, "given_object")
     for each in arrays:
         kernel = uncounted(kernel, each) or kernel
-    return kernel, replace(lanes, straight=straight, opened=opened, given={each.lane: each.rows for each in arrays})
+    return kernel, replace(lanes, straight=straight, opened=opened, given={each.lane: each.given for each in arrays})

@@ -14,8 +14,8 @@ from rosetta_jit.generate.c.state import MEMBERS
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import C_TYPES, RESERVED
+from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place
 from rosetta_jit.generate.cpp.classes import classes
-from rosetta_jit.generate.cpp.fixed_arrays import fixed_arrays
 from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
 from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
 from rosetta_jit.generate.cpp.read_in_place import is_local
@@ -157,7 +157,7 @@ def source(unit: Unit, parts: Parts, manners: Manners, at_once: str) -> str:
     printed, lanes = parts.printed, parts.lanes
     walks = {direction: Walk(unit, lanes, manners, direction) for direction in ("decode", "encode")}
     opened = opened_lists(walks["decode"], "target") if "borrow" in printed else []
-    given = frozenset(each.lane for each in fixed_arrays(walks["decode"], "target"))
+    given = frozenset(each.lane for each in arrays_in_place(walks["decode"], "target"))
     walks["decode"].opened = given.union(*(each.lanes for each in opened))
     walks["encode"].opened = frozenset(lane for each in opened for lane in each.containers)
     directs = {name: directs_of(walk, at) for (name, walk), at in zip(walks.items(), ("target", "source"), strict=True)}

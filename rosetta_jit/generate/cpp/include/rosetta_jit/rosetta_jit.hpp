@@ -242,7 +242,14 @@ inline error error_of(const site &where, std::int64_t offset, const std::int64_t
 
 /* --- numbers of a message, and whether they are there --- */
 
-/* Whether some of `size` bytes from `at` are missing before `end`; `at` lies in the message, or is its end. */
+/* Whether some of `size` bytes from `at` are missing before `end`, which is not negative: without a sign, negative numbers are large. */
+inline bool lacks(std::int64_t at, std::int64_t size, std::int64_t end) noexcept
+{
+    return static_cast<std::uint64_t>(at) > static_cast<std::uint64_t>(end) ||
+           static_cast<std::uint64_t>(size) > static_cast<std::uint64_t>(end) - static_cast<std::uint64_t>(at);
+}
+
+/* The same where `at` is known to lie in the message, or to be its end. */
 inline bool lacks_behind(std::int64_t at, std::int64_t size, std::int64_t end) noexcept
 {
     return static_cast<std::uint64_t>(size) > static_cast<std::uint64_t>(end - at);
@@ -442,6 +449,21 @@ template <std::int64_t Size> ROSETTA_JIT_INLINE void copy_known(void *target, st
             std::memcpy(at + done, begin + done, AT_ONCE);
         }
         std::memcpy(at + Size - AT_ONCE, begin + Size - AT_ONCE, AT_ONCE); /* some of them again, if there are fewer */
+    }
+}
+
+/* Sets bytes whose number compilers know, for the same reason. */
+template <std::int64_t Size> ROSETTA_JIT_INLINE void fill_known(void *target, std::int64_t to, int byte) noexcept
+{
+    constexpr std::int64_t AT_ONCE = 32, MANY = 1024;
+    unsigned char *const at = static_cast<unsigned char *>(target) + to;
+    if constexpr (Size <= AT_ONCE || Size > MANY) {
+        std::memset(at, byte, static_cast<std::size_t>(Size));
+    } else {
+        for (std::int64_t done = 0; done < Size - AT_ONCE; done += AT_ONCE) {
+            std::memset(at + done, byte, AT_ONCE);
+        }
+        std::memset(at + Size - AT_ONCE, byte, AT_ONCE); /* some of them again, if there are fewer */
     }
 }
 
@@ -1164,9 +1186,10 @@ template <class Lane, class Span, class Container> void show_span(Lane &to, Span
 }
 
 /* The same by the address of the elements. */
-template <class Span, class Container> void point_span(Span &span, const Container &from)
+template <class Row, class Span, class Container> void point_span(Span &span, const Container &from)
 {
-    static_assert(sizeof(*data_of(from)) == 1, "the class has elements of another type than the schema");
+    using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(from))>>;
+    static_assert(same_numbers<Number, Row> || sizeof(Number) + sizeof(Row) == 2, "the class has elements of another type than the schema");
     span.start = static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(data_of(from)));
     span.count = count_of(from);
 }
@@ -1310,6 +1333,17 @@ template <class Row, std::size_t Count, class Container> ROSETTA_JIT_INLINE Row 
 {
     static_assert(same_numbers<std::remove_reference_t<decltype(*data_of(target))>, Row>, "the class has elements of another type than the schema");
     static_assert(sizeof(Container) == Count * sizeof(Row), "the class has another number of elements than the schema");
+    return reinterpret_cast<Row *>(data_of(target));
+}
+
+/* The same of an array that gets as many as are said. */
+template <class Row, class Container> ROSETTA_JIT_INLINE Row *sized(Container &target, std::int64_t count)
+{
+    static_assert(same_numbers<std::remove_reference_t<decltype(*data_of(target))>, Row>, "the class has elements of another type than the schema");
+    static_assert(can_resize<Container>::value, "the class has an array of a fixed length where the schema has none");
+    if (count != count_of(target)) {
+        resize_to(target, count);
+    }
     return reinterpret_cast<Row *>(data_of(target));
 }
 
