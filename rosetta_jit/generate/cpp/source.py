@@ -168,9 +168,6 @@ def source(unit: Unit, parts: Parts, manners: Manners, at_once: str) -> str:
     directs["encode"] += [each.direct for each in views]
     listed = {each.direct.lane: each.direct.spot.at for each in _taken(walks["decode"], HOLDER)}
     called = {name for each in printed.values() for name in each.support} | {"failure"}
-    kernels: list[str] = []
-    for role in sorted(printed, key=by_order):
-        kernels += [_table(role, unit, parts), printed[role].text.rstrip()]
     said = any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites)
     between = _walks(unit, parts, walks, directs)
     return _filled(
@@ -185,15 +182,25 @@ def source(unit: Unit, parts: Parts, manners: Manners, at_once: str) -> str:
         + _holder(unit, parts, given, containers, listed, {lane: kind for each in opened for lane, kind in each.kinds.items()})
         + (source_struct(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
         support=SELDOM.sub(r"ROSETTA_JIT_COLD \g<0>", support(without_unused(called, printed))),
-        kernels="\n\n".join(kernels),
+        kernels=_kernels(unit, parts),
         walks=between,
-        lanes=",\n    ".join(
-            [*(literal(f".{each.name}" if each.name else "") for each in unit.layout.lanes)] + [literal("")] * parts.hidden
-        ),
+        lanes=_lane_names(unit, parts),
         said=SAID if said else "",
         written=", written_(new memory)" if writes_apart(unit) else "",
         functions="\n".join(_methods(unit, parts, directs, given, opened, walks["encode"], "decode_any" if at_once else "try_decode")),
     )
+
+
+def _kernels(unit: Unit, parts: Parts) -> str:
+    """The functions of all kernels, each behind the table of its sites."""
+    roles = sorted(parts.printed, key=by_order)
+    return "\n\n".join(text for role in roles for text in (_table(role, unit, parts), parts.printed[role].text.rstrip()))
+
+
+def _lane_names(unit: Unit, parts: Parts) -> str:
+    """The lanes as paths of errors name them; hidden ones have no name."""
+    names = [*(f".{each.name}" if each.name else "" for each in unit.layout.lanes), *[""] * parts.hidden]
+    return ",\n    ".join(map(literal, names))
 
 
 def _taken(walk: Walk, at: str) -> list[Listed]:

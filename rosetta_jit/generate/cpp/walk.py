@@ -248,7 +248,7 @@ class Walk:
     def _begin_row(self, lane: int, row: str, index: str) -> None:
         """A row to be set. Where types contain themselves, what a row contains may move the rows: it is set beside them."""
         if self.unit.layout.recursive:
-            self.writer.line(f"{self.lanes.type(lane)} {row}; rosetta_jit::detail::fill_known<sizeof {row}>(&{row}, 0, 0);")
+            self.writer.line(f"auto {row} = rosetta_jit::detail::cleared<{self.lanes.type(lane)}>();")
         else:
             self.writer.line(f"auto &{row} = to.{self.lanes.rows(lane)}.rows[{index}];")
 

@@ -467,6 +467,15 @@ template <std::int64_t Size> ROSETTA_JIT_INLINE void fill_known(void *target, st
     }
 }
 
+/* A row of which nothing is set yet. */
+template <class Row> ROSETTA_JIT_INLINE Row cleared() noexcept
+{
+    static_assert(std::is_trivially_copyable_v<Row>);
+    Row row;
+    fill_known<static_cast<std::int64_t>(sizeof row)>(&row, 0, 0);
+    return row;
+}
+
 /* --- protobuf's integers, of which each byte has seven bits and says whether another one follows --- */
 
 constexpr std::uint64_t GOES_ON = 0x8080808080808080u; /* of each of eight bytes */
