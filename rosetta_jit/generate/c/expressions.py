@@ -55,7 +55,7 @@ def expression(scope: Scope, expr: nodes.Expr) -> str:
             return _bits(scope, type_, operand)
         case nodes.Select(condition, then, otherwise):
             chosen = f"({expression(scope, condition)} ? {expression(scope, then)} : {expression(scope, otherwise)})"
-            return f"({C_TYPES[type_of(then)]}){chosen}" if nodes.WIDTH[type_of(then)] < 4 else chosen
+            return _cast(scope, C_TYPES[type_of(then)], chosen) if nodes.WIDTH[type_of(then)] < 4 else chosen
         case nodes.IsText(address, size):
             memory, start = location(scope, address)
             arguments = f"{memory}, {start}, {expression(scope, size)}"
@@ -141,8 +141,8 @@ def _binary(scope: Scope, op: str, left: nodes.Expr, right: nodes.Expr) -> str:
         scope.calls("math")
         return f"{FMOD.get(op, op)}{'f' if type_ == 'f32' else ''}({expression(scope, left)}, {expression(scope, right)})"
     if op in ("shl", "shr"):
-        return _shifted(op, type_, _wide(scope, left), expression(scope, right))
-    return _narrowed(type_, f"({' '.join(_operands(scope, left, OPERATORS[op], right))})")
+        return _shifted(scope, op, type_, _wide(scope, left), expression(scope, right))
+    return _narrowed(scope, type_, f"({' '.join(_operands(scope, left, OPERATORS[op], right))})")
 
 
 def _wide(scope: Scope, expr: nodes.Expr) -> str:
@@ -150,21 +150,26 @@ def _wide(scope: Scope, expr: nodes.Expr) -> str:
     if isinstance(expr, nodes.Const):
         return constant(scope, expr.type, expr.value, wide=True)
     text = expression(scope, expr)
-    return text if _is_wide(expr) or type_of(expr) not in ("i64", "u64") else f"({C_TYPES[type_of(expr)]}){text}"
+    return text if _is_wide(expr) or type_of(expr) not in ("i64", "u64") else _cast(scope, C_TYPES[type_of(expr)], text)
 
 
-def _shifted(op: str, type_: nodes.Scalar, left: str, right: str) -> str:
+def _shifted(scope: Scope, op: str, type_: nodes.Scalar, left: str, right: str) -> str:
     """High bits that leave are those of an unsigned number: of a signed one C does not say what becomes of it."""
     if op == "shr":
-        return _narrowed(type_, f"({left} >> {right})")
+        return _narrowed(scope, type_, f"({left} >> {right})")
     unsigned = "uint64_t" if nodes.WIDTH[type_] == 8 else "uint32_t"
-    shifted = f"(({unsigned}){left} << {right})"
-    return shifted if C_TYPES[type_] == unsigned else f"({C_TYPES[type_]}){shifted}"
+    shifted = f"({_cast(scope, unsigned, left)} << {right})"
+    return shifted if C_TYPES[type_] == unsigned else _cast(scope, C_TYPES[type_], shifted)
 
 
-def _narrowed(type_: nodes.Scalar, text: str) -> str:
+def _narrowed(scope: Scope, type_: nodes.Scalar, text: str) -> str:
     """C computes what is narrower than an int as an int."""
-    return f"({C_TYPES[type_]}){text}" if nodes.WIDTH[type_] < 4 and type_ != "bool" else text
+    return _cast(scope, C_TYPES[type_], text) if nodes.WIDTH[type_] < 4 and type_ != "bool" else text
+
+
+def _cast(scope: Scope, name: str, value: str) -> str:
+    """A value as one of another type: headers of C++ have casts that compilers do not warn of."""
+    return f"static_cast<{name}>({bare(value)})" if scope.lanes.shared else f"({name}){value}"
 
 
 def _unary(scope: Scope, function: str, type_: nodes.Scalar, value: str) -> str:
@@ -172,9 +177,9 @@ def _unary(scope: Scope, function: str, type_: nodes.Scalar, value: str) -> str:
         case "not" if type_ == "bool":
             return f"(!{value})"
         case "not":
-            return _narrowed(type_, f"(~{value})")
+            return _narrowed(scope, type_, f"(~{value})")
         case "neg":
-            return _narrowed(type_, f"(-{value})")
+            return _narrowed(scope, type_, f"(-{value})")
         case "abs" if type_ in SIGNED:
             return f"{scope.calls(f'abs_{type_}')}({value})"
         case _ if type_ not in FLOATS:
@@ -192,7 +197,7 @@ def _convert(scope: Scope, target: nodes.Scalar, operand: nodes.Expr) -> str:
         return f"({value} != {constant(scope, source, 0)})"
     if source in FLOATS and target not in FLOATS:
         return f"{scope.calls(f'{target}_of_{source}')}({value})"
-    return f"({C_TYPES[target]}){value}"
+    return _cast(scope, C_TYPES[target], value)
 
 
 def _bits(scope: Scope, target: nodes.Scalar, operand: nodes.Expr) -> str:
@@ -202,10 +207,10 @@ def _bits(scope: Scope, target: nodes.Scalar, operand: nodes.Expr) -> str:
     width = 8 * nodes.WIDTH[source]
     if source in FLOATS:
         value = f"{scope.calls(f'bits_of_f{width}')}({value})"
-        return value if target == f"u{width}" else f"({C_TYPES[target]}){value}"
+        return value if target == f"u{width}" else _cast(scope, C_TYPES[target], value)
     if target in FLOATS:
-        return f"{scope.calls(f'float{width}_of')}((uint{width}_t){value})"
-    return f"({C_TYPES[target]}){value}"
+        return f"{scope.calls(f'float{width}_of')}({_cast(scope, f'uint{width}_t', value)})"
+    return _cast(scope, C_TYPES[target], value)
 
 
 def _decimal(scope: Scope, expr: nodes.Nearest | nodes.Digits | nodes.Scale) -> str:
@@ -277,7 +282,7 @@ def location(scope: Scope, address: nodes.Address) -> tuple[str, str]:
         case nodes.Wire(at):
             return scope.takes("bytes"), bare(expression(scope, at))
         case nodes.Place(lane, row, offset):
-            stride = scope.lanes.stride(lane)
+            stride = 1 if lane in scope.lanes.addressed else scope.lanes.stride(lane)
             start = _scaled(scope, row, stride)
             if offset:
                 start = str(offset) if start == "0" else f"{start} + {offset}"

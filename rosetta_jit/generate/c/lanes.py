@@ -34,6 +34,7 @@ OWN_WORDS = frozenset(
         "given_row",
         "given_object",
         "gathered",
+        "kept",
     }
 )
 """What the functions call their parameters, and the holder its other members."""
@@ -76,12 +77,22 @@ class Straight:
 
 
 @dataclass(frozen=True, slots=True)
+class Given:
+    """An array of an object, whose elements are rows: what gives it a `$count` of them, and the first one until then."""
+
+    sized: str
+    rows: str = "nullptr"
+
+
+@dataclass(frozen=True, slots=True)
 class Lanes:
     """Those of a kernel; ``prefix`` begins the names of the header, ``own`` are not hidden. Those of C++ make room for themselves.
 
     The rows of ``addressed`` lanes are bytes anywhere in memory, by their addresses; those of ``viewed`` lanes are made of an object's
     elements when they are read. ``row``: the functions are given the message's row. ``straight`` are the fields, by lane and offset, that
-    no row keeps, as an object has them; the rows of ``opened`` lanes are elements of the object.
+    no row keeps, as an object has them; the rows of ``opened`` lanes are elements of the object, and so are those of ``given`` ones, of
+    which each message has one array. ``shared`` begins the names of functions
+    of the support, where they are those of a header.
     """
 
     prefix: str
@@ -93,6 +104,8 @@ class Lanes:
     row: bool = False
     straight: Mapping[tuple[int, int], Straight] = field(default_factory=dict[tuple[int, int], Straight])
     opened: frozenset[int] = frozenset()
+    given: Mapping[int, Given] = field(default_factory=dict[int, "Given"])
+    shared: str = ""
 
     def stride(self, lane: int) -> int:
         """Bytes of a row."""
@@ -119,6 +132,8 @@ class Lanes:
             return f"holder->scratch[{lane - self.own}].bytes"
         if lane == 0:
             return "&given_row" if self.row else "&holder->message"
+        if lane in self.given:
+            return self.given[lane].rows
         return f"holder->{self.rows(lane)}" if lane in self.viewed else f"holder->{self.rows(lane)}.rows"
 
     def pointer(self, lane: int) -> str:

@@ -42,9 +42,9 @@ class Scope:
         return self.tables[type_, values]
 
     def calls(self, function: str) -> str:
-        """A function of the support, which will be part of the file."""
+        """A function of the support, which will be part of the file, or of the one that lanes say."""
         self.support.add(function)
-        return function
+        return f"{self.lanes.shared}{function}"
 
     def takes(self, parameter: str) -> str:
         """A parameter, which the function will have."""
@@ -53,7 +53,7 @@ class Scope:
 
     def rows(self, lane: int) -> str:
         """The pointer to the rows of a lane."""
-        self.parameters.add("given_row" if lane == 0 and self.lanes.row else "holder")
+        self.parameters.add("given_row" if lane == 0 and self.lanes.row else "given_object" if lane in self.lanes.given else "holder")
         self.touched.add(lane)
         self._note(lane)
         return self.lanes.rows(lane)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
+from string import Template
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.printing import Writer
@@ -92,7 +93,7 @@ def _statement(function: Function, stmt: nodes.Stmt) -> None:
     scope = function.scope
     match stmt:
         case nodes.Require(at, size, failure):
-            _fail_if(function, _lacks(function, at, size), failure)
+            _fail_if(function, lacks(function, at, size), failure)
             function.known = after_require(function.known, at, size)
         case nodes.Expect(condition, failure):
             if condition == FALSE:
@@ -150,24 +151,27 @@ def _effect(scope: Scope, stmt: nodes.Effect) -> str:
         case nodes.SetField(place, value):
             return written(scope, place, value)
         case nodes.Copy(target, source, size):
-            return _copy(scope, target, source, bare(expression(scope, size)))
+            return _copy(scope, target, source, size)
         case nodes.Fill(target, size, byte):
             return _fill(scope, target, size, byte)
         case _:
             assert_never(stmt)
 
 
-def _copy(scope: Scope, target: nodes.Address, source: nodes.Address, size: str) -> str:
+def _copy(scope: Scope, target: nodes.Address, source: nodes.Address, count: nodes.Expr) -> str:
+    size = bare(expression(scope, count))
     if isinstance(source, nodes.Place) and source.lane in scope.lanes.viewed:
         taken = (scope.rows(source.lane), bare(expression(scope, source.row)), str(source.offset))
         return f"rosetta_jit::detail::copy_rows({', '.join((*location(scope, target), *taken, size))});"
+    if scope.lanes.dialect == "c++" and isinstance(count, nodes.Const):
+        return f"rosetta_jit::detail::copy_known<{size}>({', '.join((*location(scope, target), *location(scope, source)))});"
     copied = ", ".join((*location(scope, target), *location(scope, source), size))
     if scope.lanes.dialect == "c++" and isinstance(source, nodes.Place) and scope.lanes.stride(source.lane) == 1:
         return f"rosetta_jit::detail::copy_few({copied});"
     return f"{scope.calls('copy_bytes')}({copied});"
 
 
-def _lacks(function: Function, at: nodes.Expr, size: nodes.Expr) -> str:
+def lacks(function: Function, at: nodes.Expr, size: nodes.Expr) -> str:
     """Whether some of ``size`` bytes from ``at`` are missing."""
     scope = function.scope
     is_known = is_position(function.known, at)
@@ -202,8 +206,11 @@ def _failed(function: Function, site: str, at: str, indices: tuple[nodes.Expr, .
 
 def _fill(scope: Scope, target: nodes.Address, size: nodes.Expr, byte: int) -> str:
     memory, start = location(scope, target)
-    if isinstance(target, nodes.Place) and isinstance(size, nodes.Const) and start == "0" and size.value > 0:
-        return f"memset({memory}, {byte}, {int(size.value)});"
+    is_known = isinstance(size, nodes.Const) and size.value > 0
+    if scope.lanes.dialect == "c++" and is_known:
+        return f"rosetta_jit::detail::fill_known<{expression(scope, size)}>({memory}, {start}, {byte});"
+    if isinstance(target, nodes.Place) and is_known and start == "0":
+        return f"memset({memory}, {byte}, {expression(scope, size)});"
     if scope.lanes.dialect == "c++":
         return f"rosetta_jit::detail::fill_few({memory}, {start}, {bare(expression(scope, size))}, {byte});"
     return f"{scope.calls('fill_bytes')}({memory}, {start}, {bare(expression(scope, size))}, {byte});"
@@ -211,6 +218,9 @@ def _fill(scope: Scope, target: nodes.Address, size: nodes.Expr, byte: int) -> s
 
 def _rows(function: Function, stmt: nodes.Reserve | nodes.Advance) -> None:
     scope, lanes, count = function.scope, function.scope.lanes, bare(expression(function.scope, stmt.count))
+    if stmt.lane in lanes.given:
+        _given_rows(function, stmt, count)
+        return
     used = scope.used(stmt.lane)
     if isinstance(stmt, nodes.Advance):
         function.line(f"{used} += {count};")
@@ -231,6 +241,19 @@ def _rows(function: Function, stmt: nodes.Reserve | nodes.Advance) -> None:
             function.line(fails)
         scope.moved.add(stmt.lane)
         function.line(moved(lanes, stmt.lane))
+
+
+def _given_rows(function: Function, stmt: nodes.Reserve | nodes.Advance, count: str) -> None:
+    """An array that an object has gets its length; one that takes more memory than a message may ask for is refused."""
+    scope = function.scope
+    if isinstance(stmt, nodes.Advance):
+        rows = scope.rows(stmt.lane)
+        scope.moved.add(stmt.lane)
+        function.line(f"{rows} = {Template(scope.lanes.given[stmt.lane].sized).substitute(count=count)};")
+        return
+    scope.takes("failure")
+    with function.block(f"if ({count} > {scope.takes('holder')}->most)"):
+        function.line(f"return {scope.calls('full')}(failure, {stmt.lane}, {count} - holder->most);")
 
 
 def moved(lanes: Lanes, lane: int) -> str:

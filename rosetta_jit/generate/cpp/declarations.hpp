@@ -7,6 +7,32 @@
 #if __cplusplus >= 202002L
     void decode(std::span<const std::byte> bytes, holder &target) { decode(bytes.data(), bytes.size(), target); }
 #endif
+/* == at_once == */
+    /* Reads a message. After a failure the holder is in a valid state, and what it has is not said. */
+    rosetta_jit::result<rosetta_jit::done> try_decode(const void *bytes, std::size_t size, holder &target)
+    {
+        if (is_read(static_cast<const unsigned char *>(bytes), static_cast<std::int64_t>(size), target)) {
+            return rosetta_jit::done{};
+        }
+        return decode_any(bytes, size, target);
+    }
+
+    /* The same; throws rosetta_jit::failure. */
+    void decode(const void *bytes, std::size_t size, holder &target) { static_cast<void>(try_decode(bytes, size, target).value()); }
+#if __cplusplus >= 202002L
+    void decode(std::span<const std::byte> bytes, holder &target) { decode(bytes.data(), bytes.size(), target); }
+#endif
+/* == at_once_private == */
+    /* Reads a message as nearly all are, where a compiler sees the object, too; false where it is another one, or something is wrong with it. */
+    static bool is_read(const unsigned char *__restrict bytes, std::int64_t end, holder &given_object)
+    {
+$statements
+        return true;
+    }
+
+    /* Reads any message, and says what is wrong with it. */
+    rosetta_jit::result<rosetta_jit::done> decode_any(const void *bytes, std::size_t size, holder &target);
+
 /* == wire == */
     /* Reads a message of `$wire`, and sets what its messages tell: the rest of the target stays. One that is refused changes nothing. */
     rosetta_jit::result<rosetta_jit::done> try_decode_$wire(const void *bytes, std::size_t size, holder &target);

@@ -22,7 +22,7 @@ $declarations
 $state
 
 private:
-    struct memory;
+$hidden    struct memory;
     std::unique_ptr<memory> memory_;
 $written};
 

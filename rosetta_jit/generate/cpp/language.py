@@ -10,6 +10,8 @@ from rosetta_jit.generate.c.functions import Printed, print_kernel
 from rosetta_jit.generate.c.lanes import Lanes, Straight
 from rosetta_jit.generate.c.language import parts_of
 from rosetta_jit.generate.cleared import without_clearing
+from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place, uncounted
+from rosetta_jit.generate.cpp.at_once import at_once
 from rosetta_jit.generate.cpp.lists_in_place import opened_lists
 from rosetta_jit.generate.cpp.manners import MANNERS, Manners
 from rosetta_jit.generate.cpp.opened import in_place
@@ -33,9 +35,10 @@ def files(unit: Unit) -> dict[str, str]:
     if "borrow" in unit.kernels:
         unit = replace(unit, kernels={**unit.kernels, "borrow": without_clearing(unit.kernels["borrow"], unit.layout)})
     parts = parts_of(unit, lambda kernel, lanes, role: _printed(unit, manners, kernel, lanes, role), dialect="c++")
+    there = at_once(*_decoder(unit, manners, unit.kernels["borrow"], parts.lanes)) if "borrow" in unit.kernels else ""
     return {
-        f"{unit.name}.hpp": header(unit, manners),
-        f"{unit.name}.cpp": source(unit, parts, manners),
+        f"{unit.name}.hpp": header(unit, manners, there),
+        f"{unit.name}.cpp": source(unit, parts, manners, there),
         SHARED: (INCLUDE / SHARED).read_text("utf-8"),
     }
 
@@ -64,11 +67,19 @@ def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: R
         views = frozenset(each.direct.lane for each in viewed_in(unit, lanes, manners))
         kernel, lanes = undamaged_kernel(kernel), replace(lanes, addressed=addressed_in(unit, lanes, manners), viewed=views, row=True)
     else:
-        walk = Walk(unit, lanes, manners, "decode")
-        straight = {(0, offset): Straight(statement) for offset, (_, statement) in straight_numbers(walk).items()}
-        lists = opened_lists(walk, "given_object")
-        for each in lists:
-            kernel, straight = in_place(kernel, each.fields) or kernel, straight | each.fields
-        opened = frozenset(lane for each in lists for lane in each.containers.keys() - each.texts)
-        lanes = replace(lanes, straight=straight, opened=opened)
+        kernel, lanes = _decoder(unit, manners, kernel, lanes)
     return print_kernel(kernel, lanes, role, unit.origins.get(role, ()))
+
+
+def _decoder(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes) -> tuple[Kernel, Lanes]:
+    """The kernel of a decoder that sets fields where the object has them, as far as it can, and how it reaches them."""
+    walk = Walk(unit, lanes, manners, "decode")
+    straight = {(0, offset): Straight(statement) for offset, (_, statement) in straight_numbers(walk).items()}
+    lists = opened_lists(walk, "given_object")
+    for each in lists:
+        kernel, straight = in_place(kernel, each.fields) or kernel, straight | each.fields
+    opened = frozenset(lane for each in lists for lane in each.containers.keys() - each.texts)
+    arrays = arrays_in_place(walk, "given_object")
+    for each in arrays:
+        kernel = uncounted(kernel, each) or kernel
+    return kernel, replace(lanes, straight=straight, opened=opened, given={each.lane: each.given for each in arrays})

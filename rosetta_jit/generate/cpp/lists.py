@@ -70,7 +70,7 @@ def _is_readable(walk: Walk, type_: Type, slot: Slot) -> bool:
     match walk.unit.schema.resolve(type_), slot:
         case _, Number():
             return True
-        case ((String() | Bytes()), Span(_, lane)):
+        case ((String() | Bytes() | Array()), Span(_, lane)):
             return lane in walk.addressed
         case Struct(fields=fields), Row(members=members, unknown=None):
             parts = zip(fields, members, strict=True)

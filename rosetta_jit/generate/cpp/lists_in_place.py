@@ -75,6 +75,13 @@ def opened_lists(walk: Walk, at: str, typed: str = HOLDER) -> list[Opened]:
     return found
 
 
+def spans_of(walk: Walk, at: str) -> Iterator[tuple[Type, Span, Spot]]:
+    """What has a length and is in every message, of an object that statements call ``at``."""
+    place = _Place(Spot(at), Spot(HOLDER), 0)
+    for type_, slot, inner in _spans(walk, Ref(walk.unit.type), walk.unit.layout.root, place):
+        yield walk.unit.schema.resolve(type_), slot, inner.spot
+
+
 def _spans(walk: Walk, type_: Type, slot: Slot, place: _Place) -> Iterator[tuple[Type, Span, _Place]]:
     """What has a length and is in every message."""
     resolved = walk.unit.schema.resolve(type_)

@@ -1,5 +1,5 @@
 /* == decode == */
-rosetta_jit::result<rosetta_jit::done> codec::try_decode(const void *data, std::size_t size, ::$name::holder &target)
+rosetta_jit::result<rosetta_jit::done> codec::$function(const void *data, std::size_t size, ::$name::holder &target)
 {
     ${name}_holder *const filled = memory_.get();
     const unsigned char *const bytes = static_cast<const unsigned char *>(data);

@@ -1,6 +1,7 @@
-"""What encoders read of an object in place: texts and bytes by their addresses, and the message's row, which is a local variable.
+"""What encoders read of an object in place: texts, bytes and numbers by their addresses, and the message's row, which is a local variable.
 
-A lane is *addressed* where its rows are the characters of strings anywhere in the object: the start of a span is an address then.
+A lane is *addressed* where its rows are the characters of strings, or the numbers of arrays, anywhere in the object: the start of a span is
+an address then.
 """
 
 from __future__ import annotations
@@ -10,23 +11,23 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.unit import Unit, kind_of
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.nodes import Copy, Fill, Get, Place, SetField, Stmt
+from rosetta_jit.kernel.nodes import Copy, Fill, Get, Local, Place, SetField, Stmt
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
-from rosetta_jit.model.layout import Row, Slot, Span, Variant, map_entry
-from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, Struct, Type, Union
+from rosetta_jit.model.layout import Number, Row, Slot, Span, Variant, map_entry
+from rosetta_jit.model.types import Array, Bytes, Enum, Map, Optional, Ref, String, Struct, Type, Union
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.cpp.walk import Walk
 
 
 def addressed_lanes(unit: Unit, direct: frozenset[int]) -> frozenset[int]:
-    """The lanes of texts and bytes that encoders copy from, and look at in no other way; ``direct`` ones are reached already."""
+    """The lanes of texts, bytes and numbers that encoders copy from, and look at in no other way; ``direct`` ones are reached already."""
     kernels = [kernel for role, kernel in unit.kernels.items() if kind_of(role) in ("encode", "size")]
     return frozenset(_texts(unit)) - direct - {lane for kernel in kernels for lane in _taken_apart(kernel)}
 
 
 def _texts(unit: Unit) -> Iterator[int]:
-    """The lanes of bytes, and of texts whose characters are bytes."""
+    """The lanes of bytes, of texts whose characters are bytes, and of arrays whose numbers are as rows have them."""
     pending: list[tuple[Type, Slot]] = [(Ref(unit.type), unit.layout.root)]
     seen = set[int]()
     while pending:
@@ -43,6 +44,9 @@ def _texts(unit: Unit) -> Iterator[int]:
                 pending += zip((each.type for each in cases), (member.slot for member in members), strict=True)
             case (Bytes(), Span(_, lane)) | (String("utf-8" | "octets"), Span(_, lane)):
                 yield lane
+            case Array(element), Span(_, lane) if isinstance(number := unit.layout.lanes[lane].element, Number):
+                if number.scalar != "bool" and not isinstance(unit.schema.resolve(element), Enum):
+                    yield lane
             case Array(element), Span(_, lane):
                 pending.append((element, unit.layout.lanes[lane].element))
             case Map(key, value), Span(_, lane):
@@ -54,10 +58,12 @@ def _texts(unit: Unit) -> Iterator[int]:
 
 
 def _taken_apart(kernel: Kernel) -> Iterator[int]:
-    """The lanes of which a kernel reads single rows, or which it changes."""
+    """The lanes of which a kernel reads single rows, or which it changes; of rows that are no bytes it must copy all from the first one."""
     blocks = (*kernel.bodies, *(routine.body for routine in kernel.routines))
     for stmt, _ in (each for block in blocks for each in statements(block)):
         yield from _changed(stmt)
+        if isinstance(stmt, Copy) and isinstance(stmt.source, Place) and not isinstance(stmt.source.row, Local | Get):
+            yield from (lane for lane in (stmt.source.lane,) if kernel.strides[lane] > 1)
         for part in (part for expr in expressions_of(stmt) for part in subexpressions(expr)):
             if isinstance(part, Get):
                 yield part.place.lane

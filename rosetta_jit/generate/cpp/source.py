@@ -14,6 +14,7 @@ from rosetta_jit.generate.c.state import MEMBERS
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import C_TYPES, RESERVED
+from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place
 from rosetta_jit.generate.cpp.classes import classes
 from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
 from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
@@ -54,8 +55,8 @@ SAID = """    if (where.scratch >= 0) { /* the mapping has put this text togethe
 """
 
 
-def header(unit: Unit, manners: Manners) -> str:
-    """The text of the header."""
+def header(unit: Unit, manners: Manners, at_once: str) -> str:
+    """The text of the header; ``at_once`` are the statements that read a message there, if it can be."""
     root = unit.schema.types[unit.type]
     assert isinstance(root, Struct)
     own = classes(unit) if manners.type is None else ""
@@ -76,7 +77,8 @@ def header(unit: Unit, manners: Manners) -> str:
         guard=f"{unit.name.upper()}_HPP",
         includes="\n".join(lines),
         classes=f"{own}\n/* What is filled and read. */\nusing holder = {named};\n",
-        declarations="\n".join(_declared(unit)),
+        declarations="\n".join(_declared(unit, at_once)),
+        hidden=Template(_declarations()["at_once_private"]).substitute(statements=at_once.rstrip()) if at_once else "",
         state=_state(unit),
         written="    std::unique_ptr<memory> written_;\n" if writes_apart(unit) else "",
         functions="".join(_function(unit, each.name, each.parameters, each.result) for each in unit.functions),
@@ -129,10 +131,10 @@ def _declarations() -> dict[str, str]:
     return dict(zip(parts[::2], parts[1::2], strict=True))
 
 
-def _declared(unit: Unit) -> list[str]:
+def _declared(unit: Unit, at_once: str) -> list[str]:
     """The codec's functions."""
     known = _declarations()
-    found = [known["decode"]] if "borrow" in unit.kernels else []
+    found = [known["at_once" if at_once else "decode"]] if "borrow" in unit.kernels else []
     for wire in wires_of(unit):
         every, last = unit.arrivals[wire]
         found.append(Template(known["wire"]).substitute(wire=wire, every=every, last=last))
@@ -150,12 +152,13 @@ def _filled(file: str, **values: str) -> str:
     return re.sub(r"\n{3,}", "\n\n", Template((FOLDER / file).read_text("utf-8")).substitute(values))
 
 
-def source(unit: Unit, parts: Parts, manners: Manners) -> str:
-    """The text of the source file."""
+def source(unit: Unit, parts: Parts, manners: Manners, at_once: str) -> str:
+    """The text of the source file; ``at_once`` as for `header`."""
     printed, lanes = parts.printed, parts.lanes
     walks = {direction: Walk(unit, lanes, manners, direction) for direction in ("decode", "encode")}
     opened = opened_lists(walks["decode"], "target") if "borrow" in printed else []
-    walks["decode"].opened = frozenset(lane for each in opened for lane in each.lanes)
+    given = frozenset(each.lane for each in arrays_in_place(walks["decode"], "target"))
+    walks["decode"].opened = given.union(*(each.lanes for each in opened))
     walks["encode"].opened = frozenset(lane for each in opened for lane in each.containers)
     directs = {name: directs_of(walk, at) for (name, walk), at in zip(walks.items(), ("target", "source"), strict=True)}
     containers = {each.lane: each.spot.at for each in directs_of(walks["decode"], HOLDER)}
@@ -165,9 +168,6 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
     directs["encode"] += [each.direct for each in views]
     listed = {each.direct.lane: each.direct.spot.at for each in _taken(walks["decode"], HOLDER)}
     called = {name for each in printed.values() for name in each.support} | {"failure"}
-    kernels: list[str] = []
-    for role in sorted(printed, key=by_order):
-        kernels += [_table(role, unit, parts), printed[role].text.rstrip()]
     said = any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites)
     between = _walks(unit, parts, walks, directs)
     return _filled(
@@ -179,18 +179,28 @@ def source(unit: Unit, parts: Parts, manners: Manners) -> str:
         structs="\n\n".join(_struct(unit, parts, each, walks["decode"].taken) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
         holder=_row_structs(unit, parts, manners, [*views, *filled])
-        + _holder(unit, parts, containers, listed, {lane: kind for each in opened for lane, kind in each.kinds.items()})
+        + _holder(unit, parts, given, containers, listed, {lane: kind for each in opened for lane, kind in each.kinds.items()})
         + (source_struct(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
         support=SELDOM.sub(r"ROSETTA_JIT_COLD \g<0>", support(without_unused(called, printed))),
-        kernels="\n\n".join(kernels),
+        kernels=_kernels(unit, parts),
         walks=between,
-        lanes=",\n    ".join(
-            [*(literal(f".{each.name}" if each.name else "") for each in unit.layout.lanes)] + [literal("")] * parts.hidden
-        ),
+        lanes=_lane_names(unit, parts),
         said=SAID if said else "",
         written=", written_(new memory)" if writes_apart(unit) else "",
-        functions="\n".join(_methods(unit, parts, directs, opened, walks["encode"])),
+        functions="\n".join(_methods(unit, parts, directs, given, opened, walks["encode"], "decode_any" if at_once else "try_decode")),
     )
+
+
+def _kernels(unit: Unit, parts: Parts) -> str:
+    """The functions of all kernels, each behind the table of its sites."""
+    roles = sorted(parts.printed, key=by_order)
+    return "\n\n".join(text for role in roles for text in (_table(role, unit, parts), parts.printed[role].text.rstrip()))
+
+
+def _lane_names(unit: Unit, parts: Parts) -> str:
+    """The lanes as paths of errors name them; hidden ones have no name."""
+    names = [*(f".{each.name}" if each.name else "" for each in unit.layout.lanes), *[""] * parts.hidden]
+    return ",\n    ".join(map(literal, names))
 
 
 def _taken(walk: Walk, at: str) -> list[Listed]:
@@ -219,7 +229,9 @@ def _struct(unit: Unit, parts: Parts, struct: RowStruct, taken: frozenset[int]) 
     return text.replace("typedef struct ", "typedef struct ROSETTA_JIT_MAY_ALIAS ", 1) if is_taken else text
 
 
-def _holder(unit: Unit, parts: Parts, containers: dict[int, str], listed: dict[int, str], opened: dict[int, str]) -> str:
+def _holder(
+    unit: Unit, parts: Parts, given: frozenset[int], containers: dict[int, str], listed: dict[int, str], opened: dict[int, str]
+) -> str:
     """What kernels work on: the message's row and the lanes."""
     lanes = parts.lanes
     lines = [
@@ -227,7 +239,7 @@ def _holder(unit: Unit, parts: Parts, containers: dict[int, str], listed: dict[i
         f"struct {unit.name}_holder {{",
         f"    {lanes.type(0)} message = {{}};",
     ]
-    for lane in range(1, lanes.own):
+    for lane in (each for each in range(1, lanes.own) if each not in given):
         kind = f"rosetta_jit::detail::lane<{lanes.type(lane)}>"
         if lane in containers:
             kind = f"rosetta_jit::detail::field_lane<{lanes.type(lane)}, {container_type(containers[lane])}>"
@@ -306,7 +318,9 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
     return head, walk.writer.text()
 
 
-def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], opened: list[Opened], walk: Walk) -> list[str]:
+def _methods(
+    unit: Unit, parts: Parts, directs: dict[str, list[Direct]], given: frozenset[int], opened: list[Opened], walk: Walk, function: str
+) -> list[str]:
     template = (FOLDER / "methods.cpp").read_text("utf-8")
     _, *sections = re.split(r"^/\* == (\w+) == \*/\n", template, flags=re.MULTILINE)
     known = dict(zip(sections[::2], sections[1::2], strict=True))
@@ -316,7 +330,7 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], opened:
     lanes, printed = parts.lanes, parts.printed
     if "borrow" in printed:
         first, *others = printed["borrow"].attempts
-        bound = {each.lane for each in directs["decode"]}
+        bound = {each.lane for each in directs["decode"]} | given
         finish = [f"    {FILLED}->{lanes.rows(each.lane)}.finish({each.row}, bytes);" for each in directs["decode"]]
         empty = [*finish, *(f"    rosetta_jit::detail::resize_to({each.at}, 0);" for each in opened if each.containers)]
         most = dict.fromkeys(walk.opened, f"{FILLED}->most")
@@ -325,6 +339,7 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]], opened:
         texts.append(
             Template(known["decode"]).substitute(
                 into,
+                function=function,
                 begin=BEGIN if any("holder" in each.parameters for each in (first, *others)) else "",
                 bind="\n".join(f"    {FILLED}->{lanes.rows(each.lane)}.fill({each.spot.at});" for each in directs["decode"]),
                 reset="\n".join(reset),

@@ -186,7 +186,7 @@ class Walk:
             return
         if not isinstance(type_, Array) or isinstance(self.unit.layout.lanes[slot.lane].element, Number):
             if slot.lane in self.addressed:
-                self.lines("address", spot, row=row)
+                self.lines("address", spot, row=row, type=self.lanes.type(slot.lane))
                 return
             how = "take" if self.in_rows else "show"
             self.takes |= how == "take"
@@ -248,7 +248,7 @@ class Walk:
     def _begin_row(self, lane: int, row: str, index: str) -> None:
         """A row to be set. Where types contain themselves, what a row contains may move the rows: it is set beside them."""
         if self.unit.layout.recursive:
-            self.writer.line(f"{self.lanes.type(lane)} {row} = {{}};")
+            self.writer.line(f"auto {row} = rosetta_jit::detail::cleared<{self.lanes.type(lane)}>();")
         else:
             self.writer.line(f"auto &{row} = to.{self.lanes.rows(lane)}.rows[{index}];")
 

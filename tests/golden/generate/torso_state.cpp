@@ -232,7 +232,7 @@ static int64_t borrow_1(torso_state_holder *holder, const unsigned char *restric
     if (32 != end) {
         return fail(failure, 1, -1); /* trailing: not of the usual length */
     }
-    memset(message, 0, 32);
+    rosetta_jit::detail::fill_known<32>(message, 0, 0);
     if (load_i32_le(bytes + 0) != 266) {
         return fail(failure, 2, 0); /* tag: must be 266 */
     }
@@ -260,7 +260,7 @@ static int64_t borrow_2(torso_state_holder *holder, const unsigned char *restric
     torso_state_JointAngles *restrict const message = &holder->message;
     float *restrict angles = holder->angles.rows;
     int64_t angles_used = 0;
-    memset(message, 0, 32);
+    rosetta_jit::detail::fill_known<32>(message, 0, 0);
     if (end < 4) {
         return fail(failure, 4, 0); /* truncated: the message ends here */
     }

@@ -22,7 +22,7 @@ rosetta_jit::detail::assign_span($at, from.$lane, $row, bytes);
 rosetta_jit::detail::${how}_span(to.$lane, $row, $at);
 
 /* == address == */
-rosetta_jit::detail::point_span($row, $at);
+rosetta_jit::detail::point_span<$type>($row, $at);
 
 /* == texts decode == */
 rosetta_jit::detail::assign_texts($at, from.$lane, $row, from.$texts, bytes);
@@ -33,6 +33,12 @@ rosetta_jit::detail::resize_to($at, $row.count);
 /* == list encode == */
 $row.count = rosetta_jit::detail::count_of($at);
 $row.start = rosetta_jit::detail::$take(to.$lane, $row.count);
+
+/* == numbers == */
+rosetta_jit::detail::rows_of<$row, $count>($at)
+
+/* == sized == */
+rosetta_jit::detail::sized<$row>($at, $count)
 
 /* == open == */
 $lane = holder->$lane.open($at, $count);

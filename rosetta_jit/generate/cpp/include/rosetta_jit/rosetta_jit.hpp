@@ -240,6 +240,59 @@ inline error error_of(const site &where, std::int64_t offset, const std::int64_t
     return error{where.kind, path_of(path, indices), offset, where.detail, where.line};
 }
 
+/* --- numbers of a message, and whether they are there --- */
+
+/* Whether some of `size` bytes from `at` are missing before `end`, which is not negative: without a sign, negative numbers are large. */
+inline bool lacks(std::int64_t at, std::int64_t size, std::int64_t end) noexcept
+{
+    return static_cast<std::uint64_t>(at) > static_cast<std::uint64_t>(end) ||
+           static_cast<std::uint64_t>(size) > static_cast<std::uint64_t>(end) - static_cast<std::uint64_t>(at);
+}
+
+/* The same where `at` is known to lie in the message, or to be its end. */
+inline bool lacks_behind(std::int64_t at, std::int64_t size, std::int64_t end) noexcept
+{
+    return static_cast<std::uint64_t>(size) > static_cast<std::uint64_t>(end - at);
+}
+
+/* A number with its low byte first, as the machine has it. */
+template <class Number> Number load_le(const unsigned char *at) noexcept
+{
+    Number number;
+    std::memcpy(&number, at, sizeof number);
+    return number;
+}
+
+/* One with its high byte first. */
+template <class Number> Number load_be(const unsigned char *at) noexcept
+{
+    unsigned char bytes[sizeof(Number)];
+    for (std::size_t byte = 0; byte < sizeof bytes; byte++) {
+        bytes[byte] = at[sizeof bytes - 1 - byte];
+    }
+    return load_le<Number>(bytes);
+}
+
+inline bool load_bool(const unsigned char *at) noexcept { return *at != 0; }
+inline std::uint8_t load_u8(const unsigned char *at) noexcept { return *at; }
+inline std::int8_t load_i8(const unsigned char *at) noexcept { return static_cast<std::int8_t>(*at); }
+inline std::uint16_t load_u16_le(const unsigned char *at) noexcept { return load_le<std::uint16_t>(at); }
+inline std::uint16_t load_u16_be(const unsigned char *at) noexcept { return load_be<std::uint16_t>(at); }
+inline std::int16_t load_i16_le(const unsigned char *at) noexcept { return load_le<std::int16_t>(at); }
+inline std::int16_t load_i16_be(const unsigned char *at) noexcept { return load_be<std::int16_t>(at); }
+inline std::uint32_t load_u32_le(const unsigned char *at) noexcept { return load_le<std::uint32_t>(at); }
+inline std::uint32_t load_u32_be(const unsigned char *at) noexcept { return load_be<std::uint32_t>(at); }
+inline std::int32_t load_i32_le(const unsigned char *at) noexcept { return load_le<std::int32_t>(at); }
+inline std::int32_t load_i32_be(const unsigned char *at) noexcept { return load_be<std::int32_t>(at); }
+inline std::uint64_t load_u64_le(const unsigned char *at) noexcept { return load_le<std::uint64_t>(at); }
+inline std::uint64_t load_u64_be(const unsigned char *at) noexcept { return load_be<std::uint64_t>(at); }
+inline std::int64_t load_i64_le(const unsigned char *at) noexcept { return load_le<std::int64_t>(at); }
+inline std::int64_t load_i64_be(const unsigned char *at) noexcept { return load_be<std::int64_t>(at); }
+inline float load_f32_le(const unsigned char *at) noexcept { return load_le<float>(at); }
+inline float load_f32_be(const unsigned char *at) noexcept { return load_be<float>(at); }
+inline double load_f64_le(const unsigned char *at) noexcept { return load_le<double>(at); }
+inline double load_f64_be(const unsigned char *at) noexcept { return load_be<double>(at); }
+
 /* --- lanes: the elements of all arrays of one field --- */
 
 /* Rows for one message of `bytes`; a mapping that asks for more takes a length from what the message says. */
@@ -381,6 +434,46 @@ inline void copy_few(void *target, std::int64_t to, const void *source, std::int
         at[size / 2] = middle;
         at[size - 1] = last;
     }
+}
+
+/* Copies bytes whose number compilers know: of more than these some take an instruction that starts slowly, and is slow where addresses are odd. */
+template <std::int64_t Size> ROSETTA_JIT_INLINE void copy_known(void *target, std::int64_t to, const void *source, std::int64_t from) noexcept
+{
+    constexpr std::int64_t AT_ONCE = 64, FEW = 256, MANY = 4096;
+    unsigned char *const at = static_cast<unsigned char *>(target) + to;
+    const unsigned char *const begin = static_cast<const unsigned char *>(source) + from;
+    if constexpr (Size <= FEW || Size > MANY) {
+        std::memcpy(at, begin, static_cast<std::size_t>(Size));
+    } else {
+        for (std::int64_t done = 0; done < Size - AT_ONCE; done += AT_ONCE) {
+            std::memcpy(at + done, begin + done, AT_ONCE);
+        }
+        std::memcpy(at + Size - AT_ONCE, begin + Size - AT_ONCE, AT_ONCE); /* some of them again, if there are fewer */
+    }
+}
+
+/* Sets bytes whose number compilers know, for the same reason. */
+template <std::int64_t Size> ROSETTA_JIT_INLINE void fill_known(void *target, std::int64_t to, int byte) noexcept
+{
+    constexpr std::int64_t AT_ONCE = 32, MANY = 1024;
+    unsigned char *const at = static_cast<unsigned char *>(target) + to;
+    if constexpr (Size <= AT_ONCE || Size > MANY) {
+        std::memset(at, byte, static_cast<std::size_t>(Size));
+    } else {
+        for (std::int64_t done = 0; done < Size - AT_ONCE; done += AT_ONCE) {
+            std::memset(at + done, byte, AT_ONCE);
+        }
+        std::memset(at + Size - AT_ONCE, byte, AT_ONCE); /* some of them again, if there are fewer */
+    }
+}
+
+/* A row of which nothing is set yet. */
+template <class Row> ROSETTA_JIT_INLINE Row cleared() noexcept
+{
+    static_assert(std::is_trivially_copyable_v<Row>);
+    Row row;
+    fill_known<static_cast<std::int64_t>(sizeof row)>(&row, 0, 0);
+    return row;
 }
 
 /* --- protobuf's integers, of which each byte has seven bits and says whether another one follows --- */
@@ -1102,9 +1195,10 @@ template <class Lane, class Span, class Container> void show_span(Lane &to, Span
 }
 
 /* The same by the address of the elements. */
-template <class Span, class Container> void point_span(Span &span, const Container &from)
+template <class Row, class Span, class Container> void point_span(Span &span, const Container &from)
 {
-    static_assert(sizeof(*data_of(from)) == 1, "the class has elements of another type than the schema");
+    using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(from))>>;
+    static_assert(same_numbers<Number, Row> || sizeof(Number) + sizeof(Row) == 2, "the class has elements of another type than the schema");
     span.start = static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(data_of(from)));
     span.count = count_of(from);
 }
@@ -1242,6 +1336,25 @@ template <class Row, class Container> struct list_lane<Row, Container, false> : 
     void fill(Container &) { this->reset(); }
     template <class Span> void finish(const Span &, const unsigned char *) const noexcept {}
 };
+
+/* The numbers of an array that has a fixed count of them, as rows. */
+template <class Row, std::size_t Count, class Container> ROSETTA_JIT_INLINE Row *rows_of(Container &target) noexcept
+{
+    static_assert(same_numbers<std::remove_reference_t<decltype(*data_of(target))>, Row>, "the class has elements of another type than the schema");
+    static_assert(sizeof(Container) == Count * sizeof(Row), "the class has another number of elements than the schema");
+    return reinterpret_cast<Row *>(data_of(target));
+}
+
+/* The same of an array that gets as many as are said. */
+template <class Row, class Container> ROSETTA_JIT_INLINE Row *sized(Container &target, std::int64_t count)
+{
+    static_assert(same_numbers<std::remove_reference_t<decltype(*data_of(target))>, Row>, "the class has elements of another type than the schema");
+    static_assert(can_resize<Container>::value, "the class has an array of a fixed length where the schema has none");
+    if (count != count_of(target)) {
+        resize_to(target, count);
+    }
+    return reinterpret_cast<Row *>(data_of(target));
+}
 
 /* Makes an object whose fields are all set afterwards: where a class can be made without initial values, as rclcpp's can, it is. */
 struct without_values {

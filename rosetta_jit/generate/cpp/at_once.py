@@ -1,0 +1,159 @@
+"""Decoders that stand in the header, where a compiler sees the object, too, and makes no call: of messages that take a few statements.
+
+It is the first body of the kernel, as one that has nothing to do where something is wrong with a message: it says that it has not read it,
+and the decoder in the source file begins anew. So all checks come first, and branches that set nothing count as something wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from rosetta_jit.backends.printing import Namespace
+from rosetta_jit.generate.c.expressions import expression
+from rosetta_jit.generate.c.positions import after_binding, after_require
+from rosetta_jit.generate.c.scope import Scope
+from rosetta_jit.generate.c.statements import Function, lacks, print_block
+from rosetta_jit.generate.c.support import function_names
+from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.reachable import read_names
+from rosetta_jit.generate.roundings import two_roundings
+from rosetta_jit.kernel import nodes
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.passes.fold import TRUE, folded
+from rosetta_jit.kernel.rewrite import substituted, with_expressions
+from rosetta_jit.kernel.terms import END, index
+from rosetta_jit.kernel.walk import statements
+from rosetta_jit.startup.dataclass import replace
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.c.lanes import Lanes
+
+SHARED = "rosetta_jit::detail::"
+"""Where the header that all units share has what such decoders call."""
+MOST = 64
+"""How many statements are worth to be printed wherever a message is read."""
+PARAMETERS = frozenset({"given_object", "bytes", "end"})
+"""What such a decoder is given."""
+
+
+def at_once(kernel: Kernel, lanes: Lanes) -> str:
+    """The statements of such a decoder, empty where there is none; ``lanes`` say how the kernel reaches the object."""
+    found = _straightened(kernel.bodies[0])
+    if found is None or two_roundings((kernel,)):
+        return ""
+    checks, effects = found
+    words = lanes.words() | function_names() | {"data"}
+    scope = Scope(Namespace(words), replace(lanes, shared=SHARED), set(), set(), set())
+    function = Function(scope, kernel.sites, {}, read=read_names((*checks, *effects)))
+    function.writer.depth = 2
+    has_texts = any(isinstance(each, nodes.SetField) and _is_text(lanes, each.place) for each in effects)
+    if not has_texts and (size := _size(checks)) is not None:
+        _give_up(function, expression(scope, nodes.Compare("ne", END, size)))
+        checks = tuple(_of_size(checks, size))
+    for stmt in checks:
+        _check(function, stmt)
+    _print_effects(function, effects)
+    is_free = scope.parameters <= PARAMETERS and all(map(_is_shared, scope.support)) and not scope.tables
+    return function.writer.text() if is_free and "given_object" in scope.parameters else ""
+
+
+def _is_shared(function: str) -> bool:
+    """Whether the header that all units share has a function of the support."""
+    return function.startswith("load_") or function in ("lacks", "lacks_behind")
+
+
+def _straightened(body: nodes.Block) -> tuple[nodes.Block, nodes.Block] | None:
+    """What a body checks and what it sets, if it does nothing else; a check that fails stands for a branch that sets nothing."""
+    *stmts, last = body
+    checks, effects = list[nodes.Stmt](), list[nodes.Stmt]()
+    for stmt in stmts:
+        match stmt:
+            case nodes.Require() | nodes.Expect() | nodes.Let():
+                checks.append(stmt)
+            case nodes.SetField() | nodes.Copy(nodes.Place(), nodes.Wire()):
+                effects.append(stmt)
+            case nodes.If(condition, then, ()) if _only_checks(then):
+                failure = nodes.Failure(0, nodes.Const("i64", 0))
+                checks.append(nodes.Expect(folded(nodes.Unary("not", condition)), failure))
+            case _:
+                return None
+    is_all = isinstance(last, nodes.Return) and not last.registers and len(stmts) <= MOST and _starts_with_bytes(checks)
+    return (tuple(checks), tuple(effects)) if is_all else None
+
+
+def _is_text(lanes: Lanes, place: nodes.Place) -> bool:
+    """Whether a field of the message is a text."""
+    straight = lanes.straight.get((place.lane, place.offset))
+    return straight is not None and straight.is_span
+
+
+def _size(checks: nodes.Block) -> nodes.Const | None:
+    """The size of messages that have numbers alone and nothing behind these: a compiler that knows it leaves out most checks."""
+    ends = [(each.at, each.size) for each in checks if isinstance(each, nodes.Require)]
+    sizes = [at.value + size.value for at, size in ends if isinstance(at, nodes.Const) and isinstance(size, nodes.Const)]
+    return nodes.Const("i64", max(sizes)) if all(isinstance(at, nodes.Const) for at, _ in ends) else None
+
+
+def _of_size(checks: nodes.Block, size: nodes.Const) -> Iterator[nodes.Stmt]:
+    """What is left to be checked of a message of a size."""
+    for stmt in checks:
+        match stmt:
+            case nodes.Require(_, nodes.Const(), _):
+                pass
+            case nodes.Require(nodes.Const(_, at), more, failure):
+                yield nodes.Expect(nodes.Compare("le", more, index(int(size.value - at))), failure)
+            case nodes.Expect(condition, failure):
+                found = folded(substituted(condition, {END.name: size}))
+                if found != TRUE:
+                    yield nodes.Expect(found, failure)
+            case _:
+                yield with_expressions(stmt, lambda each: substituted(each, {END.name: size}))
+
+
+def _only_checks(block: nodes.Block) -> bool:
+    """Whether a message is the same without a block, if nothing is wrong with it."""
+    return all(isinstance(stmt, nodes.Require | nodes.Expect | nodes.Let | nodes.If | nodes.For) for stmt, _ in statements(block))
+
+
+def _starts_with_bytes(checks: list[nodes.Stmt]) -> bool:
+    """Whether a size that is not one is found first."""
+    match checks[0] if checks else None:
+        case nodes.Require(nodes.Const(), nodes.Const()):
+            return True
+        case _:
+            return False
+
+
+def _check(function: Function, stmt: nodes.Stmt) -> None:
+    """A check, or a local that one needs. Of texts those that are ASCII are read at once."""
+    scope = function.scope
+    match stmt:
+        case nodes.Require(at, size, _):
+            _give_up(function, lacks(function, at, size))
+            function.known = after_require(function.known, at, size)
+        case nodes.Expect(nodes.IsText(nodes.Wire(at), size), _):
+            where = ", ".join((scope.takes("bytes"), bare(expression(scope, at)), bare(expression(scope, size))))
+            _give_up(function, f"!{SHARED}is_ascii({where})")
+        case nodes.Expect(condition, _):
+            _give_up(function, expression(scope, folded(nodes.Unary("not", condition))))
+        case nodes.Let(name, value):
+            print_block(function, (stmt,))
+            function.known = after_binding(function.known, name, value)
+        case _:
+            raise AssertionError(stmt)
+
+
+def _print_effects(function: Function, effects: nodes.Block) -> None:
+    """What sets the object, behind pointers to its arrays."""
+    lines, lanes = function.writer.lines, function.scope.lanes
+    before = len(lines)
+    print_block(function, effects)
+    lines[before:before] = [
+        f"        {lanes.type(lane)} *const {lanes.rows(lane)} = {lanes.member(lane)};" for lane in sorted(function.scope.touched)
+    ]
+
+
+def _give_up(function: Function, condition: str) -> None:
+    with function.block(f"if ({bare(condition)})"):
+        function.line("return false;")

@@ -1,0 +1,76 @@
+"""Messages that generated C++ reads in its header, and arrays that it sets where the object has them: whole, cut at every byte, altered."""
+
+from __future__ import annotations
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.api.options import type_request
+from rosetta_jit.generate.build import generated
+from tests.generate import cpp
+from tests.generate.driver import answers, harmed
+from tests.generate.test_cpp import BOTH, QUICK, same
+
+NUMBERS = "bool flag\nfloat64 x\nint8 small\nuint16 medium\nfloat64[36] covariance\nint32[3] three\nfloat32 y\n"
+TYPES = {
+    "numbers": (NUMBERS, {"flag": True, "x": 1.5, "small": -3, "covariance": [0.5 * i for i in range(36)], "three": [1, -2, 3], "y": 2.5}),
+    "text": ("string data\n", {"data": "as it is"}),
+    "text behind numbers": ("uint32 seq\nstring frame\nfloat64 x\nuint8 last\n", {"seq": 7, "frame": "base", "x": 0.5, "last": 9}),
+    "numbers behind bytes": (
+        "float32[3] some\nbool kept\nint64 now\nuint8[3] raw\nint64 end\n",
+        {"some": [1.0, 2.0, 3.0], "now": -7, "end": 2},
+    ),
+    "arrays": ("string name\nfloat64[] many\nint16[] few\nuint8 last\n", {"name": "n", "many": [1.0, 2.0, 3.0], "few": [-1, 2], "last": 4}),
+}
+OTHERS = {"text": "\u00e4\u00f6\u20ac", "text behind numbers": "\U0001f916 and more", "arrays": ""}
+"""Texts that are not ASCII, or have nothing."""
+IN_HEADER = {"numbers", "text", "text behind numbers"}
+
+
+def encoders(type_, encoding):
+    """Encoders of a type: of CDR in both orders of bytes."""
+    orders = ({"byte_order": "little"}, {"byte_order": "big"}) if encoding == "cdr" else ({},)
+    return [rj.Encoder.of("rj/Message", encoding=encoding, schema=schema(type_), **each) for each in orders]
+
+
+def schema(type_):
+    return {"rj/msg/Message.msg": TYPES[type_][0]}
+
+
+@cpp.needs_cpp
+@pytest.mark.parametrize("encoding", ["ros1", "cdr"])
+@pytest.mark.parametrize("type_", TYPES)
+def test_messages_that_are_harmed_get_the_same_answers(type_, encoding, tmp_path):
+    options = {"encoding": encoding, "schema": schema(type_)}
+    texts = generated(type_request("decode", "rj/Message", options), "cpp", BOTH, "unit")
+    assert ("static bool is_read(" in texts["unit.hpp"]) == (type_ in IN_HEADER)
+    values = TYPES[type_][1]
+    other = {name: OTHERS[type_] if isinstance(value, str) else value for name, value in values.items()} if type_ in OTHERS else {}
+    encoders_ = encoders(type_, encoding)
+    good = [bytes(encode(each)) for encode in encoders_ for each in (values, other, {})]
+    messages = [message[:end] + more for message in good for end in range(len(message) + 1) for more in (b"", b"\0", b"\x80")]
+    messages += harmed(good, 40, f"{type_} {encoding}")
+    name = cpp.write(tmp_path, texts)
+    same(answers(cpp.program(tmp_path, name, options=QUICK), messages), rj.Decoder.of("rj/Message", **options), encoders_[0], messages)
+
+
+LISTS = {
+    "rj/Message": "",
+    "rj/msg/Message.msg": "string[] names\nRow[] rows\n",
+    "rj/msg/Row.msg": "string name\nfloat64[] many\nint16[2] two\nuint8 last\n",
+}
+
+
+@cpp.needs_cpp
+@pytest.mark.parametrize("encoding", ["ros1", "cdr"])
+def test_arrays_within_lists_are_written_where_the_object_has_them(encoding, tmp_path):
+    files = {name: text for name, text in LISTS.items() if name.endswith(".msg")}
+    options = {"encoding": encoding, "schema": files}
+    texts = generated(type_request("decode", "rj/Message", options), "cpp", BOTH, "unit")
+    assert "point_span<double>" in texts["unit.cpp"]
+    encode = rj.Encoder.of("rj/Message", **options)
+    rows = [{"name": "n" * i, "many": [0.5 * j for j in range(i)], "two": [i, -i], "last": i} for i in range(5)]
+    good = [bytes(encode({"names": ["a", "bc"], "rows": rows[:count]})) for count in (5, 1, 0)]
+    messages = [message[:end] for message in good for end in range(len(message) + 1)] + harmed(good, 30, encoding)
+    name = cpp.write(tmp_path, texts)
+    same(answers(cpp.program(tmp_path, name, options=QUICK), messages), rj.Decoder.of("rj/Message", **options), encode, messages)
