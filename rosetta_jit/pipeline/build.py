@@ -21,6 +21,7 @@ from rosetta_jit.kernel.host import UserFunction
 from rosetta_jit.kernel.ir import Kernel, Site
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
+from rosetta_jit.kernel.proof.known import kept_by
 from rosetta_jit.kernel.proof.verify import VerificationError
 from rosetta_jit.kernel.traits import LARGE, LARGE_WITHOUT_RULES, HostUse, use_of_host
 from rosetta_jit.lowering.lower import lower
@@ -36,6 +37,7 @@ from rosetta_jit.pipeline.request import ByteOrder, GivenFunction, Request
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.pipeline.user_functions import called_functions, check_compiled, check_given
 from rosetta_jit.runtime.cache.kernels import digest_file
+from rosetta_jit.runtime.cache.proofs import proven
 from rosetta_jit.runtime.limits import MAX_PIXEL_BYTES
 from rosetta_jit.runtime.run import GRACE_BYTES
 from rosetta_jit.source import Span
@@ -144,7 +146,8 @@ class Build:
 
     def _optimised(self, kernel: Kernel) -> Kernel:
         """The kernel after the passes; VerificationError if it cannot be proven safe."""
-        return passes.run(kernel, large=LARGE if self.types.rules is not None else LARGE_WITHOUT_RULES)
+        with kept_by(proven):
+            return passes.run(kernel, large=LARGE if self.types.rules is not None else LARGE_WITHOUT_RULES)
 
     def _lowered(self, direction: Literal["decode", "encode", "size"]) -> Kernel:
         types, request = self.types, self.request

@@ -16,6 +16,7 @@ from rosetta_jit.kernel.limits import MAX_PROOFS, MAX_TERMS
 from rosetta_jit.kernel.printer import statement_text
 from rosetta_jit.kernel.proof import claims, contracts, effects, paths
 from rosetta_jit.kernel.proof.formula import All, Formula, equal, negated
+from rosetta_jit.kernel.proof.known import once
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted
 from rosetta_jit.kernel.proof.loops import ZERO, Guess, Loop, Made, bounds, needless, walk_rounds
 from rosetta_jit.kernel.proof.obligations import UnprovenError, demand, oblige
@@ -122,7 +123,7 @@ def _strides_of(strides: tuple[int, ...], routines: tuple[ir.Routine, ...]) -> t
 @lru_cache(maxsize=MAX_PROOFS)
 def _prove_routine(strides: tuple[int, ...], routine: ir.Routine, called: tuple[ir.Routine, ...]) -> None:
     """Prove a routine, which calls others. No pass changes one, so that a proof holds for all rounds of all passes."""
-    _routine(strides, routine, called, None)
+    once((strides, routine, called), lambda: _routine(strides, routine, called, None))
 
 
 def _routine(strides: tuple[int, ...], routine: ir.Routine, before: tuple[ir.Routine, ...], record: Record | None) -> None:
