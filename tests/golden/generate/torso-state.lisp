@@ -58,6 +58,8 @@
           ""
           :parts
           '((0 4 0 "") (4 8 0 ".yaw") (12 8 0 ".roll") (20 8 0 ".pitch")))
+    (site :trailing "" "bytes are left over" "")
+    (site :tag "" "must be one of 266, 256" "")
     (site :truncated
           ""
           "the message ends here"
@@ -72,9 +74,7 @@
             (32 8 0 ".pitch")))
     (site :tag ".yaw" "must be 10" "")
     (site :tag ".roll" "must be 10" "")
-    (site :tag ".pitch" "must be 10" "")
-    (site :tag "" "must be one of 266, 256" "")
-    (site :trailing "" "bytes are left over" "")))
+    (site :tag ".pitch" "must be 10" "")))
 
 (defun decode-kernel (codec data end attempt)
   (declare (optimize (speed 1) (safety 0) (debug 0) (compilation-speed 2)) (type codec codec) (type octets data)
@@ -111,63 +111,47 @@
                 (angles (codec.angles codec))
                 (angles-used 0)
                 (code 0)
-                (yaw-2 0.0d0)
-                (roll-2 0.0d0)
-                (pitch-2 0.0d0)
-                (next 0)
                 (start-2 0))
-           (declare (type octets message angles) (type i64 angles-used code next start-2)
-                    (type f64 yaw-2 roll-2 pitch-2)
-                    (ignorable message angles angles-used code yaw-2 roll-2 pitch-2 next start-2))
+           (declare (type octets message angles) (type i64 angles-used code start-2)
+                    (ignorable message angles angles-used code start-2))
            (fill-octets message 0 32 0)
            (when (< end 4)
              (return-from decode-2 (fail codec 4 0)))  ; truncated: the message ends here
            (setf code (i32-at data 0))
-           (setf yaw-2 0.0d0)
-           (setf roll-2 0.0d0)
-           (setf pitch-2 0.0d0)
-           (setf next 4)
-           (case code
-             (266
-              (when (< end 32)
-                (return-from decode-2 (fail codec 5 4)))  ; truncated: the message ends here
-              (when (/= (i32-at data 4) 3)
-                (return-from decode-2 (fail codec 3 4)))  ; count: must be 3
-              (setf yaw-2 (f64-at data 8))
-              (setf roll-2 (f64-at data 16))
-              (setf pitch-2 (f64-at data 24))
-              (setf next 32))
-             (256
-              (when (< end 44)
-                (return-from decode-2 (fail codec 6 4)))  ; truncated: the message ends here
-              (when (/= (i32-at data 4) 3)
-                (return-from decode-2 (fail codec 3 4)))  ; count: must be 3
-              (when (/= (i32-at data 8) 10)
-                (return-from decode-2 (fail codec 7 8)))  ; tag .yaw: must be 10
-              (setf yaw-2 (f64-at data 12))
-              (when (/= (i32-at data 20) 10)
-                (return-from decode-2 (fail codec 8 20)))  ; tag .roll: must be 10
-              (setf roll-2 (f64-at data 24))
-              (when (/= (i32-at data 32) 10)
-                (return-from decode-2 (fail codec 9 32)))  ; tag .pitch: must be 10
-              (setf pitch-2 (f64-at data 36))
-              (setf next 44))
-             (t
-              (return-from decode-2 (fail codec 10 0))))  ; tag: must be one of 266, 256
+           (when (= code 266)
+             (when (< end 32)
+               (return-from decode-2 (fail codec 5 4)))  ; truncated: the message ends here
+             (when (/= (i32-at data 4) 3)
+               (return-from decode-2 (fail codec 3 4)))  ; count: must be 3
+             (when (/= 32 end)
+               (return-from decode-2 (fail codec 6 32)))  ; trailing: bytes are left over
+             (return-from decode-2 (fail codec 1 -1)))  ; trailing: not of the usual length
+           (when (/= code 256)
+             (return-from decode-2 (fail codec 7 0)))  ; tag: must be one of 266, 256
+           (when (< end 44)
+             (return-from decode-2 (fail codec 8 4)))  ; truncated: the message ends here
+           (when (/= (i32-at data 4) 3)
+             (return-from decode-2 (fail codec 3 4)))  ; count: must be 3
+           (when (/= (i32-at data 8) 10)
+             (return-from decode-2 (fail codec 9 8)))  ; tag .yaw: must be 10
+           (when (/= (i32-at data 20) 10)
+             (return-from decode-2 (fail codec 10 20)))  ; tag .roll: must be 10
+           (when (/= (i32-at data 32) 10)
+             (return-from decode-2 (fail codec 11 32)))  ; tag .pitch: must be 10
            (reserve (angles (codec.angles codec) 4) angles-used 3 codec (return-from decode-2 (full codec ".angles")))
            (setf start-2 angles-used)
            (setf angles-used (i64+ angles-used 3))
            (setf (i64-at message +angles.start+) start-2)  ; torso_state.mapping:10: len(.angles) <-> 3
            (setf (i64-at message +angles.count+) 3)  ; torso_state.mapping:10: len(.angles) <-> 3
            ;; torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw))
-           (setf (f32-at angles (row 4 start-2)) (f32-of-f64 (* yaw-2 0.017453292519943295d0)))
+           (setf (f32-at angles (row 4 start-2)) (f32-of-f64 (* (f64-at data 12) 0.017453292519943295d0)))
            ;; torso_state.mapping:12: .angles[1] <-> float32(radians(.roll))
-           (setf (f32-at angles (row 4 (i64+ start-2 1))) (f32-of-f64 (* roll-2 0.017453292519943295d0)))
+           (setf (f32-at angles (row 4 (i64+ start-2 1))) (f32-of-f64 (* (f64-at data 24) 0.017453292519943295d0)))
            ;; torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch))
-           (setf (f32-at angles (row 4 (i64+ start-2 2))) (f32-of-f64 (* pitch-2 0.017453292519943295d0)))
-           (when (/= next end)
-             (return-from decode-2 (fail codec 11 next)))  ; trailing: bytes are left over
-           (return-from decode-2 next))))
+           (setf (f32-at angles (row 4 (i64+ start-2 2))) (f32-of-f64 (* (f64-at data 36) 0.017453292519943295d0)))
+           (when (/= 44 end)
+             (return-from decode-2 (fail codec 6 44)))  ; trailing: bytes are left over
+           (return-from decode-2 44))))
     (case attempt (1 (decode-1)) (t (decode-2)))))
 
 (defparameter *encode-sites*

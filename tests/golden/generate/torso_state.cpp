@@ -199,7 +199,7 @@ const part borrow_parts_5[] = {
     {20, 8, 0, ".pitch"},
 };
 
-const part borrow_parts_6[] = {
+const part borrow_parts_8[] = {
     {0, 4, 0, ""},
     {4, 4, 0, ".yaw"},
     {8, 8, 0, ".yaw"},
@@ -216,12 +216,12 @@ const site borrow_sites[] = {
     {status::count, "", "must be 3", "", -1, 0, nullptr},
     {status::truncated, "", "the message ends here", "", -1, 0, nullptr},
     {status::truncated, "", "the message ends here", "", -1, 4, borrow_parts_5},
-    {status::truncated, "", "the message ends here", "", -1, 7, borrow_parts_6},
+    {status::trailing, "", "bytes are left over", "", -1, 0, nullptr},
+    {status::tag, "", "must be one of 266, 256", "", -1, 0, nullptr},
+    {status::truncated, "", "the message ends here", "", -1, 7, borrow_parts_8},
     {status::tag, ".yaw", "must be 10", "", -1, 0, nullptr},
     {status::tag, ".roll", "must be 10", "", -1, 0, nullptr},
     {status::tag, ".pitch", "must be 10", "", -1, 0, nullptr},
-    {status::tag, "", "must be one of 266, 256", "", -1, 0, nullptr},
-    {status::trailing, "", "bytes are left over", "", -1, 0, nullptr},
 };
 
 static int64_t borrow_1(torso_state_holder *holder, const unsigned char *restrict bytes, int64_t end, struct failure *failure)
@@ -265,49 +265,35 @@ static int64_t borrow_2(torso_state_holder *holder, const unsigned char *restric
         return fail(failure, 4, 0); /* truncated: the message ends here */
     }
     const int64_t code = (int64_t)load_i32_le(bytes + 0);
-    double yaw_2 = 0.0;
-    double roll_2 = 0.0;
-    double pitch_2 = 0.0;
-    int64_t next = 4;
-    switch (code) {
-    case 266: {
+    if (code == 266) {
         if (end < 32) {
             return fail(failure, 5, 4); /* truncated: the message ends here */
         }
         if (load_i32_le(bytes + 4) != 3) {
             return fail(failure, 3, 4); /* count: must be 3 */
         }
-        yaw_2 = load_f64_le(bytes + 8);
-        roll_2 = load_f64_le(bytes + 16);
-        pitch_2 = load_f64_le(bytes + 24);
-        next = 32;
-        break;
+        if (32 != end) {
+            return fail(failure, 6, 32); /* trailing: bytes are left over */
+        }
+        return fail(failure, 1, -1); /* trailing: not of the usual length */
     }
-    case 256: {
-        if (end < 44) {
-            return fail(failure, 6, 4); /* truncated: the message ends here */
-        }
-        if (load_i32_le(bytes + 4) != 3) {
-            return fail(failure, 3, 4); /* count: must be 3 */
-        }
-        if (load_i32_le(bytes + 8) != 10) {
-            return fail(failure, 7, 8); /* tag .yaw: must be 10 */
-        }
-        yaw_2 = load_f64_le(bytes + 12);
-        if (load_i32_le(bytes + 20) != 10) {
-            return fail(failure, 8, 20); /* tag .roll: must be 10 */
-        }
-        roll_2 = load_f64_le(bytes + 24);
-        if (load_i32_le(bytes + 32) != 10) {
-            return fail(failure, 9, 32); /* tag .pitch: must be 10 */
-        }
-        pitch_2 = load_f64_le(bytes + 36);
-        next = 44;
-        break;
+    if (code != 256) {
+        return fail(failure, 7, 0); /* tag: must be one of 266, 256 */
     }
-    default: {
-        return fail(failure, 10, 0); /* tag: must be one of 266, 256 */
+    if (end < 44) {
+        return fail(failure, 8, 4); /* truncated: the message ends here */
     }
+    if (load_i32_le(bytes + 4) != 3) {
+        return fail(failure, 3, 4); /* count: must be 3 */
+    }
+    if (load_i32_le(bytes + 8) != 10) {
+        return fail(failure, 9, 8); /* tag .yaw: must be 10 */
+    }
+    if (load_i32_le(bytes + 20) != 10) {
+        return fail(failure, 10, 20); /* tag .roll: must be 10 */
+    }
+    if (load_i32_le(bytes + 32) != 10) {
+        return fail(failure, 11, 32); /* tag .pitch: must be 10 */
     }
     if (3 > holder->angles.capacity - angles_used) {
         if (!holder->angles.grow(3 - (holder->angles.capacity - angles_used), holder->most)) {
@@ -319,13 +305,13 @@ static int64_t borrow_2(torso_state_holder *holder, const unsigned char *restric
     angles_used += 3;
     message->angles.start = start_2; /* torso_state.mapping:10: len(.angles) <-> 3 */
     message->angles.count = 3; /* torso_state.mapping:10: len(.angles) <-> 3 */
-    angles[start_2] = (float)(yaw_2 * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
-    angles[start_2 + 1] = (float)(roll_2 * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
-    angles[start_2 + 2] = (float)(pitch_2 * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
-    if (next != end) {
-        return fail(failure, 11, next); /* trailing: bytes are left over */
+    angles[start_2] = (float)(load_f64_le(bytes + 12) * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
+    angles[start_2 + 1] = (float)(load_f64_le(bytes + 24) * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
+    angles[start_2 + 2] = (float)(load_f64_le(bytes + 36) * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
+    if (44 != end) {
+        return fail(failure, 6, 44); /* trailing: bytes are left over */
     }
-    return next;
+    return 44;
 }
 
 const site size_sites[] = {
