@@ -26,6 +26,8 @@ from rosetta_jit.startup.dataclass import dataclass, field
 
 INT64 = Int(64)
 BOOL = Bool()
+UINT16 = Int(16, signed=False)
+"""A unit of a text that is kept in such units."""
 
 ConversionRule = OneOf["widen", "exact", "saturate", "wrap", "round", "truncate", "nearest"]
 """``widen`` cannot fail; ``exact``, ``round`` (half to even) and ``truncate`` (toward zero) are a range error where the

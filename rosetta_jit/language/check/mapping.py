@@ -23,7 +23,6 @@ from rosetta_jit.language.check.rounding import rounded
 from rosetta_jit.language.check.state import idle, set_again
 from rosetta_jit.language.check.unequal_lengths import other_lengths
 from rosetta_jit.language.check.unreachable import unreachable
-from rosetta_jit.language.check.wires import message_of_wires
 from rosetta_jit.language.imports.declarations import Imported, Imports, merge, reached, read_imports
 from rosetta_jit.language.imports.mappings import read_usable
 from rosetta_jit.language.parameters.bind import bind, handed_on
@@ -42,13 +41,13 @@ from rosetta_jit.parsing.idl import FrontEnds
 from rosetta_jit.parsing.search import Reading, SearchPath
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass, replace
-from rosetta_jit.startup.late import Late
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
     from rosetta_jit.catalogue.check import Block
-    from rosetta_jit.language.check import wire_shares
+    from rosetta_jit.language.check import wire_shares, wires
 else:
-    wire_shares = Late("rosetta_jit.language.check.wire_shares")
+    wire_shares, wires = late("rosetta_jit.language.check", "wire_shares", "wires")
 
 SIDES: tuple[Side, ...] = ("holder", "wire")
 
@@ -141,7 +140,9 @@ def _read(mapping: Mapping, imports: Imports, parameters: Dictionary[str, object
     read = read_usable(written, imports.search, imports.reading, problems, handed_on(written, parameters))
     imported = read_imports(written, imports, problems)
     theirs = [each for other in read.mappings() for each in read_imports(other, replace(imports, importer=other.source), problems)]
-    merged = message_of_wires(mapping, merge([*imported, *theirs], problems))
+    merged = merge([*imported, *theirs], problems)
+    if mapping.wires:
+        merged = wires.message_of_wires(mapping, merged)
     derived_mapping = derived(written, merged, read, underived)
     usable = read.changed(lambda other: derived(other, merged, read, underived_there))
     problems += [] if _errors(problems) else underived_there  # what could not be turned round follows from what is wrong there

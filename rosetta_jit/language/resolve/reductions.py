@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import functions as words
 from rosetta_jit.catalogue import layouts
 from rosetta_jit.language.arrays.counts import LayoutError
-from rosetta_jit.language.arrays.element_loops import element_of
 from rosetta_jit.language.arrays.layouts import View, view_of
 from rosetta_jit.language.arrays.parts import sources_in, substituted
 from rosetta_jit.language.conversions import as_int64
@@ -25,9 +24,14 @@ from rosetta_jit.language.typed import INT64, Call, Choice, Const, Expr, Local, 
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.expr import Binary, Each, Name
 from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
+    from rosetta_jit.language.arrays import element_loops
+
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
+else:
+    element_loops = Late("rosetta_jit.language.arrays.element_loops")
 
 
 def type_reduction(call: model.Call, scope: Scope, type_expr: TypeExpr) -> Reduce | None:
@@ -76,7 +80,7 @@ def _element(view: View, name: str, call: model.Call) -> model.Expr:
         raise LayoutError(words.in_order(call.span, call.function))
     if any(isinstance(step, Each) for step in view.rest):
         raise LayoutError(words.within_each(call.span, call.function))
-    return element_of(view, Name(name))
+    return element_loops.element_of(view, Name(name))
 
 
 def _taken(function: Function, reduction: Reduction, value: Expr, call: model.Call, scope: Scope) -> Expr | None:

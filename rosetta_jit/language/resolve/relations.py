@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import wires as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.arrays.counts import LayoutError
-from rosetta_jit.language.arrays.element_loops import element_at
 from rosetta_jit.language.arrays.layouts import view_of
 from rosetta_jit.language.arrays.parts import sources_in, substituted
 from rosetta_jit.language.both_ways.directions import in_each_direction
@@ -23,6 +23,12 @@ from rosetta_jit.model.mapping import For, Mapping
 from rosetta_jit.model.types import Schema, Type
 from rosetta_jit.model.walk import every_rule, expressions_of, fields_of, parts
 from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.arrays import element_loops
+else:
+    element_loops = Late("rosetta_jit.language.arrays.element_loops")
 
 FIRST = Literal(0)
 
@@ -82,5 +88,5 @@ def _of_first(expr: Expr) -> Expr:
         views = {source: view_of(source) for source in sources_in(expr)}
     except LayoutError:
         return expr
-    first: dict[Expr, Expr] = {source: element_at(view, [FIRST] * len(view.axes)) for source, view in views.items()}
+    first: dict[Expr, Expr] = {source: element_loops.element_at(view, [FIRST] * len(view.axes)) for source, view in views.items()}
     return substituted(expr, first, FIRST)

@@ -18,7 +18,6 @@ from rosetta_jit.language.resolve.defaults import has_array
 from rosetta_jit.language.walk import expressions_of, operands
 from rosetta_jit.lowering.codec.wire_fields import EACH
 from rosetta_jit.lowering.rules.bound_fields import BoundFields, Obstacle
-from rosetta_jit.lowering.rules.rescaling import UINT16
 from rosetta_jit.lowering.rules.wire_side import wire_key
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Schema, String, Type
 from rosetta_jit.model.walk import every_rule
@@ -82,7 +81,7 @@ def _of_value(place: typed.Place, type_: Type, bound: BoundFields) -> Iterator[O
             yield from _of_number(place, bound)
         case String(encoding="utf-16"):
             yield from _of_count(place, bound)
-            yield from _of_elements(wire_key(place)[0], UINT16, bound)
+            yield from _of_elements(wire_key(place)[0], typed.UINT16, bound)
         case String() | Bytes():
             yield from _of_bytes(place, bound)
         case Array(element=element):
@@ -157,7 +156,7 @@ def _of_setting(place: typed.Place, value: typed.Expr, bound: BoundFields) -> It
             yield Obstacle(key, "how long it becomes is known only when it is made")
         case String(encoding="utf-16"), _:
             if isinstance(value, typed.Access):
-                yield from _of_elements(key, UINT16, bound)
+                yield from _of_elements(key, typed.UINT16, bound)
             else:
                 yield Obstacle(key, "how many units of 16 bits it has is known only when it is made")
         case ((String() | Bytes()), _):

@@ -14,9 +14,6 @@ from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model.types import Array, Bool, Enum, Float, Int, String
 from rosetta_jit.startup.dataclass import replace
 
-UINT16 = Int(16, signed=False)
-"""A unit of a text that is kept in such units."""
-
 
 def rescaled(value: Expr, change: typed.Change) -> Expr:
     """A number in its new unit, in float64."""
@@ -66,7 +63,7 @@ def names_of_elements() -> Iterator[str]:
 
 
 def _element(place: typed.Place, variable: typed.Local) -> typed.Place:
-    type_ = place.type.element if isinstance(place.type, Array) else UINT16 if isinstance(place.type, String) else place.type
+    type_ = place.type.element if isinstance(place.type, Array) else typed.UINT16 if isinstance(place.type, String) else place.type
     return replace(place, steps=(*place.steps, typed.IndexStep(variable)), type=type_)
 
 

@@ -18,7 +18,6 @@ from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.evaluation import lowered
 from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
-from rosetta_jit.lowering.rules.look_ahead import look_ahead
 from rosetta_jit.lowering.rules.packed_values import place_of, units_of
 from rosetta_jit.lowering.rules.state import remember
 from rosetta_jit.lowering.rules.values import Values
@@ -31,12 +30,12 @@ from rosetta_jit.startup.late import Late, late
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering import made_arrays
-    from rosetta_jit.lowering.rules import filters, putting, rescaling
+    from rosetta_jit.lowering.rules import filters, look_ahead, putting, rescaling
     from rosetta_jit.lowering.texts import separated, views
     from rosetta_jit.lowering.texts import values as text_values
 else:
     made_arrays = Late("rosetta_jit.lowering.made_arrays")
-    filters, putting, rescaling = late("rosetta_jit.lowering.rules", "filters", "putting", "rescaling")
+    filters, look_ahead, putting, rescaling = late("rosetta_jit.lowering.rules", "filters", "look_ahead", "putting", "rescaling")
     separated, text_values, views = late("rosetta_jit.lowering.texts", "separated", "values", "views")
 
 Side = HolderSide | WireSide
@@ -131,7 +130,7 @@ class Runner:
         self.writer.expect(Compare("ge", stop, start), "count", values.where, "the loop ends before it starts", line=values.line)
         count = stop if start == index(0) else binary(self.writer, "-", stop, start, values.where, values.line)
         number = Local("i64", self.writer.fresh(rule.variable))
-        look_ahead(rule.body, values)
+        look_ahead.look_ahead(rule.body, values)
         with self.forgetting(), self.writer.nested() as body:
             variable = number if start == index(0) else self.writer.let(rule.variable, add(number, start))
             self.run(rule.body, replace(values, variables={**values.variables, rule.variable: variable}))

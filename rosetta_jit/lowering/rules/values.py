@@ -16,7 +16,6 @@ from rosetta_jit.language.walk import parts
 from rosetta_jit.lowering.arithmetic import COMPARISONS, binary, differ
 from rosetta_jit.lowering.codec.fields import converted
 from rosetta_jit.lowering.evaluation import Awaited, Source, lowered
-from rosetta_jit.lowering.rules.look_ahead import look_ahead_of
 from rosetta_jit.lowering.rules.scalars import NAMES, RANGES, constant, converted_constant, is_named, scalar_type
 from rosetta_jit.lowering.rules.state import remembered
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
@@ -27,12 +26,12 @@ from rosetta_jit.startup.dataclass import dataclass, field, replace
 from rosetta_jit.startup.late import Late, late
 
 if TYPE_CHECKING:
-    from rosetta_jit.lowering.rules import host_calls, reductions, rejections
+    from rosetta_jit.lowering.rules import host_calls, look_ahead, reductions, rejections
     from rosetta_jit.lowering.rules import nearest as nearest_values
     from rosetta_jit.lowering.texts import search
 else:
-    host_calls, nearest_values, reductions, rejections = late(
-        "rosetta_jit.lowering.rules", "host_calls", "nearest", "reductions", "rejections"
+    host_calls, look_ahead, nearest_values, reductions, rejections = late(
+        "rosetta_jit.lowering.rules", "host_calls", "look_ahead", "nearest", "reductions", "rejections"
     )
     search = Late("rosetta_jit.lowering.texts.search")
 
@@ -211,7 +210,7 @@ class Values:
 
     def look_ahead(self, exprs: tuple[typed.Expr, ...]) -> None:
         """Before a loop that computes some expressions: what is the same in each round, and takes a loop of its own."""
-        look_ahead_of(exprs, self)
+        look_ahead.look_ahead_of(exprs, self)
 
     def with_local(self, name: str, number: nodes.Expr, *, afresh: bool = False) -> Values:
         """The same where a loop variable has a value; ``afresh`` where what was decided may be something else for it."""
