@@ -20,11 +20,20 @@ TYPES = {
         "float32[3] some\nbool kept\nint64 now\nuint8[3] raw\nint64 end\n",
         {"some": [1.0, 2.0, 3.0], "now": -7, "end": 2},
     ),
+    "lists before arrays": (
+        "string[] names\nuint32 offset\nstring text\nfloat64[] many\nint8[2] two\nuint8[] last\n",
+        {"offset": 3, "text": "t" * 70, "many": [1.0, 2.0], "two": [1, -2]},
+    ),
     "arrays": ("string name\nfloat64[] many\nint16[] few\nuint8 last\n", {"name": "n", "many": [1.0, 2.0, 3.0], "few": [-1, 2], "last": 4}),
 }
-OTHERS = {"text": "\u00e4\u00f6\u20ac", "text behind numbers": "\U0001f916 and more", "arrays": ""}
-"""Texts that are not ASCII, or have nothing."""
-IN_HEADER = {"numbers", "text", "text behind numbers"}
+OTHERS = {
+    "text": {"data": "\u00e4\u00f6\u20ac"},
+    "text behind numbers": {"frame": "\U0001f916 and more"},
+    "arrays": {"name": ""},
+    "lists before arrays": {"names": ["one", "another"]},
+}
+"""What the source file reads, or texts that have nothing."""
+IN_HEADER = {"numbers", "text", "text behind numbers", "arrays", "lists before arrays"}
 
 
 def encoders(type_, encoding):
@@ -45,7 +54,7 @@ def test_messages_that_are_harmed_get_the_same_answers(type_, encoding, tmp_path
     texts = generated(type_request("decode", "rj/Message", options), "cpp", BOTH, "unit")
     assert ("static bool is_read(" in texts["unit.hpp"]) == (type_ in IN_HEADER)
     values = TYPES[type_][1]
-    other = {name: OTHERS[type_] if isinstance(value, str) else value for name, value in values.items()} if type_ in OTHERS else {}
+    other = values | OTHERS.get(type_, {})
     encoders_ = encoders(type_, encoding)
     good = [bytes(encode(each)) for encode in encoders_ for each in (values, other, {})]
     messages = [message[:end] + more for message in good for end in range(len(message) + 1) for more in (b"", b"\0", b"\x80")]

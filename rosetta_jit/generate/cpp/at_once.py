@@ -1,7 +1,8 @@
 """Decoders that stand in the header, where a compiler sees the object, too, and makes no call: of messages that take a few statements.
 
-It is the first body of the kernel, as one that has nothing to do where something is wrong with a message: it says that it has not read it,
-and the decoder in the source file begins anew. So all checks come first, and branches that set nothing count as something wrong.
+It is the first body of the kernel for messages whose lists are empty, as one that has nothing to do where something is wrong with a
+message: it says that it has not read it, and the decoder in the source file begins anew. So all checks come first, and branches that set
+nothing count as something wrong.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from rosetta_jit.generate.c.positions import after_binding, after_require
 from rosetta_jit.generate.c.scope import Scope
 from rosetta_jit.generate.c.statements import Function, lacks, print_block
 from rosetta_jit.generate.c.support import function_names
+from rosetta_jit.generate.cpp.empty_lists import lanes_of_empty_lists, of_empty_lists
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.reachable import read_names
 from rosetta_jit.generate.roundings import two_roundings
@@ -39,16 +41,15 @@ PARAMETERS = frozenset({"given_object", "bytes", "end"})
 
 def at_once(kernel: Kernel, lanes: Lanes) -> str:
     """The statements of such a decoder, empty where there is none; ``lanes`` say how the kernel reaches the object."""
-    found = _straightened(kernel.bodies[0])
+    found = _straightened(of_empty_lists(kernel.bodies[0], lanes))
     if found is None or two_roundings((kernel,)):
         return ""
     checks, effects = found
     words = lanes.words() | function_names() | {"data"}
-    scope = Scope(Namespace(words), replace(lanes, shared=SHARED), set(), set(), set())
+    scope = Scope(Namespace(words), replace(lanes_of_empty_lists(lanes), shared=SHARED), set(), set(), set())
     function = Function(scope, kernel.sites, {}, read=read_names((*checks, *effects)))
     function.writer.depth = 2
-    has_texts = any(isinstance(each, nodes.SetField) and _is_text(lanes, each.place) for each in effects)
-    if not has_texts and (size := _size(checks)) is not None:
+    if not any(_has_length(lanes, each) for each in effects) and (size := _size(checks)) is not None:
         _give_up(function, expression(scope, nodes.Compare("ne", END, size)))
         checks = tuple(_of_size(checks, size))
     for stmt in checks:
@@ -60,7 +61,7 @@ def at_once(kernel: Kernel, lanes: Lanes) -> str:
 
 def _is_shared(function: str) -> bool:
     """Whether the header that all units share has a function of the support."""
-    return function.startswith("load_") or function in ("lacks", "lacks_behind")
+    return function.startswith("load_") or function in ("lacks", "lacks_behind", "copy_bytes")
 
 
 def _straightened(body: nodes.Block) -> tuple[nodes.Block, nodes.Block] | None:
@@ -71,7 +72,9 @@ def _straightened(body: nodes.Block) -> tuple[nodes.Block, nodes.Block] | None:
         match stmt:
             case nodes.Require() | nodes.Expect() | nodes.Let():
                 checks.append(stmt)
-            case nodes.SetField() | nodes.Copy(nodes.Place(), nodes.Wire()):
+            case nodes.SetField() | nodes.Copy(nodes.Place(), nodes.Wire()) | nodes.Advance():
+                effects.append(stmt)
+            case nodes.If(_, (nodes.Copy(nodes.Place(), nodes.Wire()),), ()):
                 effects.append(stmt)
             case nodes.If(condition, then, ()) if _only_checks(then):
                 failure = nodes.Failure(0, nodes.Const("i64", 0))
@@ -82,10 +85,10 @@ def _straightened(body: nodes.Block) -> tuple[nodes.Block, nodes.Block] | None:
     return (tuple(checks), tuple(effects)) if is_all else None
 
 
-def _is_text(lanes: Lanes, place: nodes.Place) -> bool:
-    """Whether a field of the message is a text."""
-    straight = lanes.straight.get((place.lane, place.offset))
-    return straight is not None and straight.is_span
+def _has_length(lanes: Lanes, stmt: nodes.Stmt) -> bool:
+    """Whether a statement sets a text or an array, as long as the message says."""
+    straight = lanes.straight.get((stmt.place.lane, stmt.place.offset)) if isinstance(stmt, nodes.SetField) else None
+    return isinstance(stmt, nodes.Advance) or (straight is not None and straight.is_span)
 
 
 def _size(checks: nodes.Block) -> nodes.Const | None:
@@ -147,10 +150,11 @@ def _check(function: Function, stmt: nodes.Stmt) -> None:
 def _print_effects(function: Function, effects: nodes.Block) -> None:
     """What sets the object, behind pointers to its arrays."""
     lines, lanes = function.writer.lines, function.scope.lanes
-    before = len(lines)
+    before, scope = len(lines), function.scope
     print_block(function, effects)
     lines[before:before] = [
-        f"        {lanes.type(lane)} *const {lanes.rows(lane)} = {lanes.member(lane)};" for lane in sorted(function.scope.touched)
+        f"        {lanes.type(lane)} *{'' if lane in scope.moved else 'const '}{lanes.rows(lane)} = {lanes.member(lane)};"
+        for lane in sorted(scope.touched)
     ]
 
 

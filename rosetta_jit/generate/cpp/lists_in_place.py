@@ -118,13 +118,19 @@ def _list(walk: Walk, opened: Opened, type_: Type, span: Span, place: _Place) ->
         return False
     if isinstance(walk.unit.schema.resolve(resolved.element), String | Bytes):
         opened.texts.add(span.lane)
-        opened.fields[place.lane, span.offset] = Straight(walk.text("open texts", place.spot, lane=rows, count="$count"), span.lane)
+        opened.fields[place.lane, span.offset] = _opening(walk, "open texts", span, place)
         words = {"lane": rows, "index": "$index", "start": "$start", "size": "$size"}
         opened.fields[span.lane, 0] = Straight(walk.text("text of a list", place.spot, **words), text=True)
         return True
-    opened.fields[place.lane, span.offset] = Straight(walk.text("open", place.spot, lane=rows, count="$count"), span.lane)
+    opened.fields[place.lane, span.offset] = _opening(walk, "open", span, place)
     element = f"std::declval<rosetta_jit::detail::element_type<decltype({container})> &>()"
     return _value(walk, opened, resolved.element, layout.element, _Place(Spot(f"{rows}[$index]"), Spot(element), span.lane))
+
+
+def _opening(walk: Walk, text: str, span: Span, place: _Place) -> Straight:
+    """What opens a list."""
+    opens = walk.text(text, place.spot, lane=walk.lanes.rows(span.lane), count="$count")
+    return Straight(opens, span.lane, empty=walk.text("emptied", place.spot))
 
 
 def _numbers(walk: Walk, opened: Opened, type_: Array, span: Span, place: _Place) -> bool:
@@ -133,7 +139,7 @@ def _numbers(walk: Walk, opened: Opened, type_: Array, span: Span, place: _Place
     if place.lane == 0 or not walk.is_plain(type_, span.lane) or not (type_.length is None or type_.fixed):
         return False
     opened.numbers[span.lane] = f"{walk.lanes.type(span.lane)}, {type_.fixed or 0}"
-    opened.fields[place.lane, span.offset] = Straight(walk.text("open", place.spot, lane=rows, count="$count"), span.lane)
+    opened.fields[place.lane, span.offset] = _opening(walk, "open", span, place)
     opened.fields[span.lane, 0] = Straight(walk.text("number", Spot(f"{rows}[$index]"), row="$value"), copied=True)
     return True
 

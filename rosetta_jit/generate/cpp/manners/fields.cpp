@@ -46,6 +46,9 @@ $lane = holder->$lane.open($at, $count);
 /* == open texts == */
 holder->$lane.open($at, $count);
 
+/* == emptied == */
+rosetta_jit::detail::resize_to($at, 0);
+
 /* == text of a list == */
 holder->$lane.put($index, bytes + ($start), $size);
 

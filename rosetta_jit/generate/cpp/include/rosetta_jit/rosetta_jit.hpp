@@ -402,6 +402,14 @@ inline void fill_few(void *target, std::int64_t to, std::int64_t size, int byte)
     }
 }
 
+/* Copies bytes, if there are any. */
+inline void copy_bytes(void *target, std::int64_t to, const void *source, std::int64_t from, std::int64_t size) noexcept
+{
+    if (size > 0) {
+        std::memcpy(static_cast<unsigned char *>(target) + to, static_cast<const unsigned char *>(source) + from, static_cast<std::size_t>(size));
+    }
+}
+
 /* Copies bytes, of which there are few nearly always, as in texts. */
 inline void copy_few(void *target, std::int64_t to, const void *source, std::int64_t from, std::int64_t size) noexcept
 {
@@ -487,20 +495,41 @@ inline std::uint64_t word_at(const unsigned char *bytes) noexcept
     return word;
 }
 
+/* Sixteen bytes, of which machines can join several at once. */
+#if defined(__SSE2__) || defined(__ARM_NEON)
+typedef std::uint64_t pair __attribute__((vector_size(16)));
+#else
+struct pair {
+    std::uint64_t words[2];
+    std::uint64_t operator[](std::size_t word) const noexcept { return words[word]; }
+    friend pair operator|(const pair &one, const pair &other) noexcept { return {{one[0] | other[0], one[1] | other[1]}}; }
+};
+#endif
+
+inline pair pair_at(const unsigned char *bytes) noexcept
+{
+    pair found;
+    std::memcpy(&found, bytes, sizeof found);
+    return found;
+}
+
 /* Whether bytes are ASCII, as most texts are: the first ones and the last ones, which may be the same, and those between. */
 inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) noexcept
 {
     const unsigned char *const text = static_cast<const unsigned char *>(memory) + start;
-    if (size >= 8) {
-        std::uint64_t any = word_at(text) | word_at(text + size - 8);
-        std::int64_t at = 8;
+    if (size >= 16) {
+        pair any = pair_at(text) | pair_at(text + size - 16);
+        std::int64_t at = 16;
         for (; size - at > 32; at += 32) {
-            any |= word_at(text + at) | word_at(text + at + 8) | word_at(text + at + 16) | word_at(text + at + 24);
+            any = any | pair_at(text + at) | pair_at(text + at + 16);
         }
-        for (; size - at > 8; at += 8) {
-            any |= word_at(text + at);
+        for (; size - at > 16; at += 16) {
+            any = any | pair_at(text + at);
         }
-        return (any & GOES_ON) == 0;
+        return ((any[0] | any[1]) & GOES_ON) == 0;
+    }
+    if (size >= 8) {
+        return ((word_at(text) | word_at(text + size - 8)) & GOES_ON) == 0;
     }
     if (size >= 4) {
         std::uint32_t first, last;
@@ -1023,30 +1052,20 @@ template <class Container, class Row> void assign(Container &&target, const Row 
 
 constexpr bool HAS_SHORT_TEXTS = sizeof(std::string) == 2 * sizeof(void *) + SHORT_TEXT; /* in the string itself */
 
-/* Makes a string empty if it has no content yet when this ends, as where there is no memory for it. */
-struct made_anew {
-    std::string *target;
-    ~made_anew()
-    {
-        if (target != nullptr) {
-            ::new (static_cast<void *>(target)) std::string();
-        }
-    }
-};
-
-/* A text of another length. A longer one becomes shorter; one that has no memory of its own is made anew in its place, which compilers see into. */
+/* A text of another length. A longer one becomes shorter; one that has no memory of its own is made anew, which compilers see into: in its
+   place where that takes no memory, and so never fails. */
 inline void assign_other(std::string &target, const char *first, std::size_t size)
 {
     if (size < target.size()) {
         target.erase(size);
         copy_few(&target[0], 0, first, 0, static_cast<std::int64_t>(size));
-    } else if (HAS_SHORT_TEXTS && target.capacity() < SHORT_TEXT) {
-        std::destroy_at(&target);
-        made_anew anew{&target};
-        ::new (static_cast<void *>(&target)) std::string(first, size);
-        anew.target = nullptr;
-    } else {
+    } else if (!HAS_SHORT_TEXTS || target.capacity() >= SHORT_TEXT) {
         target.assign(first, size);
+    } else if (size < SHORT_TEXT) {
+        std::destroy_at(&target);
+        ::new (static_cast<void *>(&target)) std::string(first, size);
+    } else {
+        target = std::string(first, size);
     }
 }
 

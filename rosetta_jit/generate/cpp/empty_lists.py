@@ -1,0 +1,73 @@
+"""A decoder's statements for messages whose lists are empty, as those often are that say more of what a message has besides.
+
+How many elements a list has must be found before any text is checked: a message that has some loses a comparison. One that has nothing
+but lists is not worth it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel import nodes
+from rosetta_jit.kernel.nodes import Block, Expr, Stmt
+from rosetta_jit.kernel.passes.fold import FALSE, folded
+from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
+from rosetta_jit.kernel.terms import index
+from rosetta_jit.kernel.walk import expressions_of, subexpressions
+from rosetta_jit.startup.dataclass import replace
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.c.lanes import Lanes
+
+NONE = index(0)
+NOT_EMPTY = nodes.Failure(0, NONE)
+"""What stands for a list with elements: nothing is wrong with it, but other statements read it."""
+
+
+def of_empty_lists(body: Block, lanes: Lanes) -> Block:
+    """The statements of a body that are left, behind checks that lists of the message are empty; the body itself if it is not worth it."""
+    spans = {offset: straight.lane for (lane, offset), straight in lanes.straight.items() if lane == 0 and straight.lane}
+    lists, of_lists = frozenset(spans.values()), {offset + half for offset in spans for half in (0, 8)}
+    reserved = (stmt.count for stmt in body if isinstance(stmt, nodes.Reserve) and stmt.lane in lists)
+    counts = {count.name for count in reserved if isinstance(count, nodes.Local)}
+    others = [stmt for stmt in body if isinstance(stmt, nodes.SetField) and stmt.place.offset not in of_lists]
+    values, found, is_soon = dict[str, Expr](), list[Stmt](), True
+    for each in body:
+        stmt = _with_values(each, values)
+        match stmt:
+            case nodes.Let(name) if name in counts and is_soon:
+                values[name] = NONE
+                found += [stmt, nodes.Expect(nodes.Compare("eq", nodes.Local("i64", name), NONE), NOT_EMPTY)]
+            case nodes.Let(name, value) | nodes.Var(name, value) if isinstance(value, nodes.Const):
+                values[name] = value
+            case nodes.Let(name, nodes.Used(lane)) if lane in lists:
+                values[name] = NONE
+            case nodes.Var(name, value):
+                found.append(nodes.Let(name, value))
+            case nodes.Reserve(lane, count) | nodes.Advance(lane, count) if lane in lists and count == NONE:
+                pass
+            case nodes.While(condition) if condition == FALSE:
+                pass
+            case nodes.For(_, count) if count == NONE:
+                pass
+            case _:
+                found.append(stmt)
+        is_soon = is_soon and not any(isinstance(part, nodes.IsText) for expr in expressions_of(stmt) for part in subexpressions(expr))
+    return tuple(found) if lists and others else body
+
+
+def lanes_of_empty_lists(lanes: Lanes) -> Lanes:
+    """How such statements reach the object: a list has no lane, but is emptied."""
+    straight = {at: replace(each, statement=each.empty) if each.empty else each for at, each in lanes.straight.items()}
+    return replace(lanes, straight=straight, opened=frozenset())
+
+
+def _with_values(stmt: Stmt, values: Mapping[str, Expr]) -> Stmt:
+    """A statement with what is known in place of locals."""
+
+    def replaced(expr: Expr) -> Expr:
+        return values.get(expr.name, expr) if isinstance(expr, nodes.Local) else folded(with_operands(expr, replaced))
+
+    inner = with_blocks(stmt, lambda block: tuple(_with_values(each, values) for each in block))
+    return with_expressions(inner, replaced)
