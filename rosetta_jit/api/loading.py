@@ -46,7 +46,8 @@ def answer(
         with _within_stack():
             return interpreted(build)
     cache = Cache.default()
-    name = cache.get_manifest(request_name(request.key())) if request.is_identified() else None
+    may_be_known = request.is_identified() and not cache.keeps_nothing
+    name = cache.get_manifest(request_name(request.key())) if may_be_known else None
     if name is not None:
         with suppress(KeyError):
             return _shared(name, cache, link)

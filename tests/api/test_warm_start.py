@@ -185,3 +185,19 @@ def test_a_type_without_a_mapping_imports_no_language(encoding, type_, name, tex
     command = [sys.executable, "-c", TYPES, encoding, type_, name, text]
     ran = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
     assert ran.stdout.split() == []
+
+
+NAMELESS = """
+import rosetta_jit as rj
+from rosetta_jit.runtime.cache import names
+def refuse(): raise AssertionError("nobody needs a name")
+names._package_digest = refuse
+rj.Decoder("yarp/icub/torso_state.mapping", encoding="yarp3")
+rj.Decoder.of("geometry_msgs/Point", encoding="ros1")
+rj.Encoder.of("rst.kinematics.JointAngles", encoding="protobuf")
+"""
+
+
+def test_where_nothing_is_kept_the_files_of_the_package_are_not_looked_at():
+    environment = {**os.environ, "ROSETTA_JIT_CACHE": "off"}
+    subprocess.run([sys.executable, "-c", NAMELESS], env=environment, check=True)

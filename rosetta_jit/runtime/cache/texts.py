@@ -10,13 +10,17 @@ from rosetta_jit.runtime.cache.names import entry_name
 
 def known(text: str) -> bytes | None:
     """The code of a text, if the cache has it."""
-    entry = Cache.default().get(entry_name(text))
+    cache = Cache.default()
+    entry = None if cache.keeps_nothing else cache.get(entry_name(text))
     return None if entry is None else entry.image
 
 
 def kept(kind: str, text: str, compiled: Callable[[], bytes]) -> bytes:
     """The code of a text: from the cache, or compiled now and put there. ``kind`` says what it is to people who look at the cache."""
-    cache, name = Cache.default(), entry_name(text)
+    cache = Cache.default()
+    if cache.keeps_nothing:  # then nobody needs a name, for which all files of the package are looked at
+        return compiled()
+    name = entry_name(text)
     entry = cache.get(name)
     if entry is not None:
         return entry.image
