@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from rosetta_jit.file_errors import named
+from rosetta_jit.file_errors import whole
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,8 +33,8 @@ def draw_frame(image: RstImage, path: Path) -> Path:
     """Write an `rst.vision.Image` as PNG."""
     from PIL import Image
 
-    with named(path):
-        Image.fromarray(pixels(image)).save(path)
+    with whole(path) as part:
+        Image.fromarray(pixels(image)).save(part, format="PNG")
     return path
 
 
@@ -59,6 +59,6 @@ def draw_joints(times_s: Sequence[float], angles_rad: Angles, path: Path) -> Pat
         axes.plot(times_s, angles, linewidth=1)
         axes.set(xlabel="seconds", ylabel=unit, title=f"{angles.shape[1]} joints, {unit}")
         axes.grid(visible=True, alpha=0.3)
-    with named(path):
-        FigureCanvasAgg(figure).print_png(str(path))
+    with whole(path) as part:
+        FigureCanvasAgg(figure).print_png(str(part))
     return path

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from types import SimpleNamespace
 
 import numpy as np
@@ -55,3 +56,17 @@ def test_the_table_has_a_line_a_stream():
     assert len(lines) == 4
     assert {len(line) for line in lines} == {len(lines[0])}
     assert lines[2].split() == ["torso_state", "yarp3", "500", "16,000", "30", "3,000", "100", "x", "120.0", "1.5"]
+
+
+@pytest.mark.parametrize("draw", [draw_frame, draw_joints])
+def test_a_picture_that_does_not_fit_leaves_no_file(tmp_path, monkeypatch, draw):
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Image.Image, "save", full)
+    image = SimpleNamespace(data=bytes(12), width=2, height=2, channels=3, color_mode=2, data_order=1)
+    arguments = (image,) if draw is draw_frame else (range(3), np.zeros((3, 2), np.float32))
+    with pytest.raises(OSError, match="No space left") as found:
+        draw(*arguments, tmp_path / "picture.png")
+    assert found.value.filename == str(tmp_path / "picture.png")
+    assert not list(tmp_path.iterdir())
