@@ -14,7 +14,6 @@ from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.codec import leaves
 from rosetta_jit.lowering.codec.ending import refuse_other_length, refuse_tried
 from rosetta_jit.lowering.codec.fields import Elements, Fields, scalar_name
-from rosetta_jit.lowering.codec.wire_fields import Found, WireFields
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, block, integer
 from rosetta_jit.startup.late import late
@@ -22,9 +21,9 @@ from rosetta_jit.wire import codec as wire
 from rosetta_jit.wire.size import fixed_size, minimum_size
 
 if TYPE_CHECKING:
-    from rosetta_jit.lowering.codec import xcdr1_members, xcdr2_members
+    from rosetta_jit.lowering.codec import wire_fields, xcdr1_members, xcdr2_members
 else:
-    xcdr1_members, xcdr2_members = late("rosetta_jit.lowering.codec", "xcdr1_members", "xcdr2_members")
+    wire_fields, xcdr1_members, xcdr2_members = late("rosetta_jit.lowering.codec", "wire_fields", "xcdr1_members", "xcdr2_members")
 
 EMPTY_ELEMENTS = 1 << 16
 """How many elements that take no bytes a message may have, whatever its own size."""
@@ -174,7 +173,7 @@ def _tried(writer: Writer, where: Where, codec: wire.Codec) -> Block:
             refuse_tried(writer)
         else:
             with writer.whole():
-                walk(codec, WireFields(writer, Found(), where=where, element=True), writer)
+                walk(codec, wire_fields.WireFields(writer, wire_fields.Found(), where=where, element=True), writer)
             refuse_other_length(writer)
     read = names_read(block(body))
     return tuple(stmt for stmt in body if not isinstance(stmt, Let) or stmt.name in read)
