@@ -3,7 +3,7 @@
 ; advice: where the system does not take it, nothing is lost.
 declare i32 @madvise(ptr, i64, i32)
 
-define internal void @prefer_large_pages(ptr %begin, i64 %size) noinline cold {
+define internal void @prefer_large_pages(ptr %begin, i64 %size) noinline cold optnone {
   %address = ptrtoint ptr %begin to i64
   %behind = add i64 %address, %size
   %rounded = add i64 %address, 65535

@@ -42,11 +42,14 @@ if TYPE_CHECKING:
 else:
     host_table, references = late("rosetta_jit.backends.entry", "host_table", "references")
 
+NEW_BYTES = "new_bytes.ll"
+"""What an entry that writes messages has besides."""
+
 USUAL: dict[EntryName, tuple[str, ...]] = {
     "decode": ("owning.ll", "finish.ll", "decode.ll"),
     "borrow": ("borrowing.ll", "finish.ll", "decode.ll"),
-    "encode": ("usable.ll", "measured.ll", "encode.ll"),
-    "bridge": ("bridge.ll",),
+    "encode": ("usable.ll", "measured.ll", NEW_BYTES, "encode.ll"),
+    "bridge": (NEW_BYTES, "bridge.ll"),
 }
 """The usual call."""
 
@@ -287,8 +290,9 @@ def _entry_text(templates: Sequence[str], program: Program) -> str:
     count = max(kernel.registers for kernel in kernels)
     kept = _template("registers.ll").replace("COUNT", str(count)) if count else _template("no_registers.ll")
     joined = "joined.ll" if any(kernel.kept for kernel in kernels) else "alone.ll"
-    shared = ("shared.ll", stamps, hosted, joined, _thread_template(), "thread_check.ll", _large_template())
-    texts = (*map(_template, shared), kept, *map(_template, templates))
+    shared = ("shared.ll", stamps, hosted, joined, _thread_template(), "thread_check.ll")
+    large = (_large_template(),) if NEW_BYTES in templates else ()
+    texts = (*map(_template, (*shared, *large)), kept, *map(_template, templates))
     inline = ("alwaysinline" if is_short else "" for is_short in program.are_short)
     attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline))
     return "\n".join((*texts, *attributes))

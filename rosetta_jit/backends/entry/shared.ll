@@ -9,6 +9,7 @@
 ; them to the slow path, which refuses. An entry itself has the interpreter lock; where its kernel may let it go is said in `hosted.ll`.
 ; The slow path is a Python callable for whatever is not the common case. It gets the same arguments, finds the kernel's result in word 9 of
 ; the state (`kernel.state.RESULT`) if the kernel has failed, and raises, or makes room and runs the kernel again.
+; What is hardly ever called is `cold`, and `optnone`, so that LLVM does not take more time for it than for all that is called.
 ;
 ; Offsets into CPython's objects, the same from 3.11 to 3.14 (Include/object.h, cpython/bytesobject.h, cpython/bytearrayobject.h, pybuffer.h).
 ; Any object: type 8. bytes: size 16, data 32. list: items 24. bytearray: size 16, data 40, how often its buffer is exported 48. Py_buffer: buf 0, len 16, itemsize 24, 80
@@ -64,22 +65,6 @@ define internal ptr @slow(ptr %context, ptr %args, i64 %nargsf, ptr %names) alwa
   %callable = load ptr, ptr %at
   %answer = call ptr @PyObject_Vectorcall(ptr %callable, ptr %args, i64 %nargsf, ptr %names)
   ret ptr %answer
-}
-
-; New bytes, which are not written yet, or null if there is no memory for them. From 4 MB on it pays to ask for large pages.
-define internal ptr @new_bytes(i64 %size) alwaysinline {
-  %bytes = call ptr @PyBytes_FromStringAndSize(ptr null, i64 %size)
-  %is.small = icmp slt i64 %size, 4194304
-  br i1 %is.small, label %done, label %large, !prof !0
-large:
-  %there = icmp ne ptr %bytes, null
-  br i1 %there, label %advise, label %done, !prof !0
-advise:
-  %data = getelementptr i8, ptr %bytes, i64 32
-  call void @prefer_large_pages(ptr %data, i64 %size)
-  br label %done
-done:
-  ret ptr %bytes
 }
 
 ; The state of a holder of exactly the program's type, else null.
@@ -154,7 +139,7 @@ raise:
 }
 
 ; The same of a view that has elements of more bytes. It is exported again with its format, which numpy puts together whenever it is asked.
-define internal i32 @open_with_format(ptr %object, ptr %view) noinline cold {
+define internal i32 @open_with_format(ptr %object, ptr %view) noinline cold optnone {
   call void @PyBuffer_Release(ptr %view)
   ; PyBUF_FORMAT and PyBUF_ND
   %got = call i32 @PyObject_GetBuffer(ptr %object, ptr %view, i32 12)
@@ -250,7 +235,7 @@ done:
   ret ptr %kept
 }
 
-define internal ptr @counted_by_python(ptr %object) noinline cold {
+define internal ptr @counted_by_python(ptr %object) noinline cold optnone {
   call void @Py_IncRef(ptr %object)
   ret ptr %object
 }
