@@ -10,10 +10,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.terminal import TAB_CELLS, cells, printable
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
+    from rosetta_jit import terminal
     from rosetta_jit.source import Span
+else:
+    terminal = Late("rosetta_jit.terminal")
 
 MAX_LINE = 160
 """Longer source lines are cut around the caret, so that a hostile line cannot flood a terminal."""
@@ -78,7 +81,7 @@ def render(diagnostic: Diagnostic) -> str:
     lines += [f"  = note: {note}" for note in diagnostic.notes]
     if diagnostic.help:
         lines.append(f"  = help: {diagnostic.help}")
-    return "\n".join(printable(line[:MAX_WORDS]) for line in lines)
+    return "\n".join(terminal.printable(line[:MAX_WORDS]) for line in lines)
 
 
 def render_all(diagnostics: Sequence[Diagnostic]) -> str:
@@ -120,7 +123,7 @@ def _excerpt(span: Span, label: str) -> list[str]:
     last = _end(text, first)
     before, marked = _shown(text[first : span.start]), _shown(text[span.start : min(span.end, last)])
     before = before if first == start else f"…{before[1:]}"
-    caret = " " * cells(before) + "^" * max(1, cells(marked))
+    caret = " " * terminal.cells(before) + "^" * max(1, terminal.cells(marked))
     margin = " " * len(str(line_number))
     return [
         f"{margin}--> {span.source.name}:{line_number}:{column}",
@@ -139,4 +142,4 @@ def _end(text: str, start: int) -> int:
 
 def _shown(text: str) -> str:
     """A part of a line with blanks for tabs, and codes for what does not print, so that carets can be counted."""
-    return printable(text.replace("\t", " " * TAB_CELLS).rstrip("\r"))
+    return terminal.printable(text.replace("\t", " " * terminal.TAB_CELLS).rstrip("\r"))

@@ -18,6 +18,9 @@ Value = int | bool | np.float32 | np.float64
 SIGNED = {"i8", "i16", "i32", "i64"}
 FLOATS = {"f32", "f64"}
 
+MOST_DIGITS, LARGEST_SCALE = 10**17, 400
+"""Bounds of the shortest digits of a float and of their scale: the least float64 is 5e-324."""
+
 
 _LIMITS: dict[str, tuple[int, int]] = {
     "bool": (0, 1),

@@ -15,9 +15,6 @@ LEAST_NORMAL = {"f32": 2.0**-126, "f64": 2.0**-1022}
 LAST = {"f32": 9, "f64": 17}
 """As many digits tell any two floats apart."""
 
-MOST_DIGITS, LARGEST_SCALE = 10**17, 400
-"""Bounds of the `shortest` digits and their scale: the least float64 is 5e-324."""
-
 
 def nearest(text: bytes, exponent: int) -> np.float64:
     """The float64 nearest to the integer that the digits of a text spell, times a power of ten; other bytes are passed over."""

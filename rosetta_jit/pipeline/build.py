@@ -20,7 +20,6 @@ from rosetta_jit.frameworks.installed import GROUP as FRAMEWORKS
 from rosetta_jit.kernel.host import UserFunction
 from rosetta_jit.kernel.ir import Kernel, Site
 from rosetta_jit.kernel.passes import order as passes
-from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.known import kept_by
 from rosetta_jit.kernel.proof.verify import VerificationError
 from rosetta_jit.kernel.traits import LARGE, LARGE_WITHOUT_RULES, HostUse, use_of_host
@@ -239,6 +238,8 @@ class Build:
     @cached_property
     def text(self) -> str:
         """All that the code and its `header` depend on besides this process, if all functions are identified that it calls."""
+        from rosetta_jit.kernel.printer import to_text
+
         kernels = [to_text(kernel) for kernel in self.kernels]
         digests = [f"{function.name} {function.identity.digest}" for function in self.called]
         holder = json.dumps(self.header["type"], sort_keys=True)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.limits import MAX_PADDING
-from rosetta_jit.frameworks.yarp.schema_expr import read_constant, read_expr
 from rosetta_jit.frameworks.yarp.sexpr import Form, Node, Number, Text, Word, head
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.model.expr import Literal
@@ -16,6 +16,12 @@ from rosetta_jit.model.limits import MAX_UNIT_PARTS
 from rosetta_jit.model.types import Array, Bool, Bytes, Constant, Field, Float, Int, String, Type
 from rosetta_jit.model.units import with_units
 from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.frameworks.yarp import schema_expr
+else:
+    schema_expr = Late("rosetta_jit.frameworks.yarp.schema_expr")
 
 TEXT = String("octets", "string")
 
@@ -197,7 +203,7 @@ def _unit_name(node: Node) -> str:
 def _default(node: Node, type_: Type, problems: list[Diagnostic]) -> Constant | None:
     match node:
         case Form((_, value)):
-            match read_constant(value, type_, problems):
+            match schema_expr.read_constant(value, type_, problems):
                 case Literal(constant):
                     return constant
                 case None:
@@ -217,7 +223,7 @@ def _with_length(field: Field, node: Node, problems: list[Diagnostic]) -> Field:
         case Form((_, Number(int(length), span))), String() | Bytes() if 0 <= length < 2**31:
             return replace(field, length=Literal(length, span))
         case Form((_, (Word() | Form()) as expr)), Array(_, None) | String() | Bytes():
-            return replace(field, length=read_expr(expr, problems))
+            return replace(field, length=schema_expr.read_expr(expr, problems))
         case Form((_, _)), _:
             problems.append(catalogue.misplaced_option(node.span, ":length", "a :list, :string or :blob without one"))
         case _:

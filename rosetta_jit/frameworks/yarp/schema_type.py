@@ -4,18 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.forms import make_union
 from rosetta_jit.frameworks.yarp.limits import MAX_NESTING, MAX_PROBLEMS
 from rosetta_jit.frameworks.yarp.names import FIELD_NAME
-from rosetta_jit.frameworks.yarp.schema_expr import read_constant
 from rosetta_jit.frameworks.yarp.schema_options import CASE, SCALARS, TEXT, Place, sort_rest, text_option, with_options
 from rosetta_jit.frameworks.yarp.sexpr import Form, Node, Number, Text, Vocab, Word, head
 from rosetta_jit.model.types import Array, Constant, Field, Map, Ref, Struct, Type
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.frameworks.yarp import schema_expr
+else:
+    schema_expr = Late("rosetta_jit.frameworks.yarp.schema_expr")
 
 _GROUPS = MappingProxyType(
     {
@@ -132,7 +138,7 @@ def _not_a_type(node: Node) -> Diagnostic:
 
 
 def _with_constant(field: Field, constants: Sequence[Node], problems: list[Diagnostic]) -> Field:
-    values = [read_constant(node, field.type, problems) for node in constants]
+    values = [schema_expr.read_constant(node, field.type, problems) for node in constants]
     if len(values) > 1 and any(value != values[0] for value in values):
         problems.append(catalogue.second_constant(constants[1].span))
     return replace(field, constant=values[0] if values else None)

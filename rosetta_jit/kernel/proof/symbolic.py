@@ -6,18 +6,23 @@ whoever has a value has the proof too.
 
 from __future__ import annotations
 
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel import nodes
-from rosetta_jit.kernel.arithmetic import FLOATS, limits
-from rosetta_jit.kernel.decimals import LARGEST_SCALE, MOST_DIGITS
+from rosetta_jit.kernel.arithmetic import FLOATS, LARGEST_SCALE, MOST_DIGITS, limits
 from rosetta_jit.kernel.limits import MAX_PLACES
-from rosetta_jit.kernel.proof import claims, integers
+from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import All, Any, Formula, bounded, equal, negated
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, sum_of, times
 from rosetta_jit.kernel.proof.obligations import UnprovenError, certify, demand, oblige
 from rosetta_jit.kernel.proof.prove import Facts
 from rosetta_jit.kernel.proof.scope import Scope, Typed, Value
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.proof import integers
+else:
+    integers = Late("rosetta_jit.kernel.proof.integers")
 
 ROUNDING = frozenset(("sqrt", "floor", "ceil", "trunc", "rint"))
 """Functions that a float32 has too."""

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.arithmetic import limits
 from rosetta_jit.kernel.limits import MAX_PROOFS, MAX_TERMS
-from rosetta_jit.kernel.printer import statement_text
-from rosetta_jit.kernel.proof import claims, contracts, effects, paths
+from rosetta_jit.kernel.proof import claims, effects, paths
 from rosetta_jit.kernel.proof.formula import All, Formula, equal, negated
 from rosetta_jit.kernel.proof.known import once
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted
@@ -25,9 +24,13 @@ from rosetta_jit.kernel.proof.symbolic import condition, evaluate, integer, line
 from rosetta_jit.kernel.routines import called_routines, named_lanes
 from rosetta_jit.kernel.shape import shape_error
 from rosetta_jit.startup.dataclass import dataclass, field
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
+    from rosetta_jit.kernel.proof import contracts
     from rosetta_jit.kernel.proof.record import Record
+else:
+    contracts = Late("rosetta_jit.kernel.proof.contracts")
 
 
 class VerificationError(AssertionError):
@@ -177,6 +180,8 @@ def _block(walk: _Walk, block: nodes.Block) -> bool:
 
 def _named(error: UnprovenError, stmt: nodes.Stmt) -> UnprovenError:
     """The error with the innermost statement's text."""
+    from rosetta_jit.kernel.printer import statement_text
+
     return error if "\n" in str(error) else UnprovenError(f"{error}\n  in: {statement_text(stmt)}")
 
 

@@ -25,13 +25,19 @@ another order. All numbers are expressions of the mapping, computed when the ker
 from __future__ import annotations
 
 from functools import reduce
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.language.arrays.counts import ONE, ZERO, LayoutError, folded, minus, over, plus, times
-from rosetta_jit.language.folding import folded as literal
 from rosetta_jit.language.limits import MAX_LISTED
 from rosetta_jit.model.expr import Binary, Call, Each, Expr, Len, List, Literal, Name, Path, Pick, Slice, Step
 from rosetta_jit.startup.dataclass import dataclass, replace
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.language import folding
+else:
+    folding = Late("rosetta_jit.language.folding")
 
 PADDED = "padded_rows"
 NUMBERS, NUMBER_BYTES = "numbers", "number_bytes"
@@ -145,7 +151,7 @@ def _sliced(view: View, slice_: Slice) -> View:
     (axis,) = view.axes
     if axis.listed is not None:
         raise LayoutError(words.of_a_list(slice_.span))
-    slice_ = replace(slice_, step=literal(slice_.step))
+    slice_ = replace(slice_, step=folding.folded(slice_.step))
     stop = axis.count if slice_.stop is None else slice_.stop
     if isinstance(slice_.step, Literal) and not (isinstance(slice_.step.value, int) and slice_.step.value > 0):
         raise LayoutError(words.slice_step(slice_.step.span))

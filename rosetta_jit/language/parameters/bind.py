@@ -7,21 +7,29 @@ known with the values leaves one of its blocks, and the other is not looked at.
 from __future__ import annotations
 
 from collections.abc import Mapping as Dictionary
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bind as words
 from rosetta_jit.catalogue import groups
 from rosetta_jit.diagnostics import Diagnostic
-from rosetta_jit.language.folding import folded
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_CHOSEN
-from rosetta_jit.language.parameters.several_places import one_by_one, spread
-from rosetta_jit.language.parameters.values import SCALARS, accepted, written
 from rosetta_jit.model.expr import Call, Choice, Expr, Given, Item, List, Literal, Name
-from rosetta_jit.model.mapping import For, Mapping, Parameter, Rule, Several, When
+from rosetta_jit.model.mapping import Assign, For, Mapping, Parameter, Relation, Rule, Several, When
 from rosetta_jit.model.types import Int
 from rosetta_jit.model.walk import parts, rebuilt, with_expressions
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass, field, replace
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.language import folding
+    from rosetta_jit.language.parameters import several_places
+    from rosetta_jit.language.parameters import values as kinds
+else:
+    folding = Late("rosetta_jit.language.folding")
+    kinds = Late("rosetta_jit.language.parameters.values")
+    several_places = Late("rosetta_jit.language.parameters.several_places")
 
 
 def bind(mapping: Mapping, arguments: Dictionary[str, object] | None, problems: list[Diagnostic]) -> Mapping:
@@ -31,8 +39,8 @@ def bind(mapping: Mapping, arguments: Dictionary[str, object] | None, problems: 
     """
     binder = _Binder(_values(mapping, arguments, problems), problems)
     blocks = [None if block is None else binder.rules(block, ()) for block in (mapping.rules, mapping.unpack_rules, mapping.pack_rules)]
-    state = tuple(replace(each, initial=folded(binder.expr(each.initial))) for each in mapping.state)
-    unused = [parameter for parameter in mapping.parameters if parameter.name not in binder.used and parameter.type in SCALARS]
+    state = tuple(replace(each, initial=folding.folded(binder.expr(each.initial))) for each in mapping.state)
+    unused = [parameter for parameter in mapping.parameters if parameter.name not in binder.used and parameter.type in kinds.SCALARS]
     problems.extend(words.unused(parameter.span, parameter.name) for parameter in unused)
     return replace(mapping, rules=blocks[0], unpack_rules=blocks[1], pack_rules=blocks[2], state=state)
 
@@ -41,7 +49,7 @@ def handed_on(mapping: Mapping, arguments: Dictionary[str, object] | None) -> Di
     """The values of a mapping's parameters that the mappings it uses have too: the ``arguments``, and its defaults for the rest."""
     if arguments is None:
         return None
-    defaults = {each.name: written(folded(each.default)) for each in mapping.parameters if each.default is not None}
+    defaults = {each.name: kinds.written(folding.folded(each.default)) for each in mapping.parameters if each.default is not None}
     return {**defaults, **arguments}
 
 
@@ -52,8 +60,8 @@ def _values(mapping: Mapping, arguments: Dictionary[str, object] | None, problem
     for parameter in mapping.parameters:
         if parameter.name in values:
             problems.append(words.repeated(parameter.span, parameter.name))
-        elif parameter.type not in SCALARS:
-            problems.append(words.unknown_type(parameter.span, parameter.name, parameter.type, SCALARS))
+        elif parameter.type not in kinds.SCALARS:
+            problems.append(words.unknown_type(parameter.span, parameter.name, parameter.type, kinds.SCALARS))
         else:
             values[parameter.name] = _value(parameter, arguments, problems)
     return values
@@ -61,18 +69,18 @@ def _values(mapping: Mapping, arguments: Dictionary[str, object] | None, problem
 
 def _value(parameter: Parameter, arguments: Dictionary[str, object] | None, problems: list[Diagnostic]) -> Expr:
     """The value of a parameter, or what stands for it where it has none."""
-    type_ = SCALARS[parameter.type]
+    type_ = kinds.SCALARS[parameter.type]
     unknown = Given(parameter.name, (), type_, parameter.span, is_list=parameter.is_list)
-    default = None if parameter.default is None else folded(parameter.default)
+    default = None if parameter.default is None else folding.folded(parameter.default)
     if arguments is not None and parameter.name in arguments:
         value, span = arguments[parameter.name], parameter.span
     elif default is not None:
-        value, span = written(default), parameter.default.span if parameter.default else None
+        value, span = kinds.written(default), parameter.default.span if parameter.default else None
     else:
         if arguments is not None:
             problems.append(words.missing(parameter.span, parameter.name))
         return unknown
-    found = accepted(value, parameter)
+    found = kinds.accepted(value, parameter)
     if isinstance(found, str):
         problems.append(words.unfit(span, parameter.name, found))
         return unknown
@@ -106,9 +114,12 @@ class _Binder:
                     return self.rules(then if known else otherwise, variables)
                 return (replace(bound, then=self.rules(then, variables), otherwise=self.rules(otherwise, variables)),)
             case Several():
-                return tuple(found for each in one_by_one(bound, self.problems) for found in spread(each, variables))
+                single = several_places.one_by_one(bound, self.problems)
+                return tuple(found for each in single for found in several_places.spread(each, variables))
+            case Assign(value=List() | Given(is_list=True)) | Relation(value=List() | Given(is_list=True)):
+                return several_places.spread(bound, variables)
             case _:
-                return spread(bound, variables)
+                return (bound,)
 
     def expr(self, expr: Expr) -> Expr:
         if isinstance(expr, Choice):
@@ -129,7 +140,7 @@ class _Binder:
 
     def item(self, items: Expr, index: Expr, item: Item) -> Expr:
         """An item of a list; the item itself where its number is known."""
-        match items, folded(index):
+        match items, folding.folded(index):
             case Call(), Literal(str(name)):
                 return self.component(items, name, item)
             case List(()), _:
@@ -183,14 +194,14 @@ class _Binder:
         """Whether a loop ends where it starts for the parameters' values, as one over an empty list does."""
         if not any(isinstance(part, Name) and part.name in self.values for part in parts(written_loop.stop)):
             return False
-        start, stop = folded(loop.start), folded(loop.stop)
+        start, stop = folding.folded(loop.start), folding.folded(loop.stop)
         return isinstance(start, Literal) and isinstance(stop, Literal) and start.value == stop.value
 
     def decided(self, written_condition: Expr, condition: Expr) -> bool | None:
         """Whether a condition on parameters holds; None where it is on something else, too."""
         if not any(isinstance(part, Name) and part.name in self.values for part in parts(written_condition)):
             return None
-        match folded(condition):
+        match folding.folded(condition):
             case Literal(bool(value)):
                 return value
             case _:

@@ -6,20 +6,31 @@ A variable has a number, which is that of the kernel's register that holds it. B
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import state as words
 from rosetta_jit.catalogue import suggestions
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.limits import MAX_STATE
-from rosetta_jit.language.parameters.values import SCALARS, accepted, written
 from rosetta_jit.language.typed import StateVariable
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.expr import Given, Literal, Side
+from rosetta_jit.model.scalars import Scalar
 from rosetta_jit.model.types import String
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.late import Late
 
-TYPES = {name: type_ for name, type_ in SCALARS.items() if not isinstance(type_, String)}
-"""The types of state variables by name."""
+if TYPE_CHECKING:
+    from rosetta_jit.language.parameters import values
+else:
+    values = Late("rosetta_jit.language.parameters.values")
+
+
+@cache
+def known_types() -> Mapping[str, Scalar]:
+    """The types of state variables by name."""
+    return {name: type_ for name, type_ in values.SCALARS.items() if not isinstance(type_, String)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +42,7 @@ class Declared:
 
     def variables(self, target: Side) -> dict[str, StateVariable]:
         """Those of one direction."""
-        return {name: StateVariable(name, number, target, TYPES[self.types[name]]) for number, name in enumerate(self.initial)}
+        return {name: StateVariable(name, number, target, known_types()[self.types[name]]) for number, name in enumerate(self.initial)}
 
 
 NO_STATE = Declared({}, {})
@@ -47,9 +58,9 @@ def declared(mapping: model.Mapping, problems: list[Diagnostic]) -> Declared:
         if each.name in known or each.name in initial or each.name == "pi":
             other = known.get(each.name, "a constant" if each.name == "pi" else "a state variable")
             problems.append(words.repeated(each.span, each.name, other))
-        elif each.type not in TYPES:
-            problems.append(words.unknown_type(each.span, each.type, TYPES))
-            initial[each.name], types[each.name] = 0, suggestions.closest(each.type, TYPES) or "float64"  # what is probably meant
+        elif each.type not in known_types():
+            problems.append(words.unknown_type(each.span, each.type, known_types()))
+            initial[each.name], types[each.name] = 0, suggestions.closest(each.type, known_types()) or "float64"  # what is probably meant
         else:
             initial[each.name], types[each.name] = _initial(each, problems), each.type
     return Declared(initial, types)
@@ -62,7 +73,7 @@ def _initial(state: model.State, problems: list[Diagnostic]) -> bool | int | flo
     if not isinstance(state.initial, Literal):
         problems.append(words.unfit(state.initial.span, state.name, "it is not known before the first message"))
         return 0
-    found = accepted(written(state.initial), model.Parameter(state.name, state.type, is_list=False, default=None))
+    found = values.accepted(values.written(state.initial), model.Parameter(state.name, state.type, is_list=False, default=None))
     if isinstance(found, Literal) and isinstance(found.value, bool | int | float):
         return found.value
     problems.append(words.unfit(state.initial.span, state.name, found if isinstance(found, str) else "it is no number"))

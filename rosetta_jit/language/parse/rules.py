@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import math
 import re
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.limits import MAX_DIGITS
 from rosetta_jit.language.parse.templates import pieces_of
 from rosetta_jit.model import expr
-from rosetta_jit.model.element_rules import ignoring
 from rosetta_jit.model.mapping import (
     Arranged,
     Assign,
@@ -37,6 +36,12 @@ from rosetta_jit.model.mapping import (
 from rosetta_jit.parsing.lalr import Token, Tree
 from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.model import element_rules
+else:
+    element_rules = Late("rosetta_jit.model.element_rules")
 
 ESCAPES = {'"': '"', "\\": "\\", "n": "\n", "t": "\t", "r": "\r"}
 
@@ -117,7 +122,7 @@ def _left_alone(tree: Tree, context: Context, span: Span) -> Rule:
     paths = [_path(each, context.origin if is_ignored else context.target, context) for each in _trees(tree)]
     if not paths:
         return Rest("ignore" if is_ignored else "default", span)
-    return ignoring(paths[0], span) if is_ignored else Default(paths[0], span)
+    return element_rules.ignoring(paths[0], span) if is_ignored else Default(paths[0], span)
 
 
 def _same_names(tree: Tree, context: Context, span: Span) -> SameNames:

@@ -15,7 +15,8 @@ from rosetta_jit.language.conversions import FLOAT64, convert, describe
 from rosetta_jit.language.groups import FLOATS, Group, GroupFunction, Member, arguments_of, component, function_of, group_of
 from rosetta_jit.language.scope import Broken, Scope, Sought, members_of, resolve_path
 from rosetta_jit.language.typed import Call, Expr
-from rosetta_jit.language.units.conversion import factors_between, scaled, unit_of
+from rosetta_jit.language.units.conversion import factors_between, unit_of
+from rosetta_jit.language.units.numbers import scaled
 from rosetta_jit.model import expr as model
 from rosetta_jit.model import mapping
 from rosetta_jit.model.types import Array, Struct, Type

@@ -12,7 +12,6 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
-from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.resolve.expressions import type_index
 from rosetta_jit.language.scope import Broken, Scope, resolve_path
 from rosetta_jit.model.expr import Expr, Given, Index, Item, Keyed, List, Literal, Member, Name, Path
@@ -23,11 +22,13 @@ from rosetta_jit.startup.dataclass import dataclass, field, replace
 from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
+    from rosetta_jit.language import folding
     from rosetta_jit.model import printer
 
     Loop = For[Rule, Expr]
 else:
     printer = Late("rosetta_jit.model.printer")
+    folding = Late("rosetta_jit.language.folding")
 
 Key = tuple[tuple[str, ...], "Expr"]
 """The field of an element, and what it has."""
@@ -102,7 +103,7 @@ class _Block:
 
     def number(self, array: Path, step: Keyed) -> Index:
         """Which element of its array a key has; the first to name it says so."""
-        value = folded(step.value)
+        value = folding.folded(step.value)
         keys = self.arrays.setdefault(_array_of_keys(array, step), _Keys())
         keys.elements[array] = None
         key = step.names, value
@@ -114,7 +115,7 @@ class _Block:
         """The number of a key that no rule before has named: the next one, or the one that its list has it by."""
         loop = next((loop for loop in self.loops if _is_item(value, loop)), None)
         if loop is None:
-            if not is_constant(value):
+            if not folding.is_constant(value):
                 self.scope.problems.append(words.key_to_set(step.value.span))
             elif keys.loop is not None:
                 self.scope.problems.append(words.keys_of_list(step.value.span))
@@ -161,9 +162,9 @@ def _is_item(value: Expr, loop: Loop) -> bool:
         return False
     match value:
         case Item(List(items), Name(name)):
-            return name == loop.variable and folded(loop.stop) == Literal(len(items)) and all(map(is_constant, items))
+            return name == loop.variable and folding.folded(loop.stop) == Literal(len(items)) and all(map(folding.is_constant, items))
         case Given(name, (Name(variable),)):
-            stop = folded(loop.stop)
+            stop = folding.folded(loop.stop)
             return variable == loop.variable and isinstance(stop, Given) and stop.name == f"len({name})"
         case _:
             return False
@@ -171,7 +172,7 @@ def _is_item(value: Expr, loop: Loop) -> bool:
 
 def _repeated(value: Item) -> str | None:
     """The first item of a list that stands in it before."""
-    items = [printer.show_expr(folded(each)) for each in value.items.items] if isinstance(value.items, List) else []
+    items = [printer.show_expr(folding.folded(each)) for each in value.items.items] if isinstance(value.items, List) else []
     return next((each for number, each in enumerate(items) if each in items[:number]), None)
 
 

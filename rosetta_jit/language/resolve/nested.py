@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 def nest(rule: model.Assignment, scope: Scope, rules_of: RulesOf) -> tuple[typed.Rule, ...] | None:
     """The rules that an assignment of messages stands for; None if it is none that a mapping makes."""
     via = rule.by if isinstance(rule.by, Via) else None
-    if via is None and not scope.usable.by_type():
-        return None
     if not isinstance(rule.value, Path):
         if via is not None:
             scope.problems.append(words.not_a_field(rule.value.span))

@@ -29,7 +29,6 @@ from rosetta_jit.language.resolve.fitting import fit
 from rosetta_jit.language.resolve.keyed_rules import numbered
 from rosetta_jit.language.resolve.lengths_first import lengths_first
 from rosetta_jit.language.resolve.messages import checked_message, scope_between
-from rosetta_jit.language.resolve.nested import nest
 from rosetta_jit.language.scope import Broken, Message, Scope, element_type, resolve_path
 from rosetta_jit.language.units.conversion import in_unit
 from rosetta_jit.language.units.wholes import change_within
@@ -45,12 +44,13 @@ from rosetta_jit.startup.late import Late, late
 
 if TYPE_CHECKING:
     from rosetta_jit.language.functions import decisions
-    from rosetta_jit.language.resolve import coerced_values, groups, overriding, same_names
+    from rosetta_jit.language.resolve import coerced_values, groups, nested, overriding, same_names
     from rosetta_jit.language.resolve import rest as rest_rules
 else:
     decisions = Late("rosetta_jit.language.functions.decisions")
     coerced_values, groups = late("rosetta_jit.language.resolve", "coerced_values", "groups")
     overriding, rest_rules, same_names = late("rosetta_jit.language.resolve", "overriding", "rest", "same_names")
+    nested = Late("rosetta_jit.language.resolve.nested")
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,9 +167,9 @@ class _Block:
     def made(self, rule: model.Rule, scope: Scope) -> list[typed.Rule | None]:
         """The rules that one of the mapping stands for."""
         if isinstance(rule, model.Assign):
-            nested = nest(rule, scope, self.whole)
-            if nested is not None:
-                return [*nested]
+            by_mapping = isinstance(rule.by, model.Via) or scope.usable.by_type()
+            if by_mapping and (found := nested.nest(rule, scope, self.whole)) is not None:
+                return [*found]
             if (group := group_of(rule.value)) is not None:
                 return self.group(rule, group, scope)
         if isinstance(rule, model.For) and rule.kept is not None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import units as words
@@ -20,11 +21,16 @@ from rosetta_jit.language.places import field_names
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import Access, Binary, Call, Choice, Convert, Expr, IndexStep, Nearest, Place, Reduce, Unary
 from rosetta_jit.language.units.dimensions import conversion
-from rosetta_jit.language.units.numbers import Factors, exactly, nearest, scaled, scaled_before_rounding
 from rosetta_jit.language.units.unit_at import Mixed, Unit, pairs_in_step, unit_at
 from rosetta_jit.model.types import Enum, Float, Int, Type
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.units import numbers
+else:
+    numbers = Late("rosetta_jit.language.units.numbers")
 
 
 def in_unit(value: Expr, place: Place, scope: Scope, *, packs: bool = False) -> Expr | None:
@@ -58,16 +64,16 @@ def in_unit(value: Expr, place: Place, scope: Scope, *, packs: bool = False) -> 
     return converted
 
 
-def _converted(value: Expr, target: Type, units: tuple[str, str], factors: Factors, *, packs: bool) -> Expr | None:
+def _converted(value: Expr, target: Type, units: tuple[str, str], factors: numbers.Factors, *, packs: bool) -> Expr | None:
     """A number in another unit; None where that takes a word."""
     if not isinstance(target, Int):
-        return scaled(value, target, factors)
+        return numbers.scaled(value, target, factors)
     if isinstance(value.type, Int):
-        return scaled_before_rounding(value, factors) or exactly(value, target, factors, packs=packs)
+        return numbers.scaled_before_rounding(value, factors) or numbers.exactly(value, target, factors, packs=packs)
     back = conversion(units[1], units[0])
     if packs and isinstance(value, Access) and isinstance(back, tuple):
-        return nearest(value, target, factors, back)
-    return scaled(value, FLOAT64, factors)  # which needs a word, as every float does
+        return numbers.nearest(value, target, factors, back)
+    return numbers.scaled(value, FLOAT64, factors)  # which needs a word, as every float does
 
 
 def _is_shifted(value: Expr) -> bool:
@@ -81,11 +87,11 @@ def _is_shifted(value: Expr) -> bool:
             return False
 
 
-def _with_fields_converted(value: Expr, factors: Factors) -> Expr | None:
+def _with_fields_converted(value: Expr, factors: numbers.Factors) -> Expr | None:
     """A sum with its fields in another unit before anything is added to them; None where it is no sum of floats."""
     match value:
         case Access():
-            return scaled(value, value.type, factors)
+            return numbers.scaled(value, value.type, factors)
         case Unary("-", operand) | Convert(operand, _, "widen"):
             inner = _with_fields_converted(operand, factors)
             return None if inner is None else replace(value, operand=inner)
@@ -112,7 +118,7 @@ def _element_of(value: Expr) -> str:
     return "" if name.endswith("]") else f"{name}[]"
 
 
-def factors_between(known: str, wanted: str, span: Span | None, problems: list[Diagnostic]) -> Factors | None:
+def factors_between(known: str, wanted: str, span: Span | None, problems: list[Diagnostic]) -> numbers.Factors | None:
     """How a value gets from one unit into another; None, and reported, where it cannot. A unit that nobody knows is left alone."""
     factors = conversion(known, wanted)
     if isinstance(factors, str):

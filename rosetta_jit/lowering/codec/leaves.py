@@ -7,15 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import add, index, mul, type_of
-from rosetta_jit.lowering.codec.counts import LIMITS, agrees, as_scalar, evaluate, read_count, write_count
 from rosetta_jit.lowering.codec.fields import Fields, scalar_name
 from rosetta_jit.lowering.writer import Where, Writer, integer
 from rosetta_jit.model import expr
+from rosetta_jit.startup.late import Late
 from rosetta_jit.wire.codec import Align, Blob, Computed, Constant, Number, Padding, Table, Unsent, Utf16
+
+if TYPE_CHECKING:
+    from rosetta_jit.lowering.codec import counts
+else:
+    counts = Late("rosetta_jit.lowering.codec.counts")
 
 Leaf = Number | Unsent | Table | Constant | Computed | Padding | Align | Blob | Utf16
 
@@ -62,7 +67,7 @@ def _number(writer: Writer, fields: Fields, number: Number) -> None:
         writer.advance(nodes.WIDTH[scalar])
     else:
         fitting = value if number.holder_scalar is None else _fitting(writer, where, value, scalar, writer.position)
-        writer.store(as_scalar(scalar, fitting), where, number.order)
+        writer.store(counts.as_scalar(scalar, fitting), where, number.order)
 
 
 def _unsent(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: nodes.Scalar) -> None:
@@ -70,7 +75,7 @@ def _unsent(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: nodes
     if writer.direction == "decode":
         fields.put(path, zero)
     elif writer.direction == "encode" and (value := fields.get(path)) is not None:
-        same = nodes.Compare("eq", as_scalar(scalar, value), zero)
+        same = nodes.Compare("eq", counts.as_scalar(scalar, value), zero)
         writer.expect(same, "range", fields.shown(path), "the type that is written has no such field: must be 0")
 
 
@@ -108,7 +113,7 @@ def _table(writer: Writer, fields: Fields, table: Table) -> None:
         return
     known, wire = _translated(writer.let("code", integer(value)), [(value, number) for number, value in table.pairs])
     writer.expect(known, "range", where, "the wire has no word for this value")
-    writer.store(as_scalar(scalar, wire), where, table.order)
+    writer.store(counts.as_scalar(scalar, wire), where, table.order)
 
 
 def _implied(writer: Writer, fields: Fields, table: Table) -> None:
@@ -168,11 +173,11 @@ def _computed(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: nod
         return
     if writer.direction == "decode":
         fields.put(path, writer.load(scalar, where, order))
-        writer.deferred.append(lambda: agrees(writer, fields, fields.get(path), value, where, "constant"))
+        writer.deferred.append(lambda: counts.agrees(writer, fields, fields.get(path), value, where, "constant"))
     else:
-        expected = evaluate(value, fields, writer, where)
+        expected = counts.evaluate(value, fields, writer, where)
         _in_range(writer, where, expected, scalar)
-        writer.store(as_scalar(scalar, expected), where, order)
+        writer.store(counts.as_scalar(scalar, expected), where, order)
 
 
 def _padding(writer: Writer, where: Where, scalar: nodes.Scalar, value: int, order: str) -> None:
@@ -202,7 +207,7 @@ def _blob(writer: Writer, fields: Fields, blob: Blob) -> None:
     where = fields.shown(blob.path)
     extra = int(blob.terminated)
     if writer.direction == "decode":
-        total = read_count(writer, fields, blob.path, blob.count, "length", least=extra)
+        total = counts.read_count(writer, fields, blob.path, blob.count, "length", least=extra)
         writer.require(total, where)
         size = _without_terminator(writer, total, where) if blob.terminated else total
         if blob.text:
@@ -211,7 +216,7 @@ def _blob(writer: Writer, fields: Fields, blob: Blob) -> None:
         writer.advance(total)
         return
     stored = fields.stored(blob.path)
-    write_count(writer, fields, blob.count, stored.size, where, "length", extra=extra)
+    counts.write_count(writer, fields, blob.count, stored.size, where, "length", extra=extra)
     writer.require(stored.size, where, "no room for the message")
     if writer.direction == "encode":
         fields.copy_bytes(blob.path, stored)
@@ -223,7 +228,7 @@ def _blob(writer: Writer, fields: Fields, blob: Blob) -> None:
 def _utf16(writer: Writer, fields: Fields, text: Utf16) -> None:
     where = fields.shown(text.path)
     if writer.direction == "decode":
-        units = read_count(writer, fields, text.path, text.count, "length")
+        units = counts.read_count(writer, fields, text.path, text.count, "length")
         writer.require(mul(units, 2), where)
         little, marks = _byte_order_mark(writer, units)
         begin = writer.let("text", add(writer.position, mul(marks, 2)))
@@ -239,7 +244,7 @@ def _utf16(writer: Writer, fields: Fields, text: Utf16) -> None:
     stored = fields.stored(text.path)
     writer.expect(nodes.Compare("lt", stored.size, index(1 << 30)), "range", where, "too many for the wire")
     marks = writer.let("marks", nodes.Convert("i64", nodes.Compare("gt", stored.size, index(0))))
-    write_count(writer, fields, text.count, writer.let("units", nodes.Binary("add", stored.size, marks)), where, "length")
+    counts.write_count(writer, fields, text.count, writer.let("units", nodes.Binary("add", stored.size, marks)), where, "length")
     writer.require(mul(add(stored.size, marks), 2), where, "no room for the message")
     begin = writer.position
     if writer.direction == "encode":
@@ -289,7 +294,7 @@ def _without_terminator(writer: Writer, total: nodes.Expr, where: Where) -> node
 
 
 def _in_range(writer: Writer, where: Where, value: nodes.Expr, scalar: nodes.Scalar) -> None:
-    limit = LIMITS[scalar]
+    limit = counts.LIMITS[scalar]
     low = -limit if scalar.startswith("i") else 0
     inside = nodes.Binary("and", nodes.Compare("ge", value, index(low)), nodes.Compare("lt", value, index(limit)))
     writer.expect(inside, "range", where, "does not fit on the wire")

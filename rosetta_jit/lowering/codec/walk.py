@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.kernel.nodes import Assign, Binary, Block, Compare, Const, Convert, Expect, Expr, For, If, Let, Local, Switch, While
 from rosetta_jit.kernel.rewrite import names_read
 from rosetta_jit.kernel.terms import add, index, mul
-from rosetta_jit.lowering.codec import leaves
+from rosetta_jit.lowering.codec import counts, leaves
 from rosetta_jit.lowering.codec.ending import refuse_other_length, refuse_tried
 from rosetta_jit.lowering.codec.fields import Elements, Fields, scalar_name
 from rosetta_jit.lowering.limits import MAX_SIZE
@@ -82,7 +82,7 @@ def begin_elements(writer: Writer, fields: Fields, repeat: wire.Repeat) -> tuple
     """The count and what stands before the first element; the elements, and how many there are."""
     where = fields.shown(repeat.path)
     if writer.direction == "decode":
-        total = leaves.read_count(writer, fields, repeat.path, repeat.count, "count", least=repeat.extra)
+        total = counts.read_count(writer, fields, repeat.path, repeat.count, "count", least=repeat.extra)
         count = writer.let("elements", add(total, -repeat.extra)) if repeat.extra else total
         walk(wire.Seq(repeat.head), fields, writer)
         _align_first(writer, repeat, count)
@@ -90,7 +90,7 @@ def begin_elements(writer: Writer, fields: Fields, repeat: wire.Repeat) -> tuple
         return fields.open(repeat.path, count), count
     fixed = repeat.count.value - repeat.extra if isinstance(repeat.count.value, int) else None
     stored = fields.stored(repeat.path, fixed)
-    leaves.write_count(writer, fields, repeat.count, stored.size, where, extra=repeat.extra)
+    counts.write_count(writer, fields, repeat.count, stored.size, where, extra=repeat.extra)
     walk(wire.Seq(repeat.head), fields, writer)
     _align_first(writer, repeat, stored.size)
     return fields.elements(repeat.path, stored), stored.size

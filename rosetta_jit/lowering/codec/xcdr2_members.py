@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.nodes import Binary, Block, Compare, Const, Convert, Expr, If, Local, Select, Store, Switch, While
 from rosetta_jit.kernel.terms import BEGIN, add, index
-from rosetta_jit.lowering.codec import leaves
+from rosetta_jit.lowering.codec import counts, leaves
 from rosetta_jit.lowering.codec.absent_members import elements_given, give
 from rosetta_jit.lowering.codec.fields import Fields
 from rosetta_jit.lowering.limits import MAX_ABSENT, MAX_ABSENT_EACH
@@ -194,5 +194,5 @@ def store_size(writer: Writer, begin: Expr, inside: Expr, where: Where, order: s
     """What was written since then, as the size that stands before it."""
     if writer.direction == "encode":
         size = writer.let("size", Binary("sub", writer.position, inside))
-        writer.expect(Compare("lt", size, index(leaves.LIMITS["u32"])), "range", where, "too long for the wire")
+        writer.expect(Compare("lt", size, index(counts.LIMITS["u32"])), "range", where, "too long for the wire")
         writer.emit(Store(begin, Convert("u32", size), ">" if order == ">" else "<"))

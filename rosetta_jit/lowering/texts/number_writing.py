@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rosetta_jit.kernel.decimals import LARGEST_SCALE
+from rosetta_jit.kernel.arithmetic import LARGEST_SCALE
 from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Digits, Expr, Get, If, Local, Place, Scale, Select, Unary, While
 from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.lowering.texts.views import View, between, has_room, kept, lane_of, put, room

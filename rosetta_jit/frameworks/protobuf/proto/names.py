@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from rosetta_jit.catalogue.suggestions import closest
+from rosetta_jit.catalogue import suggestions
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.limits import MAX_REPORTED
@@ -155,5 +155,5 @@ class _Resolver:
         """A declaration whose name ends in the same way, or almost so."""
         known = {full.rpartition(".")[2]: full for full, symbol in self.symbols.table.items() if symbol.kind in kinds}
         last = name.rpartition(".")[2]
-        close = last if last in known else closest(last, known)
+        close = last if last in known else suggestions.closest(last, known)
         return None if close is None else known[close]
