@@ -8,7 +8,7 @@ import pytest
 import z3
 
 from rosetta_jit.kernel.nodes import Binary, Const, Convert, Let, Load, Local, Return
-from rosetta_jit.kernel.proof import claims, integers, meanings, paths, prove
+from rosetta_jit.kernel.proof import claims, meanings, paths, prove, symbolic
 from rosetta_jit.kernel.proof.linear import minus, shifted
 from rosetta_jit.kernel.proof.opinion import opinions
 from rosetta_jit.kernel.proof.record import Record
@@ -133,14 +133,14 @@ def doubted(kernel):
 
 def test_what_the_proof_infers_of_operations_is_judged(monkeypatch):
     """Were the rest of a division thought to be less than it can be, z3 would not agree."""
-    right = integers.remainder
+    right = symbolic.integers.remainder
 
     def wrong(facts, left, divisor):
         result = right(facts, left, divisor)
         facts.derive(minus(shifted(divisor, -2), result))
         return result
 
-    monkeypatch.setattr(integers, "remainder", wrong)
+    monkeypatch.setattr(symbolic.integers, "remainder", wrong)
     assert claims.OPERATION in doubted(REFUSED["remainder: one row too few"][1])
 
 

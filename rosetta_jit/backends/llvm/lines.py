@@ -41,7 +41,7 @@ class Line(ir.Value):
 
 
 class Branch(Line):
-    """A branch, which may be told how likely its edges are."""
+    """A branch, which may be told how likely its edges are, and of the loop that it ends."""
 
     def __init__(self, text: str, lines: Lines) -> None:
         super().__init__(NOTHING, "", text)
@@ -50,6 +50,10 @@ class Branch(Line):
     def set_weights(self, weights: Sequence[int]) -> None:
         """How often each edge is taken, in relation to the other."""
         self.text += f", !prof {self.lines.weights(tuple(weights))}"
+
+    def set_metadata(self, name: str, node: ir.Value) -> None:
+        """What else is known of it."""
+        self.text += f", !{name} {node.get_reference()}"
 
 
 class Lines(ir.IRBuilder):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from llvmlite import ir
 
+from rosetta_jit.backends.llvm import widths
 from rosetta_jit.backends.llvm.alike import NOTHING, Series
 from rosetta_jit.backends.llvm.expr import (
     copy_memory,
@@ -139,8 +140,8 @@ def _keep(frame: Frame, registers: tuple[tuple[int, nodes.Expr], ...]) -> None:
 
 def _nested(frame: Frame, statement: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
     match statement:
-        case nodes.For(variable, count, body):
-            _for(frame, variable, expression(frame, count), body)
+        case nodes.For():
+            _for(frame, statement)
         case nodes.While():
             _while(frame, statement)
         case nodes.If():
@@ -270,20 +271,22 @@ def _assign(frame: Frame, name: str, value: nodes.Expr) -> None:
     frame.builder.store(expression(frame, value), variable.slot)
 
 
-def _for(frame: Frame, variable: str, count: ir.Value, body: nodes.Block) -> None:
-    builder = frame.builder
+def _for(frame: Frame, loop: nodes.For) -> None:
+    builder, count = frame.builder, expression(frame, loop.count)
     before, head, inside, behind = builder.block, frame.block("for"), frame.block("each"), frame.block("after")
     builder.branch(head)
     builder.position_at_end(head)
-    index = builder.phi(I64, name=variable)
+    index = builder.phi(I64, name=loop.variable)
     index.add_incoming(constant(0), before)
     builder.cbranch(builder.icmp_signed("<", index, count), inside, behind)
     builder.position_at_end(inside)
-    frame.locals[variable] = index
-    block(frame, body)
+    frame.locals[loop.variable] = index
+    block(frame, loop.body)
     if not builder.block.is_terminated:
         index.add_incoming(builder.add(index, constant(1), flags=("nsw",)), builder.block)
-        builder.branch(head)
+        latch = builder.branch(head)
+        if widths.joins_streams(loop, frame.strides) and widths.are_known():
+            widths.widen(builder.module, latch)
     builder.position_at_end(behind)
 
 

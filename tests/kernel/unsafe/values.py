@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.decimals import LARGEST_SCALE
+from rosetta_jit.kernel.arithmetic import LARGEST_SCALE
 from rosetta_jit.kernel.nodes import (
     Assign,
     Binary,
