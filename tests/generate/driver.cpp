@@ -39,6 +39,13 @@ static void answer(UNIT::codec &codec, UNIT::holder &holder, const unsigned char
         std::printf("the two ways to encode differ\n");
         return;
     }
+    for (const std::size_t room : {std::size_t{0}, std::size_t{1}, std::size_t{5}, *written / 2, *written > 0 ? *written - 1 : 0}) {
+        const std::unique_ptr<unsigned char[]> few(new unsigned char[room]);
+        if (room < *written && codec.try_encode(holder, few.get(), room)) {
+            std::printf("written without room\n");
+            return;
+        }
+    }
     std::printf("ok ");
     for (std::size_t at = 0; at < *written; at++) {
         std::printf("%02x", copy[at]);

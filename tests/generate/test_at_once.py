@@ -33,6 +33,7 @@ OTHERS = {
     "lists before arrays": {"names": ["one", "another"]},
 }
 """What the source file reads, or texts that have nothing."""
+WRITTEN = {*TYPES}
 IN_HEADER = {"numbers", "text", "text behind numbers", "arrays", "lists before arrays"}
 
 
@@ -53,6 +54,7 @@ def test_messages_that_are_harmed_get_the_same_answers(type_, encoding, tmp_path
     options = {"encoding": encoding, "schema": schema(type_)}
     texts = generated(type_request("decode", "rj/Message", options), "cpp", BOTH, "unit")
     assert ("static bool is_read(" in texts["unit.hpp"]) == (type_ in IN_HEADER)
+    assert ("put_at_once(" in texts["unit.hpp"]) == (type_ in WRITTEN)
     values = TYPES[type_][1]
     other = values | OTHERS.get(type_, {})
     encoders_ = encoders(type_, encoding)

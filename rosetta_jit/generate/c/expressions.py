@@ -7,11 +7,12 @@ shifts of negative numbers, goes through the other signedness or through a funct
 from __future__ import annotations
 
 import math
+from string import Template
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from rosetta_jit.generate.c.words import C_TYPES
+from rosetta_jit.generate.c.words import C_ROWS, C_TYPES
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS, SIGNED, to_bytes
@@ -272,8 +273,12 @@ def written(scope: Scope, place: nodes.Place, value: nodes.Expr) -> str:
 
 
 def _field(scope: Scope, place: nodes.Place, type_: nodes.Scalar) -> str | None:
+    found = scope.lanes.field(place.lane, bare(expression(scope, place.row)), place.offset, type_)
+    if found is not None and place.lane == 0 and (shown := scope.lanes.shown.get(place.offset)) is not None:
+        scope.takes("given_object")
+        return Template(shown).substitute(type=C_ROWS[type_])
     scope.rows(place.lane)
-    return scope.lanes.field(place.lane, bare(expression(scope, place.row)), place.offset, type_)
+    return found
 
 
 def location(scope: Scope, address: nodes.Address) -> tuple[str, str]:

@@ -8,11 +8,11 @@ from typing import get_args
 
 from rosetta_jit.errors import Kind
 from rosetta_jit.generate.c.accessors import accessors, memory
-from rosetta_jit.generate.c.lanes import C_ROWS, Lanes, row_type
+from rosetta_jit.generate.c.lanes import Lanes, row_type
 from rosetta_jit.generate.c.rows import Member, SpanType, Struct
 from rosetta_jit.generate.c.state import state_struct
 from rosetta_jit.generate.c.texts import comment
-from rosetta_jit.generate.c.words import C_TYPES
+from rosetta_jit.generate.c.words import C_ROWS, C_TYPES
 from rosetta_jit.generate.unit import Purpose, Unit, kind_of, wire_of
 
 STATUSES = ("ok", "full", *get_args(Kind))

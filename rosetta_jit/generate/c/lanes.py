@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from typing import Literal
 
 from rosetta_jit.generate.c.rows import Element, SpanType, Struct, path_to
-from rosetta_jit.generate.c.words import C_TYPES, RESERVED
+from rosetta_jit.generate.c.words import C_ROWS, RESERVED
 from rosetta_jit.startup.dataclass import dataclass, field
 
 OWN_WORDS = frozenset(
@@ -41,9 +41,6 @@ OWN_WORDS = frozenset(
 
 Dialect = Literal["c", "c++"]
 """What compiles the functions."""
-
-C_ROWS = {**C_TYPES, "bool": "uint8_t"}
-"""Types of scalars in rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +103,7 @@ class Lanes:
     straight: Mapping[tuple[int, int], Straight] = field(default_factory=dict[tuple[int, int], Straight])
     opened: frozenset[int] = frozenset()
     given: Mapping[int, Given] = field(default_factory=dict[int, "Given"])
+    shown: Mapping[int, str] = field(default_factory=dict[int, str])
     shared: str = ""
 
     def stride(self, lane: int) -> int:

@@ -13,6 +13,9 @@ C_TYPES: dict[str, str] = {
 }
 """By the kernel's names."""
 
+C_ROWS = {**C_TYPES, "bool": "uint8_t"}
+"""Types of scalars in rows."""
+
 _LANGUAGE = """
 alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class compl concept const consteval
 constexpr constinit const_cast continue co_await co_return co_yield decltype default delete do double dynamic_cast else enum explicit export

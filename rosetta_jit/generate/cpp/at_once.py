@@ -7,7 +7,6 @@ nothing count as something wrong.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Namespace
@@ -16,15 +15,14 @@ from rosetta_jit.generate.c.positions import after_binding, after_require
 from rosetta_jit.generate.c.scope import Scope
 from rosetta_jit.generate.c.statements import Function, lacks, print_block
 from rosetta_jit.generate.c.support import function_names
+from rosetta_jit.generate.cpp.checks import fewer
 from rosetta_jit.generate.cpp.empty_lists import lanes_of_empty_lists, of_empty_lists
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.reachable import read_names
 from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.passes.fold import TRUE, folded
-from rosetta_jit.kernel.rewrite import substituted, with_expressions
-from rosetta_jit.kernel.terms import END, index
+from rosetta_jit.kernel.passes.fold import folded
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import replace
 
@@ -35,6 +33,8 @@ SHARED = "rosetta_jit::detail::"
 """Where the header that all units share has what such decoders call."""
 MOST = 64
 """How many statements are worth to be printed wherever a message is read."""
+FEW_CHECKS = 8
+"""Behind more of them a compiler takes code for such as seldom runs, and makes it short, not quick, unless it is said that none fails."""
 PARAMETERS = frozenset({"given_object", "bytes", "end"})
 """What such a decoder is given."""
 
@@ -45,23 +45,22 @@ def at_once(kernel: Kernel, lanes: Lanes) -> str:
     if found is None or two_roundings((kernel,)):
         return ""
     checks, effects = found
+    checks = fewer(checks, is_sized=not any(_has_length(lanes, each) for each in effects))
     words = lanes.words() | function_names() | {"data"}
     scope = Scope(Namespace(words), replace(lanes_of_empty_lists(lanes), shared=SHARED), set(), set(), set())
     function = Function(scope, kernel.sites, {}, read=read_names((*checks, *effects)))
     function.writer.depth = 2
-    if not any(_has_length(lanes, each) for each in effects) and (size := _size(checks)) is not None:
-        _give_up(function, expression(scope, nodes.Compare("ne", END, size)))
-        checks = tuple(_of_size(checks, size))
+    many = are_many(checks)
     for stmt in checks:
-        _check(function, stmt)
+        check(function, stmt, "return false;", many=many)
     _print_effects(function, effects)
-    is_free = scope.parameters <= PARAMETERS and all(map(_is_shared, scope.support)) and not scope.tables
+    is_free = scope.parameters <= PARAMETERS and all(map(is_shared, scope.support)) and not scope.tables
     return function.writer.text() if is_free and "given_object" in scope.parameters else ""
 
 
-def _is_shared(function: str) -> bool:
+def is_shared(function: str) -> bool:
     """Whether the header that all units share has a function of the support."""
-    return function.startswith("load_") or function in ("lacks", "lacks_behind", "copy_bytes")
+    return function.startswith(("load_", "store_")) or function in ("lacks", "lacks_behind", "copy_bytes")
 
 
 def _straightened(body: nodes.Block) -> tuple[nodes.Block, nodes.Block] | None:
@@ -91,29 +90,6 @@ def _has_length(lanes: Lanes, stmt: nodes.Stmt) -> bool:
     return isinstance(stmt, nodes.Advance) or (straight is not None and straight.is_span)
 
 
-def _size(checks: nodes.Block) -> nodes.Const | None:
-    """The size of messages that have numbers alone and nothing behind these: a compiler that knows it leaves out most checks."""
-    ends = [(each.at, each.size) for each in checks if isinstance(each, nodes.Require)]
-    sizes = [at.value + size.value for at, size in ends if isinstance(at, nodes.Const) and isinstance(size, nodes.Const)]
-    return nodes.Const("i64", max(sizes)) if all(isinstance(at, nodes.Const) for at, _ in ends) else None
-
-
-def _of_size(checks: nodes.Block, size: nodes.Const) -> Iterator[nodes.Stmt]:
-    """What is left to be checked of a message of a size."""
-    for stmt in checks:
-        match stmt:
-            case nodes.Require(_, nodes.Const(), _):
-                pass
-            case nodes.Require(nodes.Const(_, at), more, failure):
-                yield nodes.Expect(nodes.Compare("le", more, index(int(size.value - at))), failure)
-            case nodes.Expect(condition, failure):
-                found = folded(substituted(condition, {END.name: size}))
-                if found != TRUE:
-                    yield nodes.Expect(found, failure)
-            case _:
-                yield with_expressions(stmt, lambda each: substituted(each, {END.name: size}))
-
-
 def _only_checks(block: nodes.Block) -> bool:
     """Whether a message is the same without a block, if nothing is wrong with it."""
     return all(isinstance(stmt, nodes.Require | nodes.Expect | nodes.Let | nodes.If | nodes.For) for stmt, _ in statements(block))
@@ -128,21 +104,40 @@ def _starts_with_bytes(checks: list[nodes.Stmt]) -> bool:
             return False
 
 
-def _check(function: Function, stmt: nodes.Stmt) -> None:
-    """A check, or a local that one needs. Of texts those that are ASCII are read at once."""
+def are_many(block: nodes.Block) -> bool:
+    """Whether a block has many checks."""
+    return sum(isinstance(stmt, nodes.Require | nodes.Expect) for stmt in block) > FEW_CHECKS
+
+
+def check(function: Function, stmt: nodes.Stmt, otherwise: str, *, many: bool) -> None:
+    """A check, which may be one of many, or a local that one needs; ``otherwise`` is what is done where it fails.
+
+    Of texts those that are ASCII are read at once.
+    """
+    condition = _failing(function, stmt)
+    if condition is None:
+        return
+    with function.block(f"if (ROSETTA_JIT_UNLIKELY({bare(condition)}))" if many else f"if ({bare(condition)})"):
+        function.line(otherwise)
+
+
+def _failing(function: Function, stmt: nodes.Stmt) -> str | None:
+    """The condition under which a check fails; None of a local, which is printed."""
     scope = function.scope
     match stmt:
         case nodes.Require(at, size, _):
-            _give_up(function, lacks(function, at, size))
+            condition = lacks(function, at, size)
             function.known = after_require(function.known, at, size)
+            return condition
         case nodes.Expect(nodes.IsText(nodes.Wire(at), size), _):
             where = ", ".join((scope.takes("bytes"), bare(expression(scope, at)), bare(expression(scope, size))))
-            _give_up(function, f"!{SHARED}is_ascii({where})")
+            return f"!{SHARED}is_ascii({where})"
         case nodes.Expect(condition, _):
-            _give_up(function, expression(scope, folded(nodes.Unary("not", condition))))
+            return expression(scope, folded(nodes.Unary("not", condition)))
         case nodes.Let(name, value):
             print_block(function, (stmt,))
             function.known = after_binding(function.known, name, value)
+            return None
         case _:
             raise AssertionError(stmt)
 
@@ -156,8 +151,3 @@ def _print_effects(function: Function, effects: nodes.Block) -> None:
         f"        {lanes.type(lane)} *{'' if lane in scope.moved else 'const '}{lanes.rows(lane)} = {lanes.member(lane)};"
         for lane in sorted(scope.touched)
     ]
-
-
-def _give_up(function: Function, condition: str) -> None:
-    with function.block(f"if ({bare(condition)})"):
-        function.line("return false;")

@@ -7,11 +7,11 @@
 #if __cplusplus >= 202002L
     void decode(std::span<const std::byte> bytes, holder &target) { decode(bytes.data(), bytes.size(), target); }
 #endif
-/* == at_once == */
+/* == read_at_once == */
     /* Reads a message. After a failure the holder is in a valid state, and what it has is not said. */
     rosetta_jit::result<rosetta_jit::done> try_decode(const void *bytes, std::size_t size, holder &target)
     {
-        if (is_read(static_cast<const unsigned char *>(bytes), static_cast<std::int64_t>(size), target)) {
+        if (ROSETTA_JIT_LIKELY(is_read(static_cast<const unsigned char *>(bytes), static_cast<std::int64_t>(size), target))) {
             return rosetta_jit::done{};
         }
         return decode_any(bytes, size, target);
@@ -22,7 +22,7 @@
 #if __cplusplus >= 202002L
     void decode(std::span<const std::byte> bytes, holder &target) { decode(bytes.data(), bytes.size(), target); }
 #endif
-/* == at_once_private == */
+/* == read_at_once_private == */
     /* Reads a message as nearly all are, where a compiler sees the object, too; false where it is another one, or something is wrong with it. */
     static bool is_read(const unsigned char *__restrict bytes, std::int64_t end, holder &given_object)
     {
@@ -32,6 +32,27 @@ $statements
 
     /* Reads any message, and says what is wrong with it. */
     rosetta_jit::result<rosetta_jit::done> decode_any(const void *bytes, std::size_t size, holder &target);
+
+/* == write == */
+    rosetta_jit::result<std::size_t> try_encode(const holder &source, void *bytes, std::size_t capacity);
+/* == put_at_once == */
+    rosetta_jit::result<std::size_t> try_encode(const holder &source, void *bytes, std::size_t capacity)
+    {
+        const std::int64_t size = put_at_once(source, static_cast<unsigned char *>(bytes), static_cast<std::int64_t>(capacity));
+        if (ROSETTA_JIT_LIKELY(size >= 0)) {
+            return static_cast<std::size_t>(size);
+        }
+        return encode_any(source, bytes, capacity);
+    }
+/* == put_at_once_private == */
+    /* Writes a message where a compiler sees the object, too, and says how many bytes it took; a negative number where anything is wrong. */
+    static std::int64_t put_at_once(const holder &given_object, unsigned char *__restrict bytes, std::int64_t end)
+    {
+$statements
+    }
+
+    /* Writes any message, and says what is wrong with it. */
+    rosetta_jit::result<std::size_t> encode_any(const holder &source, void *bytes, std::size_t capacity);
 
 /* == wire == */
     /* Reads a message of `$wire`, and sets what its messages tell: the rest of the target stays. One that is refused changes nothing. */
@@ -50,7 +71,7 @@ $statements
     rosetta_jit::result<std::size_t> try_size(const holder &source);
 
     /* Writes the message to `bytes`, which has `capacity` of them, and says how many it took. */
-    rosetta_jit::result<std::size_t> try_encode(const holder &source, void *bytes, std::size_t capacity);
+$write
 
     /* Makes a string the message. */
     rosetta_jit::result<rosetta_jit::done> try_encode(const holder &source, std::string &bytes);

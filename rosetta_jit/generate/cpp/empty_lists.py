@@ -14,7 +14,7 @@ from rosetta_jit.kernel.nodes import Block, Expr, Stmt
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
 from rosetta_jit.kernel.terms import index
-from rosetta_jit.kernel.walk import expressions_of, subexpressions
+from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def of_empty_lists(body: Block, lanes: Lanes) -> Block:
     others = [stmt for stmt in body if isinstance(stmt, nodes.SetField) and stmt.place.offset not in of_lists]
     values, found, is_soon = dict[str, Expr](), list[Stmt](), True
     for each in body:
-        stmt = _with_values(each, values)
+        stmt = with_values(each, values)
         match stmt:
             case nodes.Let(name) if name in counts and is_soon:
                 values[name] = NONE
@@ -57,17 +57,37 @@ def of_empty_lists(body: Block, lanes: Lanes) -> Block:
     return tuple(found) if lists and others else body
 
 
+def of_no_elements(body: Block) -> Block:
+    """The statements of an encoder that are left where counts of lists are 0: no loop, and so no local that changes."""
+    values, found = dict[str, Expr](), list[Stmt]()
+    for each in body:
+        if isinstance(each, nodes.While) and with_values(nodes.Expect(each.condition, NOT_EMPTY), values) == nodes.Expect(FALSE, NOT_EMPTY):
+            continue
+        changed = {stmt.name for stmt, _ in statements((each,)) if isinstance(stmt, nodes.Assign)}
+        values = {name: value for name, value in values.items() if name not in changed}
+        match stmt := with_values(each, values):
+            case nodes.Let(name, nodes.Const() as value) | nodes.Var(name, nodes.Const() as value):
+                values[name] = value
+            case nodes.For(_, count) if count == NONE:
+                continue
+            case _:
+                pass
+        found.append(stmt)
+    changed = {stmt.name for stmt, _ in statements(tuple(found)) if isinstance(stmt, nodes.Assign)}
+    return tuple(nodes.Let(each.name, each.value) if isinstance(each, nodes.Var) and each.name not in changed else each for each in found)
+
+
 def lanes_of_empty_lists(lanes: Lanes) -> Lanes:
     """How such statements reach the object: a list has no lane, but is emptied."""
     straight = {at: replace(each, statement=each.empty) if each.empty else each for at, each in lanes.straight.items()}
     return replace(lanes, straight=straight, opened=frozenset())
 
 
-def _with_values(stmt: Stmt, values: Mapping[str, Expr]) -> Stmt:
+def with_values(stmt: Stmt, values: Mapping[str, Expr]) -> Stmt:
     """A statement with what is known in place of locals."""
 
     def replaced(expr: Expr) -> Expr:
         return values.get(expr.name, expr) if isinstance(expr, nodes.Local) else folded(with_operands(expr, replaced))
 
-    inner = with_blocks(stmt, lambda block: tuple(_with_values(each, values) for each in block))
+    inner = with_blocks(stmt, lambda block: tuple(with_values(each, values) for each in block))
     return with_expressions(inner, replaced)

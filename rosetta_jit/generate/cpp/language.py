@@ -12,12 +12,14 @@ from rosetta_jit.generate.c.language import parts_of
 from rosetta_jit.generate.cleared import without_clearing
 from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place, uncounted
 from rosetta_jit.generate.cpp.at_once import at_once
+from rosetta_jit.generate.cpp.header import AtOnce, header
 from rosetta_jit.generate.cpp.lists_in_place import opened_lists
 from rosetta_jit.generate.cpp.manners import MANNERS, Manners
 from rosetta_jit.generate.cpp.opened import in_place
+from rosetta_jit.generate.cpp.put_at_once import put_at_once
 from rosetta_jit.generate.cpp.reading import addressed_in, viewed_in
 from rosetta_jit.generate.cpp.set_in_place import straight_numbers
-from rosetta_jit.generate.cpp.source import header, source
+from rosetta_jit.generate.cpp.source import source
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of
@@ -35,7 +37,10 @@ def files(unit: Unit) -> dict[str, str]:
     if "borrow" in unit.kernels:
         unit = replace(unit, kernels={**unit.kernels, "borrow": without_clearing(unit.kernels["borrow"], unit.layout)})
     parts = parts_of(unit, lambda kernel, lanes, role: _printed(unit, manners, kernel, lanes, role), dialect="c++")
-    there = at_once(*_decoder(unit, manners, unit.kernels["borrow"], parts.lanes)) if "borrow" in unit.kernels else ""
+    there = AtOnce(
+        at_once(*_decoder(unit, manners, unit.kernels["borrow"], parts.lanes)) if "borrow" in unit.kernels else "",
+        put_at_once(unit, manners, parts.lanes) if "encode" in unit.kernels else "",
+    )
     return {
         f"{unit.name}.hpp": header(unit, manners, there),
         f"{unit.name}.cpp": source(unit, parts, manners, there),

@@ -116,7 +116,7 @@ rosetta_jit::result<std::size_t> codec::try_size(const ::$name::holder &source)
     return measured(&given, $memory->message, *$memory);
 }
 
-rosetta_jit::result<std::size_t> codec::try_encode(const ::$name::holder &source, void *bytes, std::size_t capacity)
+rosetta_jit::result<std::size_t> codec::$function(const ::$name::holder &source, void *bytes, std::size_t capacity)
 {
     ${name}_source given(*$memory, *this);
 $local

@@ -1,4 +1,4 @@
-"""Header and source of a unit in C++: a class `codec` around the kernels, which are printed as in C."""
+"""The source file of a unit in C++: what the class `codec` does, around the kernels, which are printed as in C."""
 
 from __future__ import annotations
 
@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 from rosetta_jit.generate.c.header import made, struct_text
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.source import NO_ROOM, by_order, part_tables, run, scratch_of, without_unused
-from rosetta_jit.generate.c.state import MEMBERS
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
-from rosetta_jit.generate.c.words import C_TYPES, RESERVED
+from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place
-from rosetta_jit.generate.cpp.classes import classes
+from rosetta_jit.generate.cpp.header import AtOnce, filled_in
 from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
 from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
 from rosetta_jit.generate.cpp.read_in_place import is_local
@@ -26,7 +25,7 @@ from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.generate.shares import WHOLE, changed_lanes
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of, wires_of
-from rosetta_jit.model.types import Ref, Struct
+from rosetta_jit.model.types import Ref
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.language import Parts
@@ -37,10 +36,6 @@ FILLED = "filled"
 """The memory that a decoder fills: `holder` is the class there, which compilers may warn of."""
 HOLDER = "std::declval<holder &>()"
 """An object, for types."""
-RESET = (
-    "    /* Forgets all messages: state is what the mapping says that it is at first. */",
-    "    void reset() { kept = state(); }",
-)
 BEGIN = f"""    {FILLED}->now = now;
     {FILLED}->number = number;
     {FILLED}->most = rosetta_jit::detail::most_rows(size);"""
@@ -55,105 +50,8 @@ SAID = """    if (where.scratch >= 0) { /* the mapping has put this text togethe
 """
 
 
-def header(unit: Unit, manners: Manners, at_once: str) -> str:
-    """The text of the header; ``at_once`` are the statements that read a message there, if it can be."""
-    root = unit.schema.types[unit.type]
-    assert isinstance(root, Struct)
-    own = classes(unit) if manners.type is None else ""
-    named = class_of(unit, manners)
-    includes = ["<cstddef>", "<cstdint>", "<memory>"]
-    if manners.type is None:
-        includes += ["<array>", "<map>", "<optional>", "<string>", "<variant>", "<vector>"]
-    lines = [f"#include {each}" for each in sorted(includes)] + ["", "#include <rosetta_jit/rosetta_jit.hpp>"]
-    if manners.header is not None:
-        lines += [f"#include <{unit.include or manners.header(root)}>"]
-    around = [_section(FOLDER / "around" / f"{each}.hpp") for each in manners.around]
-    words = {"name": unit.name, "holder": named, "type": literal(root.name), "wire": literal(root.name)}
-    lines += [line for before, _ in around for line in before.splitlines()]
-    return _filled(
-        "header.hpp",
-        made=made(unit),
-        name=unit.name,
-        guard=f"{unit.name.upper()}_HPP",
-        includes="\n".join(lines),
-        classes=f"{own}\n/* What is filled and read. */\nusing holder = {named};\n",
-        declarations="\n".join(_declared(unit, at_once)),
-        hidden=Template(_declarations()["at_once_private"]).substitute(statements=at_once.rstrip()) if at_once else "",
-        state=_state(unit),
-        written="    std::unique_ptr<memory> written_;\n" if writes_apart(unit) else "",
-        functions="".join(_function(unit, each.name, each.parameters, each.result) for each in unit.functions),
-        around="\n".join(Template(text).substitute(words) for _, text in around),
-    )
-
-
-def _state(unit: Unit) -> str:
-    """What a codec keeps from one message to the next, where the mapping declares state."""
-    if not unit.state:
-        return ""
-    names, words = (", ".join(map(str, some)) for some in zip(*((name, _word(word)) for name, word in unit.state), strict=True))
-    members = (f"        std::int64_t {member}[{len(unit.state)}] = {{{words}}};" for member in dict.fromkeys(MEMBERS.values()))
-    head = f"    /* What the mapping keeps from one message to the next, for each direction: {names}; floats by their bits. */"
-    reset = (RESET[0], "    void reset();") if wires_of(unit) else RESET
-    return "\n".join([head, "    struct state {", *members, "    };", "    state kept;", *reset])
-
-
-def _word(word: int) -> str:
-    return "INT64_MIN" if word == -(2**63) else f"INT64_C({word})"
-
-
-def class_of(unit: Unit, manners: Manners) -> str:
-    """The class of the holder, as C++ names it."""
-    root = unit.schema.types[unit.type]
-    assert isinstance(root, Struct)
-    if manners.type is None:
-        return f"{unit.name}::{root_class(unit)}"
-    return manners.type(root)
-
-
-def root_class(unit: Unit) -> str:
-    """The name of our own class for the message."""
-    from rosetta_jit.generate.cpp.classes import names_of
-
-    return names_of(unit)[unit.type]
-
-
-def _function(unit: Unit, name: str, parameters: tuple[str, ...], result: str) -> str:
-    numbers = "".join(f"{C_TYPES[each]} number_{number}, " for number, each in enumerate(parameters, 1))
-    return (
-        "/* You write this function, which the mapping calls: false refuses the message. */\n"
-        f"bool {unit.name}_{name}({numbers}{C_TYPES[result]} *result);\n"
-    )
-
-
-def _declarations() -> dict[str, str]:
-    text = (FOLDER / "declarations.hpp").read_text("utf-8")
-    _, *parts = re.split(r"^/\* == (\w+) == \*/\n", text, flags=re.MULTILINE)
-    return dict(zip(parts[::2], parts[1::2], strict=True))
-
-
-def _declared(unit: Unit, at_once: str) -> list[str]:
-    """The codec's functions."""
-    known = _declarations()
-    found = [known["at_once" if at_once else "decode"]] if "borrow" in unit.kernels else []
-    for wire in wires_of(unit):
-        every, last = unit.arrivals[wire]
-        found.append(Template(known["wire"]).substitute(wire=wire, every=every, last=last))
-    return [*found, *([known["encode"]] if "encode" in unit.kernels else [])]
-
-
-def _section(file: Path) -> tuple[str, str]:
-    """The includes of a file, and the rest."""
-    text = file.read_text("utf-8")
-    includes = [line for line in text.splitlines() if line.startswith("#include")]
-    return "\n".join(includes), "\n".join(line for line in text.splitlines() if line not in includes).strip() + "\n"
-
-
-def _filled(file: str, **values: str) -> str:
-    return re.sub(r"\n{3,}", "\n\n", Template((FOLDER / file).read_text("utf-8")).substitute(values))
-
-
-def source(unit: Unit, parts: Parts, manners: Manners, at_once: str) -> str:
-    """The text of the source file; ``at_once`` as for `header`."""
+def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce) -> str:
+    """The text of the source file; ``there`` as for `header`."""
     printed, lanes = parts.printed, parts.lanes
     walks = {direction: Walk(unit, lanes, manners, direction) for direction in ("decode", "encode")}
     opened = opened_lists(walks["decode"], "target") if "borrow" in printed else []
@@ -170,7 +68,7 @@ def source(unit: Unit, parts: Parts, manners: Manners, at_once: str) -> str:
     called = {name for each in printed.values() for name in each.support} | {"failure"}
     said = any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites)
     between = _walks(unit, parts, walks, directs)
-    return _filled(
+    return filled_in(
         "source.cpp",
         made=made(unit),
         roundings=two_roundings(unit.kernels.values()),
@@ -187,7 +85,7 @@ def source(unit: Unit, parts: Parts, manners: Manners, at_once: str) -> str:
         lanes=_lane_names(unit, parts),
         said=SAID if said else "",
         written=", written_(new memory)" if writes_apart(unit) else "",
-        functions="\n".join(_methods(unit, parts, directs, given, opened, walks["encode"], "decode_any" if at_once else "try_decode")),
+        functions="\n".join(_methods(unit, parts, directs, given, opened, walks["encode"], there)),
     )
 
 
@@ -319,7 +217,7 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
 
 
 def _methods(
-    unit: Unit, parts: Parts, directs: dict[str, list[Direct]], given: frozenset[int], opened: list[Opened], walk: Walk, function: str
+    unit: Unit, parts: Parts, directs: dict[str, list[Direct]], given: frozenset[int], opened: list[Opened], walk: Walk, there: AtOnce
 ) -> list[str]:
     template = (FOLDER / "methods.cpp").read_text("utf-8")
     _, *sections = re.split(r"^/\* == (\w+) == \*/\n", template, flags=re.MULTILINE)
@@ -339,7 +237,7 @@ def _methods(
         texts.append(
             Template(known["decode"]).substitute(
                 into,
-                function=function,
+                function="decode_any" if there.reads else "try_decode",
                 begin=BEGIN if any("holder" in each.parameters for each in (first, *others)) else "",
                 bind="\n".join(f"    {FILLED}->{lanes.rows(each.lane)}.fill({each.spot.at});" for each in directs["decode"]),
                 reset="\n".join(reset),
@@ -351,6 +249,7 @@ def _methods(
         )
     texts += [_of_wire(unit, parts, known, role) for role in printed if wire_of(role)]
     texts += [known["reset"]] if wires_of(unit) else []
+    words["function"] = "encode_any" if there.puts else "try_encode"
     texts += [encoder(unit, parts, known, words, directs["encode"], walk)] if "encode" in printed else []
     return [re.sub(r"\n+(\n    |\n})", r"\1", text) for text in texts]
 

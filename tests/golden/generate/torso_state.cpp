@@ -527,7 +527,7 @@ rosetta_jit::result<std::size_t> codec::try_size(const ::torso_state::holder &so
     return measured(&given, memory_->message, *memory_);
 }
 
-rosetta_jit::result<std::size_t> codec::try_encode(const ::torso_state::holder &source, void *bytes, std::size_t capacity)
+rosetta_jit::result<std::size_t> codec::encode_any(const ::torso_state::holder &source, void *bytes, std::size_t capacity)
 {
     torso_state_source given(*memory_, *this);
     torso_state_JointAngles &row = memory_->message;

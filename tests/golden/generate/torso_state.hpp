@@ -45,7 +45,14 @@ public:
     rosetta_jit::result<std::size_t> try_size(const holder &source);
 
     /* Writes the message to `bytes`, which has `capacity` of them, and says how many it took. */
-    rosetta_jit::result<std::size_t> try_encode(const holder &source, void *bytes, std::size_t capacity);
+    rosetta_jit::result<std::size_t> try_encode(const holder &source, void *bytes, std::size_t capacity)
+    {
+        const std::int64_t size = put_at_once(source, static_cast<unsigned char *>(bytes), static_cast<std::int64_t>(capacity));
+        if (ROSETTA_JIT_LIKELY(size >= 0)) {
+            return static_cast<std::size_t>(size);
+        }
+        return encode_any(source, bytes, capacity);
+    }
 
     /* Makes a string the message. */
     rosetta_jit::result<rosetta_jit::done> try_encode(const holder &source, std::string &bytes);
@@ -66,6 +73,44 @@ public:
     std::int64_t number = 0;
 
 private:
+    /* Writes a message where a compiler sees the object, too, and says how many bytes it took; a negative number where anything is wrong. */
+    static std::int64_t put_at_once(const holder &given_object, unsigned char *__restrict bytes, std::int64_t end)
+    {
+        const float *const angles = rosetta_jit::detail::shown_rows<float>(given_object.angles());
+        const int64_t start = 0;
+        const int64_t count = rosetta_jit::detail::count_of(given_object.angles());
+        if (end < 32) {
+            return -1;
+        }
+        rosetta_jit::detail::store_i32_le(bytes + 0, 266);
+        rosetta_jit::detail::store_i32_le(bytes + 4, 3);
+        if (0 >= count) {
+            return -1;
+        }
+        const float element = angles[start];
+        const double yaw = static_cast<double>(element) * 57.29577951308232;
+        rosetta_jit::detail::store_f64_le(bytes + 8, yaw);
+        if (1 >= count) {
+            return -1;
+        }
+        const float element_2 = angles[start + 1];
+        const double roll = static_cast<double>(element_2) * 57.29577951308232;
+        rosetta_jit::detail::store_f64_le(bytes + 16, roll);
+        if (2 >= count) {
+            return -1;
+        }
+        const float element_3 = angles[start + 2];
+        const double pitch = static_cast<double>(element_3) * 57.29577951308232;
+        rosetta_jit::detail::store_f64_le(bytes + 24, pitch);
+        if (count != 3) {
+            return -1;
+        }
+        return 32;
+    }
+
+    /* Writes any message, and says what is wrong with it. */
+    rosetta_jit::result<std::size_t> encode_any(const holder &source, void *bytes, std::size_t capacity);
+
     struct memory;
     std::unique_ptr<memory> memory_;
 };

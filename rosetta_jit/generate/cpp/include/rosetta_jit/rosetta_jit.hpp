@@ -26,15 +26,22 @@
 #endif
 
 /* INLINE: code that is as quick as what it stands for only where a compiler sees both. COLD: code that seldom runs, which must not slow down what is around it.
+   APART: code that is called, so that what calls it is short. LIKELY, UNLIKELY: a condition that holds nearly always, or hardly ever.
    MAY_ALIAS: a struct through which objects of another class are written that lie in memory as it does; where there is no such word, it is not done. */
 #if defined(__GNUC__)
 #define ROSETTA_JIT_MAY_ALIAS __attribute__((may_alias))
 #define ROSETTA_JIT_INLINE __attribute__((always_inline)) inline
 #define ROSETTA_JIT_COLD __attribute__((noinline, cold))
+#define ROSETTA_JIT_APART __attribute__((noinline))
+#define ROSETTA_JIT_LIKELY(condition) __builtin_expect(condition, true)
+#define ROSETTA_JIT_UNLIKELY(condition) __builtin_expect(condition, false)
 #else
 #define ROSETTA_JIT_MAY_ALIAS
 #define ROSETTA_JIT_INLINE inline
 #define ROSETTA_JIT_COLD
+#define ROSETTA_JIT_APART
+#define ROSETTA_JIT_LIKELY(condition) (condition)
+#define ROSETTA_JIT_UNLIKELY(condition) (condition)
 #endif
 
 /* Where exceptions are disabled, what would throw ends the program; `try_` functions do not. */
@@ -145,7 +152,7 @@ private:
 template <class Value> class [[nodiscard]] result {
 public:
     result(Value value) : value_(std::move(value)) {}
-    result(rosetta_jit::error found) : error_(std::make_unique<rosetta_jit::error>(std::move(found))) {}
+    result(rosetta_jit::error found) : error_(new rosetta_jit::error(std::move(found))) {}
 
     bool has_value() const noexcept { return error_ == nullptr; }
     explicit operator bool() const noexcept { return has_value(); }
@@ -162,8 +169,11 @@ public:
     const Value &operator*() const { return value_; }
 
 private:
+    struct forget {
+        ROSETTA_JIT_COLD void operator()(const rosetta_jit::error *found) const noexcept { delete found; }
+    };
     Value value_{};
-    std::unique_ptr<const rosetta_jit::error> error_;
+    std::unique_ptr<const rosetta_jit::error, forget> error_;
 };
 
 /* What nothing but its success can be said of. */
@@ -292,6 +302,37 @@ inline float load_f32_le(const unsigned char *at) noexcept { return load_le<floa
 inline float load_f32_be(const unsigned char *at) noexcept { return load_be<float>(at); }
 inline double load_f64_le(const unsigned char *at) noexcept { return load_le<double>(at); }
 inline double load_f64_be(const unsigned char *at) noexcept { return load_be<double>(at); }
+
+/* A number as a message has it. */
+template <class Number> void store_le(unsigned char *at, Number number) noexcept { std::memcpy(at, &number, sizeof number); }
+template <class Number> void store_be(unsigned char *at, Number number) noexcept
+{
+    unsigned char bytes[sizeof(Number)];
+    std::memcpy(bytes, &number, sizeof number);
+    for (std::size_t byte = 0; byte < sizeof bytes; byte++) {
+        at[byte] = bytes[sizeof bytes - 1 - byte];
+    }
+}
+
+inline void store_bool(unsigned char *at, bool holds) noexcept { *at = holds ? 1 : 0; }
+inline void store_u8(unsigned char *at, std::uint8_t number) noexcept { *at = number; }
+inline void store_i8(unsigned char *at, std::int8_t number) noexcept { *at = static_cast<unsigned char>(number); }
+inline void store_u16_le(unsigned char *at, std::uint16_t number) noexcept { store_le(at, number); }
+inline void store_u16_be(unsigned char *at, std::uint16_t number) noexcept { store_be(at, number); }
+inline void store_i16_le(unsigned char *at, std::int16_t number) noexcept { store_le(at, number); }
+inline void store_i16_be(unsigned char *at, std::int16_t number) noexcept { store_be(at, number); }
+inline void store_u32_le(unsigned char *at, std::uint32_t number) noexcept { store_le(at, number); }
+inline void store_u32_be(unsigned char *at, std::uint32_t number) noexcept { store_be(at, number); }
+inline void store_i32_le(unsigned char *at, std::int32_t number) noexcept { store_le(at, number); }
+inline void store_i32_be(unsigned char *at, std::int32_t number) noexcept { store_be(at, number); }
+inline void store_u64_le(unsigned char *at, std::uint64_t number) noexcept { store_le(at, number); }
+inline void store_u64_be(unsigned char *at, std::uint64_t number) noexcept { store_be(at, number); }
+inline void store_i64_le(unsigned char *at, std::int64_t number) noexcept { store_le(at, number); }
+inline void store_i64_be(unsigned char *at, std::int64_t number) noexcept { store_be(at, number); }
+inline void store_f32_le(unsigned char *at, float number) noexcept { store_le(at, number); }
+inline void store_f32_be(unsigned char *at, float number) noexcept { store_be(at, number); }
+inline void store_f64_le(unsigned char *at, double number) noexcept { store_le(at, number); }
+inline void store_f64_be(unsigned char *at, double number) noexcept { store_be(at, number); }
 
 /* --- lanes: the elements of all arrays of one field --- */
 
@@ -521,7 +562,7 @@ inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) 
         pair any = pair_at(text) | pair_at(text + size - 16);
         std::int64_t at = 16;
         for (; size - at > 32; at += 32) {
-            any = any | pair_at(text + at) | pair_at(text + at + 16);
+            any = any | (pair_at(text + at) | pair_at(text + at + 16));
         }
         for (; size - at > 16; at += 16) {
             any = any | pair_at(text + at);
@@ -911,13 +952,14 @@ template <class Container> void resize_to(Container &target, std::int64_t count)
             } else {
                 target.Truncate(static_cast<int>(count));
             }
-        } else {
+        } else if (target.size() < count) {
             target.Reserve(static_cast<int>(count));
-            while (target.size() > count) {
-                target.RemoveLast();
-            }
             while (target.size() < count) {
                 target.Add();
+            }
+        } else {
+            while (target.size() > count) {
+                target.RemoveLast();
             }
         }
     } else if constexpr (can_resize<Container>::value) {
@@ -1052,30 +1094,36 @@ template <class Container, class Row> void assign(Container &&target, const Row 
 
 constexpr bool HAS_SHORT_TEXTS = sizeof(std::string) == 2 * sizeof(void *) + SHORT_TEXT; /* in the string itself */
 
-/* A text of another length. A longer one becomes shorter; one that has no memory of its own is made anew, which compilers see into: in its
-   place where that takes no memory, and so never fails. */
-inline void assign_other(std::string &target, const char *first, std::size_t size)
+/* A text of another length, which becomes shorter, or needs memory. */
+ROSETTA_JIT_APART inline void assign_other(std::string &target, const char *first, std::size_t size)
 {
     if (size < target.size()) {
         target.erase(size);
         copy_few(&target[0], 0, first, 0, static_cast<std::int64_t>(size));
-    } else if (!HAS_SHORT_TEXTS || target.capacity() >= SHORT_TEXT) {
-        target.assign(first, size);
-    } else if (size < SHORT_TEXT) {
-        std::destroy_at(&target);
-        ::new (static_cast<void *>(&target)) std::string(first, size);
     } else {
-        target = std::string(first, size);
+        target.assign(first, size);
     }
 }
 
-/* Bytes that nothing has to make room for first. A text of the same length, as names have again and again, is written where it is. */
+/* Bytes that nothing has to make room for first. A text of the same length, as names have again and again, is written where it is. A short one
+   that has no memory of its own is made anew in its place, which compilers see into: that takes no memory, and so never fails. */
 ROSETTA_JIT_INLINE void assign(std::string &target, const unsigned char *bytes, std::int64_t count)
 {
-    if (target.size() == static_cast<std::size_t>(count)) {
+    const char *const first = reinterpret_cast<const char *>(bytes);
+    const std::size_t size = static_cast<std::size_t>(count);
+    if (target.size() == size) {
         copy_few(&target[0], 0, bytes, 0, count);
+    } else if (HAS_SHORT_TEXTS && target.capacity() < SHORT_TEXT) {
+        if (size < SHORT_TEXT) {
+            std::destroy_at(&target);
+            ::new (static_cast<void *>(&target)) std::string(first, size);
+        } else {
+            std::string made(first, size);
+            std::destroy_at(&target);
+            ::new (static_cast<void *>(&target)) std::string(std::move(made));
+        }
     } else {
-        assign_other(target, reinterpret_cast<const char *>(bytes), static_cast<std::size_t>(count));
+        assign_other(target, first, size);
     }
 }
 
@@ -1355,6 +1403,22 @@ template <class Row, class Container> struct list_lane<Row, Container, false> : 
     void fill(Container &) { this->reset(); }
     template <class Span> void finish(const Span &, const unsigned char *) const noexcept {}
 };
+
+/* A number of an object as a row would have it. */
+template <class Row, class Number> ROSETTA_JIT_INLINE Row got(const Number &number)
+{
+    Row row;
+    put(row, number);
+    return row;
+}
+
+/* The numbers of a container as rows, to write a message. */
+template <class Row, class Container> ROSETTA_JIT_INLINE const Row *shown_rows(const Container &source) noexcept
+{
+    static_assert(same_numbers<std::remove_cv_t<std::remove_reference_t<decltype(*data_of(source))>>, Row>,
+                  "the class has elements of another type than the schema");
+    return reinterpret_cast<const Row *>(data_of(source));
+}
 
 /* The numbers of an array that has a fixed count of them, as rows. */
 template <class Row, std::size_t Count, class Container> ROSETTA_JIT_INLINE Row *rows_of(Container &target) noexcept

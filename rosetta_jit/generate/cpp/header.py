@@ -1,0 +1,138 @@
+"""The header of a unit in C++: the class `codec`, and functions of it that stand there whole."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING
+
+from rosetta_jit.generate.c.header import made
+from rosetta_jit.generate.c.state import MEMBERS
+from rosetta_jit.generate.c.texts import literal
+from rosetta_jit.generate.c.words import C_TYPES
+from rosetta_jit.generate.cpp.classes import classes
+from rosetta_jit.generate.cpp.reading import writes_apart
+from rosetta_jit.generate.unit import Unit, wires_of
+from rosetta_jit.model.types import Struct
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.cpp.manners import Manners
+
+FOLDER = Path(__file__).parent
+RESET = (
+    "    /* Forgets all messages: state is what the mapping says that it is at first. */",
+    "    void reset() { kept = state(); }",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class AtOnce:
+    """The statements that read a message in the header, and those that write one; empty where it cannot be."""
+
+    reads: str = ""
+    puts: str = ""
+
+
+def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
+    """The text of the header; ``there`` is what stands in it of the codec's functions."""
+    root = unit.schema.types[unit.type]
+    assert isinstance(root, Struct)
+    own = classes(unit) if manners.type is None else ""
+    named = class_of(unit, manners)
+    includes = ["<cstddef>", "<cstdint>", "<memory>"]
+    if manners.type is None:
+        includes += ["<array>", "<map>", "<optional>", "<string>", "<variant>", "<vector>"]
+    lines = [f"#include {each}" for each in sorted(includes)] + ["", "#include <rosetta_jit/rosetta_jit.hpp>"]
+    if manners.header is not None:
+        lines += [f"#include <{unit.include or manners.header(root)}>"]
+    around = [_section(FOLDER / "around" / f"{each}.hpp") for each in manners.around]
+    words = {"name": unit.name, "holder": named, "type": literal(root.name), "wire": literal(root.name)}
+    lines += [line for before, _ in around for line in before.splitlines()]
+    return filled_in(
+        "header.hpp",
+        made=made(unit),
+        name=unit.name,
+        guard=f"{unit.name.upper()}_HPP",
+        includes="\n".join(lines),
+        classes=f"{own}\n/* What is filled and read. */\nusing holder = {named};\n",
+        declarations="\n".join(_declared(unit, there)),
+        hidden="".join(
+            Template(_declarations()[f"{name}_private"]).substitute(statements=text.rstrip())
+            for name, text in (("read_at_once", there.reads), ("put_at_once", there.puts))
+            if text
+        ),
+        state=_state(unit),
+        written="    std::unique_ptr<memory> written_;\n" if writes_apart(unit) else "",
+        functions="".join(_function(unit, each.name, each.parameters, each.result) for each in unit.functions),
+        around="\n".join(Template(text).substitute(words) for _, text in around),
+    )
+
+
+def _state(unit: Unit) -> str:
+    """What a codec keeps from one message to the next, where the mapping declares state."""
+    if not unit.state:
+        return ""
+    names, words = (", ".join(map(str, some)) for some in zip(*((name, _word(word)) for name, word in unit.state), strict=True))
+    members = (f"        std::int64_t {member}[{len(unit.state)}] = {{{words}}};" for member in dict.fromkeys(MEMBERS.values()))
+    head = f"    /* What the mapping keeps from one message to the next, for each direction: {names}; floats by their bits. */"
+    reset = (RESET[0], "    void reset();") if wires_of(unit) else RESET
+    return "\n".join([head, "    struct state {", *members, "    };", "    state kept;", *reset])
+
+
+def _word(word: int) -> str:
+    return "INT64_MIN" if word == -(2**63) else f"INT64_C({word})"
+
+
+def class_of(unit: Unit, manners: Manners) -> str:
+    """The class of the holder, as C++ names it."""
+    root = unit.schema.types[unit.type]
+    assert isinstance(root, Struct)
+    if manners.type is None:
+        return f"{unit.name}::{root_class(unit)}"
+    return manners.type(root)
+
+
+def root_class(unit: Unit) -> str:
+    """The name of our own class for the message."""
+    from rosetta_jit.generate.cpp.classes import names_of
+
+    return names_of(unit)[unit.type]
+
+
+def _function(unit: Unit, name: str, parameters: tuple[str, ...], result: str) -> str:
+    numbers = "".join(f"{C_TYPES[each]} number_{number}, " for number, each in enumerate(parameters, 1))
+    return (
+        "/* You write this function, which the mapping calls: false refuses the message. */\n"
+        f"bool {unit.name}_{name}({numbers}{C_TYPES[result]} *result);\n"
+    )
+
+
+def _declarations() -> dict[str, str]:
+    text = (FOLDER / "declarations.hpp").read_text("utf-8")
+    _, *parts = re.split(r"^/\* == (\w+) == \*/\n", text, flags=re.MULTILINE)
+    return dict(zip(parts[::2], parts[1::2], strict=True))
+
+
+def _declared(unit: Unit, there: AtOnce) -> list[str]:
+    """The codec's functions."""
+    known = _declarations()
+    found = [known["read_at_once" if there.reads else "decode"]] if "borrow" in unit.kernels else []
+    for wire in wires_of(unit):
+        every, last = unit.arrivals[wire]
+        found.append(Template(known["wire"]).substitute(wire=wire, every=every, last=last))
+    write = known["put_at_once" if there.puts else "write"].rstrip()
+    return [*found, *([Template(known["encode"]).substitute(write=write)] if "encode" in unit.kernels else [])]
+
+
+def _section(file: Path) -> tuple[str, str]:
+    """The includes of a file, and the rest."""
+    text = file.read_text("utf-8")
+    includes = [line for line in text.splitlines() if line.startswith("#include")]
+    return "\n".join(includes), "\n".join(line for line in text.splitlines() if line not in includes).strip() + "\n"
+
+
+def filled_in(file: str, **values: str) -> str:
+    """A template of the folder, filled in."""
+    return re.sub(r"\n{3,}", "\n\n", Template((FOLDER / file).read_text("utf-8")).substitute(values))
