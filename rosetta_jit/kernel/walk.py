@@ -145,6 +145,11 @@ _BOUND: dict[type[nodes.Stmt], Callable[[Any], tuple[str, ...]]] = {
 }
 
 
+def changed_names(body: nodes.Block) -> set[str]:
+    """The variables that a loop assigns."""
+    return {stmt.name for stmt in flat(body) if type(stmt) is nodes.Assign}
+
+
 def _start(address: nodes.Address) -> nodes.Expr:
     match address:
         case nodes.Wire(at):

@@ -12,7 +12,7 @@ from random import Random
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.backends.llvm import alike
+from rosetta_jit.backends.llvm import alike, function, stretches
 
 SEEDS, BLOCK, BLOCKS = 4, 50, 20
 WORDS = ("", "a", "some text", "é ü", "x" * 40)
@@ -52,7 +52,7 @@ def random_fields(random, kinds):
     found = []
     for _ in range(random.randint(1, 2)):
         pattern = random.choices(list(kinds), k=random.randint(1, 3))
-        for _ in range(random.randint(alike.ROUNDS, alike.ROUNDS + 4)):
+        for _ in range(random.randint(stretches.ROUNDS, stretches.ROUNDS + 4)):
             found += pattern
         found += random.choices(list(kinds), k=random.randrange(2))
     return [(f"field{number}", kind) for number, kind in enumerate(found)]
@@ -122,7 +122,7 @@ def compare(seed):
 @pytest.fixture
 def bodies(monkeypatch):
     """Of each body that is printed, whether it has series; what is compiled so is not kept."""
-    seen, real = [], alike.found
+    seen, real = [], stretches.found
 
     def found(kernel, body):
         series = real(kernel, body)
@@ -131,8 +131,9 @@ def bodies(monkeypatch):
 
     monkeypatch.setenv("ROSETTA_JIT_CACHE", "off")
     monkeypatch.setattr(alike, "MANY", 16)
-    monkeypatch.setattr(alike, "ROUNDS", 4)
-    monkeypatch.setattr("rosetta_jit.backends.llvm.function.found", found)
+    monkeypatch.setattr(stretches, "MANY", 16)
+    monkeypatch.setattr(stretches, "ROUNDS", 4)
+    monkeypatch.setattr(function.stretches, "found", found)
     return seen
 
 

@@ -7,7 +7,8 @@ from functools import reduce
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.backends.llvm.alike import Series, found
+from rosetta_jit.backends.llvm.alike import Series
+from rosetta_jit.backends.llvm.stretches import found
 from rosetta_jit.kernel.nodes import (
     Advance,
     Capacity,

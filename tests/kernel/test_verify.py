@@ -288,7 +288,7 @@ def test_a_body_that_the_usual_guesses_do_not_prove_is_walked_with_all(monkeypat
     body = (need(at, 1), kernels.Assign("at", add(at, 1)))
     every = {Guess("at", anchor, sign) for anchor in range(4) for sign in (1, -1)}
     asked = []
-    monkeypatch.setattr("rosetta_jit.kernel.proof.verify.needless", lambda *_: asked.append(1) or every)
+    monkeypatch.setattr("rosetta_jit.kernel.proof.verify.loops.needless", lambda *_: asked.append(1) or every)
     verify(kernel((Var("at", BEGIN), For("i", END, body), need(at, 1), Let("x", Load("u8", at)), DONE)))
     assert asked
     refused(Var("at", BEGIN), For("i", END, body), Let("x", Load("u8", at)), DONE, match="beyond the end")

@@ -15,7 +15,7 @@ from llvmlite import ir
 
 from rosetta_jit.backends.llvm import checks as llvm_checks
 from rosetta_jit.backends.llvm import definitions
-from rosetta_jit.backends.llvm.alike import found
+from rosetta_jit.backends.llvm.alike import NOTHING, may_have_series
 from rosetta_jit.backends.llvm.frame import COLD, I64, POINTER, Exit, Frame, Parameters, StoredExit, constant, new_function, state_word
 from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.routines import Printed, routines_of
@@ -37,12 +37,12 @@ from rosetta_jit.kernel.state import (
     lane_word,
 )
 from rosetta_jit.kernel.traits import are_straight_and_compute
-from rosetta_jit.startup.late import Late
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
-    from rosetta_jit.backends.llvm import series
+    from rosetta_jit.backends.llvm import series, stretches
 else:
-    series = Late("rosetta_jit.backends.llvm.series")
+    series, stretches = late("rosetta_jit.backends.llvm", "series", "stretches")
 
 SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
 ARGUMENTS = ("buffer", "begin", "end", "state", "row")
@@ -152,7 +152,8 @@ def _attempt(
     frame = Frame(function.module, entry, entry.beside(first), parameters, *lanes, {}, done, failed, emptied, routines)
     frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
     counted = counted_lanes(kernel, body)
-    frame.alike, frame.counting = found(kernel, body), bool(counted)
+    frame.alike = stretches.found(kernel, body) if may_have_series(kernel, body) else NOTHING
+    frame.counting = bool(counted)
     if frame.alike and counted:
         series.begin_rows(frame, kernel.direction)
     llvm_checks.body(frame, body, in_vectors=is_first and are_straight_and_compute((kernel,)))

@@ -6,10 +6,9 @@ from itertools import islice
 
 from rosetta_jit.kernel.limits import MAX_HOISTED_NODES
 from rosetta_jit.kernel.nodes import Binary, Const, Expr, For, Get, IsText, Let, Load, Local, Nearest, Used
-from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, substituted, with_operands
 from rosetta_jit.kernel.terms import add, index, mul
-from rosetta_jit.kernel.walk import bound_names, operands, statements, subexpressions
+from rosetta_jit.kernel.walk import bound_names, changed_names, operands, statements, subexpressions
 from rosetta_jit.startup.dataclass import dataclass
 
 

@@ -29,9 +29,8 @@ from rosetta_jit.kernel.nodes import (
     Stmt,
 )
 from rosetta_jit.kernel.passes.reuse import EVERYWHERE, WIDEST
-from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, may_return, reads_memory, with_blocks, with_bodies
-from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
+from rosetta_jit.kernel.walk import changed_names, expressions_of, statements, subexpressions
 from rosetta_jit.startup.dataclass import dataclass, field
 
 

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 from rosetta_jit.kernel.ir import Kernel, Part, Site
 from rosetta_jit.kernel.nodes import Block, Const, Expect, Expr, Failure, Require, Stmt
-from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, may_return, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import index, split
-from rosetta_jit.kernel.walk import blocks_of
+from rosetta_jit.kernel.walk import blocks_of, changed_names
 from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 _Key = tuple["Expr", tuple["Expr", ...], str]

@@ -6,9 +6,8 @@ from collections import Counter
 
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Block, Expr, Let, Load, Local, Stmt
-from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, substituted, with_blocks, with_bodies, with_expressions
-from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
+from rosetta_jit.kernel.walk import changed_names, expressions_of, statements, subexpressions
 
 
 def postpone(kernel: Kernel) -> Kernel:

@@ -31,10 +31,9 @@ from rosetta_jit.kernel.nodes import (
     Store,
     While,
 )
-from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.terms import type_of
-from rosetta_jit.kernel.walk import NESTED, blocks_of, bound_names, every_statement, flat, parts_of
+from rosetta_jit.kernel.walk import NESTED, blocks_of, bound_names, changed_names, every_statement, flat, parts_of
 from rosetta_jit.startup.dataclass import dataclass, field
 
 MESSAGE = -1

@@ -22,10 +22,9 @@ from rosetta_jit.kernel.nodes import (
     SetField,
     Stmt,
 )
-from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import index, mul
-from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
+from rosetta_jit.kernel.walk import changed_names, expressions_of, statements, subexpressions
 from rosetta_jit.startup.dataclass import replace
 
 

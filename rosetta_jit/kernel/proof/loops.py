@@ -17,15 +17,13 @@ from rosetta_jit.kernel.nodes import WIDTH, Advance, Assign, Binary, Block, Cons
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import All, Any, Formula
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
-from rosetta_jit.kernel.proof.paths import anchors, from_begin, grown, variable
+from rosetta_jit.kernel.proof.paths import ZERO, anchors, from_begin, grown, variable
 from rosetta_jit.kernel.proof.scope import Scope, Typed
 from rosetta_jit.kernel.proof.symbolic import linear
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.terms import type_of
-from rosetta_jit.kernel.walk import blocks_of, bound_names, expressions_of, flat, statements
+from rosetta_jit.kernel.walk import blocks_of, bound_names, changed_names, expressions_of, statements
 from rosetta_jit.startup.dataclass import dataclass
-
-ZERO = Linear(0)
 
 FEW_BYTES = 4
 """Integers of so many are added up without a check in each round."""
@@ -136,11 +134,6 @@ def _conjuncts(formula: Formula) -> list[Linear]:
             return [conjunct for part in parts for conjunct in _conjuncts(part)]
         case _:
             return []
-
-
-def changed_names(body: Block) -> set[str]:
-    """The variables that a loop assigns."""
-    return {stmt.name for stmt in flat(body) if type(stmt) is Assign}
 
 
 def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Container[str], made: dict[int, list[Made]]) -> set[Guess]:

@@ -17,20 +17,20 @@ from rosetta_jit.kernel.proof import claims, effects, paths
 from rosetta_jit.kernel.proof.formula import All, Formula, equal, negated
 from rosetta_jit.kernel.proof.known import once
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted
-from rosetta_jit.kernel.proof.loops import ZERO, Guess, Loop, Made, bounds, needless, walk_rounds
 from rosetta_jit.kernel.proof.obligations import UnprovenError, demand, oblige
 from rosetta_jit.kernel.proof.scope import Scope, Typed, entry
 from rosetta_jit.kernel.proof.symbolic import condition, evaluate, integer, linear
 from rosetta_jit.kernel.routines import called_routines, named_lanes
 from rosetta_jit.kernel.shape import shape_error
 from rosetta_jit.startup.dataclass import dataclass, field
-from rosetta_jit.startup.late import Late
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.proof import contracts
+    from rosetta_jit.kernel.proof import contracts, loops
+    from rosetta_jit.kernel.proof.loops import Guess, Made
     from rosetta_jit.kernel.proof.record import Record
 else:
-    contracts = Late("rosetta_jit.kernel.proof.contracts")
+    contracts, loops = late("rosetta_jit.kernel.proof", "contracts", "loops")
 
 
 class VerificationError(AssertionError):
@@ -327,7 +327,7 @@ def _while(walk: _Walk, loop: nodes.While) -> None:
         _assume_invariant(scope, loop)
         before, chosen = integer(scope, loop.measure), condition(scope, loop.condition)
         scope.facts.assume(chosen)
-        oblige(scope, bounds(scope, before, chosen, first_atom), claims.BOUNDED)
+        oblige(scope, loops.bounds(scope, before, chosen, first_atom), claims.BOUNDED)
         at_start.append(before)
 
     def leave() -> None:
@@ -350,11 +350,13 @@ def _assume_invariant(scope: Scope, loop: nodes.While) -> None:
 
 
 def _rounds(
-    walk: _Walk, loop: nodes.For | nodes.While, enter: Callable[[int], None], leave: Callable[[], None], count: Linear = ZERO
+    walk: _Walk, loop: nodes.For | nodes.While, enter: Callable[[int], None], leave: Callable[[], None], count: Linear = paths.ZERO
 ) -> None:
     dropped = walk.dropped.get(id(loop))
     if dropped is None:
         said, measure = (loop.invariant, loop.measure) if isinstance(loop, nodes.While) else ((), None)
-        dropped = walk.dropped[id(loop)] = set() if walk.tries_all else needless(loop.body, said, measure, walk.scope.locals, walk.made)
+        dropped = walk.dropped[id(loop)] = (
+            set() if walk.tries_all else loops.needless(loop.body, said, measure, walk.scope.locals, walk.made)
+        )
     variable = loop.variable if isinstance(loop, nodes.For) else ""
-    walk_rounds(walk.scope, Loop(loop.body, enter, partial(_block, walk, loop.body), leave, variable, count), dropped)
+    loops.walk_rounds(walk.scope, loops.Loop(loop.body, enter, partial(_block, walk, loop.body), leave, variable, count), dropped)
