@@ -19,6 +19,7 @@ from rosetta_jit.generate.python.bools import bools_read
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.descents import Visit
 from rosetta_jit.generate.python.groups import turned
+from rosetta_jit.generate.python.late import Late
 from rosetta_jit.generate.python.mentions import blocks_within, changes, counted_lanes, places_of, reads_any, reads_behind
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
@@ -59,6 +60,7 @@ class Direct:
     gathered: dict[int, tuple[nodes.Expr, nodes.Expr]] = field(default_factory=dict[int, "tuple[nodes.Expr, nodes.Expr]"])
     visits: dict[str, Visit] = field(default_factory=dict[str, Visit])
     left: dict[int, int] | None = None
+    fields: tuple[Late, ...] = ()
 
     def read(self) -> set[str]:
         """The locals that say where texts and bytes are, which no statement may say any more."""
@@ -69,6 +71,10 @@ class Direct:
         """What fills the span of a row."""
         places = ((each, each.place) for each in self.visits.values())
         return next((each for each, place in places if place is not None and (place.lane, place.offset) == (lane, offset)), None)
+
+    def late_at(self, slot: Slot) -> Late | None:
+        """The late field at a slot of the message's row."""
+        return next((each for each in self.fields if each.slot is slot), None)
 
     def text_at(self, at: nodes.Expr, size: nodes.Expr) -> tuple[int, int] | None:
         """The span of the text that is checked there."""

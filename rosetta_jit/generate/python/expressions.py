@@ -154,6 +154,10 @@ class Scope:
             return self.attributes[offset]
         return self.locals.identifier(f"{self.text(lane, offset).removesuffix('_text')}\0bytes")
 
+    def has_field(self, name: str) -> str:
+        """The local that says whether the message has a late field."""
+        return self.locals.identifier(f"has\0{name}")
+
     def field(self, lane: int, row: str, offset: int, scalar: str) -> str:
         """A scalar of a row."""
         if lane == 0 and self.attributes and offset in self.attributes:

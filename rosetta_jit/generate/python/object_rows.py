@@ -14,7 +14,7 @@ from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.nodes import WIDTH, Binary, Expr, Local, Place
 from rosetta_jit.kernel.terms import index
-from rosetta_jit.model.layout import Layout, Member, Number, Row, Slot, Span, Variant, map_entry
+from rosetta_jit.model.layout import Member, Number, Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Map, Optional, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass, field
 
@@ -150,22 +150,6 @@ class ObjectScope(Scope):
     def has(self, place: Place) -> bool:
         """Whether a field of an object is known."""
         return place.offset in self.objects.get((place.lane, place.row), {})
-
-
-def lanes_within(slot: Slot, layout: Layout) -> set[int]:
-    """The lanes of the sequences that a row has, and of those in these."""
-    found: set[int] = set()
-    pending = [slot]
-    while pending:
-        row = pending.pop()
-        pending += [member.slot for member in row.members] if isinstance(row, Variant) else []
-        for each in slots_of(row):
-            if isinstance(each, Span) and each.lane not in found:
-                found.add(each.lane)
-                pending.append(layout.lanes[each.lane].element)
-            elif isinstance(each, Variant) and each is not row:
-                pending.append(each)
-    return found
 
 
 def _checked(text: str, scalar: str) -> str:

@@ -18,12 +18,13 @@ from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.flags import Flags, flags_of
 from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.messages_in_parts import Messages
-from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope, lanes_within
+from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope
 from rosetta_jit.generate.python.packed import Part
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum, known_width
 from rosetta_jit.generate.python.presence import bit_tested, case_tested, may_be_empty, places_read, words_tested
 from rosetta_jit.generate.python.printed import Function
 from rosetta_jit.generate.python.recursive_rows import is_hidden
+from rosetta_jit.generate.python.slots import lanes_within
 from rosetta_jit.generate.python.statements import fail, print_statement
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel import nodes

@@ -26,6 +26,9 @@ OF_SEVERAL_BYTES = {**dict.fromkeys(("read_varint", "read_element", "read_packed
 def print_block(function: Function, block: nodes.Block) -> None:
     """The statements of a block."""
     before = len(function.writer.lines)
+    for number, late in enumerate(function.scope.direct.fields):
+        if id(block) in late.cases:
+            function.line(f"<late {number}>")
     for group in grouped(block):
         if len(group) == 1:
             print_statement(function, group[0])
