@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.python.borrowed import borrowed
 from rosetta_jit.generate.python.direct import Direct
-from rosetta_jit.generate.python.expressions import Scope
 from rosetta_jit.generate.python.functions import is_flat, print_kernel
 from rosetta_jit.generate.python.making import Make, arrays_of
 from rosetta_jit.generate.python.printed import Attempt, Objects
+from rosetta_jit.generate.python.scope import Scope
 from rosetta_jit.generate.python.sparse import OBJECT, attributes_of, settings
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Unit

@@ -15,11 +15,12 @@ from rosetta_jit.generate.python.bools import with_bytes
 from rosetta_jit.generate.python.classes import WORDS
 from rosetta_jit.generate.python.constants import with_constants
 from rosetta_jit.generate.python.descents import Descents, NotNested, descended
-from rosetta_jit.generate.python.direct import FEW, direct
-from rosetta_jit.generate.python.expressions import CODES, Scope, expression, flat_name, view_name
+from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.late import late_fields
 from rosetta_jit.generate.python.printed import Attempt, Function, Objects
+from rosetta_jit.generate.python.scope import CODES, Scope, flat_name, view_name
+from rosetta_jit.generate.python.search import FEW, direct
 from rosetta_jit.generate.python.statements import print_block
 from rosetta_jit.generate.python.sums import with_locals
 from rosetta_jit.generate.python.visiting import OF_READERS, counts_of_rows, print_readers, with_copy
@@ -148,7 +149,7 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
     body = with_locals(with_bytes(with_constants(body))) if kernel.direction == "decode" else undamaged(body, kernel.sites)
     if kernel.direction == "decode" and scope.flat and objects.layout is not None:
         body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, objects.blobs, few=0 if scope.numpy else FEW)
-        known = {*scope.direct.whole, *scope.direct.appended, *scope.direct.elements}
+        known = {*scope.direct.whole, *scope.direct.appended, *scope.direct.elements, *scope.direct.rows}
         body, scope.direct.fields = late_fields(body, kernel, objects.layout, known) if descents is None else (body, ())
     behind = frozenset[str]()
     if descents is not None:

@@ -14,11 +14,11 @@ from rosetta_jit.generate.python.classes import WORDS, classes, names_of
 from rosetta_jit.generate.python.collecting import Collect
 from rosetta_jit.generate.python.decoder import print_decoder, taken_lanes
 from rosetta_jit.generate.python.encoder import encoder_in_parts
-from rosetta_jit.generate.python.expressions import CODES, TRUTH, Scope, view_name
 from rosetta_jit.generate.python.functions import Attempt, beside_lanes, is_flat, print_kernel
 from rosetta_jit.generate.python.making import Make
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.python.printed import Objects
+from rosetta_jit.generate.python.scope import CODES, TRUTH, Scope, view_name
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
 from rosetta_jit.generate.unit import Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Kernel

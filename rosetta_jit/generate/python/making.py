@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 
 from rosetta_jit.generate.python.classes import NUMPY
-from rosetta_jit.generate.python.expressions import CODES, Scope, view_name
+from rosetta_jit.generate.python.scope import CODES, Scope, view_name
 from rosetta_jit.generate.python.slots import lanes_within
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.model.layout import WIDTH, Member, Number, Row, Slot, Span, Variant, map_entry
@@ -73,7 +73,7 @@ class Make:
         direct = self.scope.direct
         if (late := direct.late_at(slot)) is not None:
             return self.scope.has_field(late.name)
-        known = {*direct.whole, *direct.appended, *direct.elements}
+        known = {*direct.whole, *direct.appended, *direct.elements, *direct.rows}
         places = {*direct.pieces, *direct.texts}
         is_known = slot.lane in known or (0, slot.offset) in places or direct.visit_at(0, slot.offset) is not None
         return "" if is_known else self._count(slot, 0, "0")
@@ -227,6 +227,8 @@ class Make:
         if slot.lane in known.appended:
             rows = self.scope.lanes.rows(slot.lane)
             return self._numbers(rows, element.scalar) if isinstance(element, Number) else rows
+        if slot.lane in known.rows:
+            return f"[{', '.join(self.scope.element(slot.lane, number) for number in range(len(known.rows[slot.lane])))}]"
         if slot.lane in known.elements and isinstance(element, Number):
             texts = (self.scope.element(slot.lane, number) for number in range(len(known.elements[slot.lane])))
             return self._numbers(f"[{', '.join(texts)}]", element.scalar, is_few=True)

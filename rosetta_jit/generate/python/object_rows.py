@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import member_names
 from rosetta_jit.generate.python.conversions import within
-from rosetta_jit.generate.python.expressions import CODES, Scope, expression
+from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.positions import NotInParts
+from rosetta_jit.generate.python.scope import CODES, Scope
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.nodes import WIDTH, Binary, Expr, Local, Place
@@ -75,7 +77,7 @@ class ObjectScope(Scope):
     linked: dict[int, str] = field(default_factory=dict[int, str])
     keeps_long: bool = False
 
-    def place(self, place: Place, scalar: str) -> str:
+    def place(self, place: Place, scalar: str, row: Callable[[], str]) -> str:  # noqa: ARG002 - of a scope
         """A scalar of a row of an object."""
         known = self.objects.get((place.lane, place.row))
         if known is not None and place.offset in known:

@@ -9,7 +9,8 @@ from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.direct import Direct
-from rosetta_jit.generate.python.expressions import Scope, expression
+from rosetta_jit.generate.python.expressions import expression
+from rosetta_jit.generate.python.scope import Scope
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.model.layout import Layout
 from rosetta_jit.startup.dataclass import dataclass, field

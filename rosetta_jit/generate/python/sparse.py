@@ -38,7 +38,7 @@ def attributes_of(unit: Unit, body: Block, settled: frozenset[tuple[int, str]], 
     cleared = _cleared_again(body)
     if not isinstance(slot, Row) or cleared is None:
         return None
-    always = {offset for offset, _ in settled if not _comes_in_parts(offset, unit, direct)}
+    always = {offset for offset, _ in settled if not _comes_in_parts(offset, unit, direct)} | _always(slot, direct)
     names = dict(zip(member_names(root), slot.members, strict=True))
     late = {name: member for name, member in names.items() if getattr(member.slot, "offset", None) not in always}
     if sum(not (isinstance(each.slot, Span) and direct.late_at(each.slot)) for each in late.values()) < LEAST:
@@ -53,10 +53,18 @@ def attributes_of(unit: Unit, body: Block, settled: frozenset[tuple[int, str]], 
     }
 
 
+def _always(slot: Row, direct: Direct) -> set[int]:
+    """Where fields lie that are objects at once, whatever the message is."""
+    at_once = {*direct.whole, *direct.appended, *direct.elements, *direct.rows}
+    spans = [each for each in slots_of(slot) if isinstance(each, Span)]
+    known = {(0, each.offset) for each in spans} & ({*direct.texts, *direct.pieces} - direct.late)
+    return {offset for _, offset in known} | {each.offset for each in spans if each.lane in at_once}
+
+
 def _comes_in_parts(offset: int, unit: Unit, direct: Direct) -> bool:
     """Whether a field is a sequence of which the rows of a lane become objects in the end."""
     spans = [each for each in slots_of(unit.layout.root) if isinstance(each, Span) and each.offset == offset]
-    lanes = {*direct.whole, *direct.appended, *direct.elements}
+    lanes = {*direct.whole, *direct.appended, *direct.elements, *direct.rows}
     return bool(spans) and spans[0].lane not in lanes and direct.visit_at(0, offset) is None
 
 
