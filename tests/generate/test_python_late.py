@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import random
 
 import pytest
@@ -71,3 +72,20 @@ def test_lists_of_other_wires_are_unchanged():
     """Where a list is there whatever the message is, nothing asks whether it is."""
     given = {"encoding": "ros1", "schema": {"t/msg/M.msg": "string[] a\nfloat64[] b"}}
     assert "has_" not in generated(type_request("decode", "t/M", given), "python", BOTH, "unit")["unit.py"]
+
+
+def test_nothing_stays_of_a_message_that_contains_its_own_type():
+    """The functions that make objects of rows refer to each other: nothing of theirs waits for the garbage collector."""
+    given = protobuf("message M { string text = 1; repeated M kids = 2; map<string, M> named = 3; }")
+    unit, encode = module(type_request("decode", "t.M", given)), rj.Encoder.of("t.M", **given)
+    value = {"text": "a", "kids": [{"text": "b", "kids": [{}]}, {"named": {"c": {"text": "d"}}}]}
+    message = bytes(encode(encode.holder_type.from_dict(value)))
+    gc.collect()
+    gc.disable()
+    try:
+        found = unit.decode(message)
+        assert gc.collect() == 0
+    finally:
+        gc.enable()
+    assert found.kids[1].named["c"].text == "d"
+    assert unit.encode(found) == message

@@ -47,6 +47,9 @@ class _Decoder:
             lines += [f"def made_{scope.lanes.rows(lane)}(index):", f"    return {text}", ""]
         return lines
 
+    def inner_names(self, scope: Scope) -> list[str]:
+        return [f"made_{scope.lanes.rows(lane)}" for lane, _ in self.unit.layout.recursive]
+
     def row(self, scope: Scope, lane: int) -> str:
         """The object of a row that a loop fills."""
         rows = {**arrays_of(self.unit, in_recursive=True), **{lane: Ref(struct) for lane, struct in self.unit.layout.recursive}}
@@ -66,7 +69,7 @@ class _Decoder:
         in_all, numpy = arrays_of(self.unit, in_recursive=True), self.unit.numpy
         blobs = frozenset(lane for lane, type_ in in_all.items() if isinstance(self.unit.schema.resolve(type_), Bytes))
         lists = frozenset(arrays_of(self.unit)), frozenset(in_all), blobs
-        made = self.made, self.attributes, self.begun, self.settings, self.row, self.inner
+        made = self.made, self.attributes, self.begun, self.settings, self.row, self.inner, self.inner_names
         return Objects(*made, self.unit.layout, *lists, numpy, frozenset(self.names.values()))
 
 

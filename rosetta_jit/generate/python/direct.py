@@ -41,12 +41,15 @@ class Direct:
     rows: dict[int, dict[nodes.Place, tuple[nodes.Expr, nodes.Expr]]] = field(
         default_factory=dict[int, "dict[nodes.Place, tuple[nodes.Expr, nodes.Expr]]"]
     )
+    placed: dict[tuple[int, int], tuple[nodes.Expr, nodes.Expr]] = field(
+        default_factory=dict[tuple[int, int], "tuple[nodes.Expr, nodes.Expr]"]
+    )
     fields: tuple[Late, ...] = ()
 
     def read(self) -> set[str]:
         """The locals that say where texts and bytes are, which no statement may say any more."""
         rows = (place for each in self.rows.values() for place in each.values())
-        spans = (*self.texts.values(), *self.pieces.values(), *self.gathered.values(), *rows)
+        spans = (*self.texts.values(), *self.placed.values(), *self.pieces.values(), *self.gathered.values(), *rows)
         return {name for place in spans for expr in place for name in locals_in(expr)}
 
     def visit_at(self, lane: int, offset: int) -> Visit | None:
@@ -60,4 +63,4 @@ class Direct:
 
     def text_at(self, at: nodes.Expr, size: nodes.Expr) -> tuple[int, int] | None:
         """The span of the text that is checked there."""
-        return next((span for span, place in self.texts.items() if place == (at, size)), None)
+        return next((span for span, place in (*self.texts.items(), *self.placed.items()) if place == (at, size)), None)

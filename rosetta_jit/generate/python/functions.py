@@ -287,6 +287,7 @@ def _empty_lane(function: Function, lane: int) -> list[str]:
     lines = [f"{name} = {'[]' if lane in scope.direct.gathered else '_NOTHING'}"]
     lines += [f"{name}_room = 0"] if lane in scope.rooms else []
     lines += [f"{name}_{code} = _EMPTY_{code}" for code in codes]
+    lines += [f"{scope.placed(*span)} = {{}}" for span in scope.direct.placed if span[0] == lane]
     return [*lines, f"{name}_used = 0"] if lane in scope.counted else lines
 
 

@@ -147,8 +147,10 @@ class Make:
         self.scope.views |= inner.views
         if " for " not in text:
             return text
-        lists = self.scope.direct.gathered.keys() & lanes_within(slot, self.unit.layout)
-        needs = {view_name(self.scope.lanes, *view) for view in inner.views} | {self.scope.lanes.rows(each) for each in lists}
+        lanes, direct = lanes_within(slot, self.unit.layout), self.scope.direct
+        needs = {view_name(self.scope.lanes, *view) for view in inner.views}
+        needs |= {self.scope.lanes.rows(each) for each in lanes & direct.gathered.keys()}
+        needs |= {self.scope.placed(*span) for span in direct.placed if span[0] in lanes}
         needs |= {each for each in (start, count) if each.isidentifier()}
         arguments = ", ".join([*(["data"] if re.search(r"\bdata\b", text) else []), *sorted(needs)])
         own = f"_made_{self.scope.lanes.rows(slot.lane)}"
@@ -227,6 +229,8 @@ class Make:
         if slot.lane in known.appended:
             rows = self.scope.lanes.rows(slot.lane)
             return self._numbers(rows, element.scalar) if isinstance(element, Number) else rows
+        if (lane, slot.offset) in known.placed:
+            return f'{self.scope.placed(lane, slot.offset)}.get({self._start(slot, lane, row)}, "")'
         if slot.lane in known.rows:
             return f"[{', '.join(self.scope.element(slot.lane, number) for number in range(len(known.rows[slot.lane])))}]"
         if slot.lane in known.elements and isinstance(element, Number):

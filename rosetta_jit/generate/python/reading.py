@@ -25,7 +25,8 @@ def takes_text(scope: Scope, condition: Expr) -> str | None:
     """The line that decodes a text, where a check is that of one which is taken where it is checked."""
     match condition:
         case IsText(Wire(at), size) if (span := scope.direct.text_at(at, size)) is not None:
-            return f"{scope.text(*span)} = {slice_of(scope, at, size)}.decode()"
+            text = f"{scope.placed(*span)}[{bare(expression(scope, at))}]" if span in scope.direct.placed else scope.text(*span)
+            return f"{text} = {slice_of(scope, at, size)}.decode()"
         case _:
             return None
 

@@ -129,6 +129,10 @@ class Scope:
         start = flat_name(self.lanes, offset, "i64") if lane == 0 else self.own(lane, offset, "i64")
         return self.locals.identifier(f"{start.removesuffix('_start')}\0text")
 
+    def placed(self, lane: int, offset: int) -> str:
+        """The texts of a field of the rows of a lane, by their places in the message."""
+        return self.locals.identifier(f"{self.own(lane, offset, 'i64').removesuffix('_start')}\0texts")
+
     def visited(self, visit: Visit) -> str:
         """The list of the messages, of a type that contains itself, that fill a span."""
         return self.locals.identifier(f"{self.lanes.rows(visit.lane)}\0list")

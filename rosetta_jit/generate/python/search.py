@@ -3,7 +3,7 @@
     at once     the numbers of an array lie in the message as in its lane: one call of the struct module gives the list
     by name     an array of few elements, each set once: the list of so many locals; or of few arrays
     one by one  a loop fills row after row: it appends to a list instead
-    texts       a text is decoded where it is checked: that is the check
+    texts       a text is decoded where it is checked: that is the check; those of rows of lanes are kept by their place
     gathered    an array whose texts, or bytes, come one by one, wherever they are in the message: each is appended to a list
 
 Everything else goes through lanes as kernels say, and becomes objects in the end.
@@ -54,6 +54,7 @@ def direct(
         found.texts(inner)
         if row == MESSAGE:
             found.texts_of_message(inner)
+            found.texts_of_rows(inner)
     if row != MESSAGE:
         found.direct.appended.add(row.lane)
     return found.rewritten(found.block), found.direct
@@ -157,6 +158,27 @@ class _Search:
                     pass
         self._pieces(block, nodes.Place(0, index(0)))
         self.direct.late |= {*self.direct.texts, *self.direct.pieces} - known
+
+    def texts_of_rows(self, block: nodes.Block) -> None:
+        """The texts that a block sets in rows of lanes, each behind its length: no row has one at the place 0."""
+        behind = {nodes.Local("i64", result.name) for each in block if isinstance(each, nodes.Call) for result in each.results}
+        for stmt in block:
+            match stmt:
+                case nodes.Expect(nodes.IsText(nodes.Wire(at), size), _) if at in behind and self.checks[at, size] == 1:
+                    starts = [each for each in block if isinstance(each, nodes.SetField) and each.value == at and each.place.lane]
+                    if len(starts) == 1 and self.direct.text_at(at, size) is None:
+                        self._placed(block, starts[0].place, at, size)
+                case _:
+                    pass
+
+    def _placed(self, block: nodes.Block, place: nodes.Place, at: nodes.Expr, size: nodes.Expr) -> None:
+        """A text of a row, of which the row goes on to say where it lies."""
+        counts = self._sets(block, place, nodes.Binary("sub", index(-1), size))
+        once = sum(not isinstance(each, nodes.Fill) for each in self.fields[place.lane, place.offset]) == 1
+        lane = _spans(self.layout, place.lane).get(place.offset) if isinstance(self.layout.lanes[place.lane].element, Row) else None
+        if once and lane is not None and not self.mentions.get(lane) and [each.place.offset for each in counts] == [place.offset + 8]:
+            self.direct.placed[place.lane, place.offset] = at, size
+            self.instead[id(counts[0])] = ()
 
     def _sets(self, block: nodes.Block, row: nodes.Place, value: nodes.Expr) -> list[nodes.SetField]:
         """The one statement, if it is one, that sets a field of the row to a value, and that has to do with the field."""

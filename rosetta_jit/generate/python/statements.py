@@ -110,7 +110,13 @@ def _return(function: Function, stmt: nodes.Return) -> None:
         position = "call_end"
     for line in objects.settings(function.scope):
         function.line(line)
-    function.line(f"return {objects.result(function.scope, position)}")
+    result = objects.result(function.scope, position)
+    if names := objects.inner_names(function.scope) if function.scope.direct.left is None else []:
+        made = function.scope.locals.identifier("made\0message")
+        function.line(f"{made} = {result}")
+        function.line(f"del {', '.join(names)}")
+        result = made
+    function.line(f"return {result}")
 
 
 def _origin(function: Function, stmt: nodes.Stmt) -> str:
