@@ -89,3 +89,14 @@ def test_nothing_stays_of_a_message_that_contains_its_own_type():
         gc.enable()
     assert found.kids[1].named["c"].text == "d"
     assert unit.encode(found) == message
+
+
+def test_cases_share_their_locals():
+    """Fields that are read alike need the locals of one: a function clears all that it has when it is called."""
+
+    def locals_of(count: int) -> int:
+        fields = " ".join(f"map<int32, string> f{number} = {number};" for number in range(1, count + 1))
+        unit = module(type_request("decode", "t.M", protobuf(f"message M {{ {fields} }}")))
+        return unit._borrow_1.__code__.co_nlocals
+
+    assert locals_of(21) - locals_of(1) <= 20 * 8

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence, Set
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.printing import Namespace, Writer
+from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.cleared import settled
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
@@ -18,6 +18,7 @@ from rosetta_jit.generate.python.descents import Descents, NotNested, descended
 from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.late import late_fields
+from rosetta_jit.generate.python.local_names import Locals
 from rosetta_jit.generate.python.printed import Attempt, Function, Objects
 from rosetta_jit.generate.python.scope import CODES, Scope, flat_name, view_name
 from rosetta_jit.generate.python.search import FEW, direct
@@ -107,7 +108,7 @@ def print_kernel(
     words = words_of(lanes) | objects.classes | (OF_READERS if objects.layout is not None and objects.layout.recursive else NONE)
 
     def scope(needed: set[str] = loads) -> Scope:
-        return Scope(Namespace(words), lanes, flat, needed, kernel.name, paths, numpy=objects.numpy)
+        return Scope(Locals(words), lanes, flat, needed, kernel.name, paths, numpy=objects.numpy)
 
     for routine in kernel.routines:
         function = Function(scope(), kernel, routine.sites, routines, (), objects, is_routine=True)

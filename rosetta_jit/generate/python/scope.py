@@ -11,10 +11,10 @@ from collections.abc import Callable
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.python.classes import NUMPY
 from rosetta_jit.generate.python.descents import Visit
 from rosetta_jit.generate.python.direct import Direct
+from rosetta_jit.generate.python.local_names import Locals
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.startup.dataclass import dataclass, field
@@ -52,7 +52,7 @@ class Scope:
     ``attributes`` are the fields of the message's row that are the object's at once, by offset, if it is made first.
     """
 
-    locals: Namespace
+    locals: Locals
     lanes: Lanes
     flat: bool
     loads: set[str]

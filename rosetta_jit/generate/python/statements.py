@@ -258,11 +258,9 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
                     print_block(function, otherwise)
         case nodes.Switch(value, cases, default):
             with function.writer.indented(f"match {function.text(value)}:"):
-                for number, body in cases:
-                    with function.writer.indented(f"case {number}:"):
+                for head, body in (*((f"case {number}:", body) for number, body in cases), ("case _:", default)):
+                    with function.writer.indented(head), scope.locals.case(body):
                         print_block(function, body)
-                with function.writer.indented("case _:"):
-                    print_block(function, default)
         case _:
             assert_never(stmt)
 
