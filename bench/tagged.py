@@ -52,6 +52,10 @@ _EIGHTEEN = (*_KINDS, *_KINDS[:5])
 _WITHIN = (
     "".join(f"message {one} {{ {other} in = 1; }} " for one, other in zip("ABCDE", "BCDEF", strict=True)) + "message F { string text = 7; }"
 )
+_SEVERAL = "message S { int32 a = 1; string b = 2; } " + " ".join(
+    f"repeated {kind} l{n} = {n}; map<int32, {kind}> m{n} = {n + 20}; S s{n} = {n + 40}; repeated S r{n} = {n + 60};"
+    for n, kind in enumerate(_KINDS[1:13:4], 1)
+)
 _INTEGERS = [number * 2654435761 % (1 << 1 + number % 30) for number in range(300)]
 TAGGED = {
     "100 short texts": _subject("repeated string v = 1;", b"".join(_sized(10, b"joint_%d" % number) for number in range(100))),
@@ -65,6 +69,7 @@ TAGGED = {
     "60 messages with 10 KB of text": _subject("M next = 1; string text = 2;", _texts(60, 10_000)),
     "200 KB of text six messages deep": _subject(f"{_WITHIN} A in = 1;", _nested(6, _sized(58, b"x" * 200_000))),
     "18 fields with their defaults": _subject(" ".join(f"{type_} f{n} = {n};" for n, type_ in enumerate(_EIGHTEEN, 1)), b""),
+    "12 lists, maps and messages that are not there": _subject(_SEVERAL, b""),
     "a oneof of 12 cases": _subject(
         f"oneof which {{ {' '.join(f'{type_} f{n} = {n};' for n, type_ in enumerate(_KINDS[:12], 1))} }}", b"\x0a\x01a"
     ),

@@ -108,3 +108,39 @@ def test_arrays_of_fixed_dimensions_are_written_from_the_objects():
     for fields in ("byte b[2][3]; byte c[3];", "int8_t v[2][3]; byte b[2][3];"):
         few = {"encoding": "lcm", "schema": {"t.lcm": f"package t; struct T {{ {fields} }}"}}
         assert "_size_1" not in generated(type_request("decode", "t.T", few), "python", BOTH, "unit")["unit.py"]
+
+
+@pytest.mark.parametrize("arrays", ["", "numpy"])
+def test_rows_of_several_dimensions_are_read_at_once(arrays):
+    """Few rows each as a whole, many of them by one call; of bytes and of numbers, with the order of their bytes; none at all."""
+    fields = (
+        "byte b[2][3]; int8_t v[3][30]; int8_t x[2][2][2]; byte r[n][3]; double d[n][3]; int16_t w[n][2]; int8_t s[5][2]; byte y[2][n][2];"
+    )
+    given = {"encoding": "lcm", "schema": {"t.lcm": f"package t; struct T {{ int32_t n; {fields} float f[4][3]; }}"}}
+    request, programs = type_request("decode", "t.T", given), (rj.Decoder.of("t.T", **given), rj.Encoder.of("t.T", **given))
+    text = generated(request, "python", BOTH, "unit", Wishes(numpy=bool(arrays)))["unit.py"]
+    borrow = text[text.index("def _borrow_1(") : text.index("def decode(")]
+    assert "bytearray" not in borrow
+    values = {
+        "b": [b"abc", b"def"],
+        "v": [[*range(-15, 15)]] * 3,
+        "x": [[[1, 2], [3, 4]], [[5, 6], [7, 8]]],
+        "s": [[number, -number] for number in range(5)],
+        "f": [[0.5, -1.0, number] for number in range(4)],
+    }
+    for count in (0, 1, 5):
+        some = {
+            "n": count,
+            "r": [b"\0\1\2"] * count,
+            "d": [[0.5, float(number), -1.5] for number in range(count)],
+            "w": [[-300, number] for number in range(count)],
+            "y": [[b"ab"] * count] * 2,
+        }
+        message = bytes(programs[1](programs[1].holder_type.from_dict({**values, **some})))
+        unit = module(request, BOTH, Wishes(numpy=bool(arrays)))
+        found = unit.decode(message)
+        assert [[*row] for row in found.d] == some["d"]
+        assert all(isinstance(row, np.ndarray if arrays else list) for row in (*found.v, *found.d, *found.w, *found.s))
+        for row in found.d:
+            row[0] = 7.0  # rows are their object's own
+        answers_as_the_library(unit, programs, harmed([message], 30, f"rows {arrays} {count}"))

@@ -33,6 +33,7 @@ WORDS = frozenset(
         "now",
         "copy",
         "np",
+        "made",
     )
 ) | {f"call_{what}" for what in ("now", "number", "registers", "end", "copy", "into")}
 """What no class and no variable may be called: what functions are given, and what they need."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.python.classes import NUMPY, member_names
 from rosetta_jit.generate.python.conversions import within
-from rosetta_jit.generate.python.expressions import CODES, flat_name
+from rosetta_jit.generate.python.scope import CODES, flat_name
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.model.layout import WIDTH, Number, Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, Struct, Type, Union

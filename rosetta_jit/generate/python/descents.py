@@ -36,7 +36,6 @@ from rosetta_jit.kernel.nodes import (
     Expect,
     Expr,
     Fill,
-    Get,
     If,
     Let,
     Local,
@@ -53,12 +52,11 @@ from rosetta_jit.kernel.nodes import (
 from rosetta_jit.kernel.passes.fold import TRUE, folded
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
 from rosetta_jit.kernel.terms import add, index, split
+from rosetta_jit.kernel.visits import Stack, entered, goes_back, gone, stack_of
 from rosetta_jit.model.layout import Layout
 from rosetta_jit.startup.dataclass import dataclass, field
 
 DONE = -1
-VARIABLES = 5
-"""Of a loop: position, state, row, depth, and how many rounds there were."""
 
 
 class NotNested(Exception):  # noqa: N818 - no error: such a loop stays one
@@ -108,16 +106,16 @@ def descended(block: Block, layout: Layout) -> Descents:
         raise NotNested
     (number,) = loops
     before, loop, after = block[:number], block[number], block[number + 1 :]
-    names = [Local("i64", each.name) for each in before if isinstance(each, Var)]
+    stack = stack_of(before)
     match loop:
-        case While(Binary("and", Compare("ge", asked), _), (Switch(switched, cases), Assign())) if len(names) == VARIABLES:
-            at, state, row, depth, _ = names
+        case While(Binary("and", Compare("ge", asked), _), (Switch(switched, cases), Assign())) if stack is not None:
+            at, depth = stack.at, stack.depth
         case _:
             raise NotNested
-    if not asked == switched == state or not all(isinstance(each, Fill | Var | Let | Expect) for each in before):
+    if not asked == switched == stack.state or not all(isinstance(each, Fill | Var | Let | Expect) for each in before):
         raise NotNested
-    found = Descents(at, row, depth)
-    reader = _Reader(dict(cases), found, state)
+    found = Descents(at, stack.row, depth)
+    reader = _Reader(dict(cases), found, stack)
     own, end = reader.chain(0, index(0), index(0))
     while reader.pending:
         lane, entry = reader.pending.popitem()
@@ -132,13 +130,13 @@ def descended(block: Block, layout: Layout) -> Descents:
 class _Reader:
     """Follows states; ``pending`` are the lanes of which rows are visited with the states that begin them."""
 
-    def __init__(self, cases: dict[int, Block], found: Descents, state: Local) -> None:
-        self.cases, self.found, self.state, self.pending = cases, found, state, dict[int, int]()
+    def __init__(self, cases: dict[int, Block], found: Descents, stack: Stack) -> None:
+        self.cases, self.found, self.stack, self.pending = cases, found, stack, dict[int, int]()
 
     def chain(self, number: int, at: Expr, depth: Expr) -> tuple[list[Stmt], Expr]:
         """The statements of a state, and of those that follow in the same row; and where they end in the message."""
         stmts: list[Stmt] = []
-        while number != DONE and not self._ends_row(self.cases.get(number, ())):
+        while number != DONE and not goes_back(self.stack, self.cases.get(number, ())):
             block = _at(self.cases.pop(number, ()), {self.found.at: at, self.found.depth: depth})
             match block:
                 case (*own, If(Compare("gt", count, Const(_, 0)), visit, none)):
@@ -155,46 +153,27 @@ class _Reader:
         return stmts, at
 
     def _variables(self) -> set[str]:
-        return {self.found.at.name, self.found.row.name, self.found.depth.name, self.state.name}
-
-    def _ends_row(self, block: Block) -> bool:
-        """Whether a state goes on with the next row, or with the row around."""
-        match block:
-            case (Let(name, Get()), If(Compare("gt", Local(_, same), _), (*_, Assign(), Assign()), (*_, Assign(), Assign()))):
-                return name == same
-            case _:
-                return False
+        return {each.name for each in (self.stack.at, self.stack.state, self.stack.row, self.stack.depth)}
 
     def _gone(self, block: Sequence[Stmt]) -> tuple[Expr, int]:
         """Where a state ends in the message, and the one behind it."""
-        match block:
-            case (Assign(name, at), Assign(state, Const(_, number))) if (name, state) == (self.found.at.name, self.state.name):
-                return at, int(number)
-            case _:
-                raise NotNested
+        if (found := gone(self.stack, block)) is None:
+            raise NotNested
+        return found
 
     def _visit(self, own: Sequence[Stmt], count: Expr, visit: Block, at: Expr, then: int) -> list[Stmt]:
         """A state up to where rows are visited, and that."""
         found = self.found
-        match visit:
-            case (
-                *checks,
-                SetField(Place(lane, start), Local() as row),
-                SetField(Place(), Const(_, state)),
-                SetField(Place(), Binary("add", counted, Const(_, -1))),
-                Assign(deeper, depth),
-                Assign(here, begun),
-                Assign() as first,
-                Assign() as last,
-            ) if (row, state, counted, deeper, here, begun) == (found.row, then, count, found.depth.name, found.row.name, start):
-                behind, entry = self._gone((first, last))
-            case _:
-                raise NotNested
-        if behind != at or not all(isinstance(each, Expect) for each in checks) or len(checks) > 1:
+        checks = [each for each in visit if isinstance(each, Expect)]
+        rows, (behind, entry) = entered(self.stack, visit[len(checks) : -2]), self._gone(visit[-2:])
+        if rows is None or (rows.then, rows.count) != (then, count):
+            raise NotNested
+        lane, start, depth = rows.lane, rows.start, rows.depth
+        if behind != at or len(checks) > 1:
             raise NotNested
         if lane not in found.rows:
             self.pending[lane] = entry
-        shallow = next((each for each in checks if isinstance(each, Expect) and folded(each.condition) != TRUE), None)
+        shallow = next((each for each in checks if folded(each.condition) != TRUE), None)
         stmts, place = _without_span(own, lane, start, count)
         if place is not None and any(each.lane == lane and each.place and each.place.lane == place.lane for each in found.visits.values()):
             raise NotNested

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.printing import Namespace, Writer
+from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.python.bools import with_stored_bools
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.descents import Descents, NotNested, descended
 from rosetta_jit.generate.python.functions import words_of
+from rosetta_jit.generate.python.local_names import Locals
 from rosetta_jit.generate.python.object_rows import ObjectScope
 from rosetta_jit.generate.python.parts import Parts
 from rosetta_jit.generate.python.positions import NotInParts, Sum, without_places, without_positions
@@ -129,7 +130,7 @@ def _visited(
 
 
 def _scope(kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], loads: set[str]) -> ObjectScope:
-    return ObjectScope(Namespace(words_of(lanes)), lanes, flat=True, loads=loads, name=kernel.name, paths=paths)
+    return ObjectScope(Locals(words_of(lanes)), lanes, flat=True, loads=loads, name=kernel.name, paths=paths)
 
 
 def _parts(unit: Unit, kernel: Kernel, scope: ObjectScope, block: Block, written: dict[str, str], depth: int) -> Parts:

@@ -1,193 +1,25 @@
-"""Kernel expressions as Python expressions: integers are ints, bools are bools, floats are floats, rounded where they have 32 bits.
-
-header_seq              a field of the message's row            position_d[start + i]     one of another lane, through a view of its bytes
-position_used           how many rows are in use                position_room             for how many there is room
-"""
+"""Kernel expressions as Python expressions: integers are ints, bools are bools, floats are floats, rounded where they have 32 bits."""
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Collection
-from itertools import groupby
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 import numpy as np
 
-from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.python.classes import NUMPY
 from rosetta_jit.generate.python.conversions import bits_of, converted, wrapped
-from rosetta_jit.generate.python.descents import Visit
-from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.generate.python.groups import zigzag_of
+from rosetta_jit.generate.python.scope import CODES, Scope, scaled
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.terms import END, type_of
-from rosetta_jit.startup.dataclass import dataclass, field
 
-if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
-
-CODES = {
-    "bool": "B",
-    "i8": "b",
-    "u8": "B",
-    "i16": "h",
-    "u16": "H",
-    "i32": "i",
-    "u32": "I",
-    "i64": "q",
-    "u64": "Q",
-    "f32": "f",
-    "f64": "d",
-}
-"""Of the struct module, and of views."""
-TRUTH = "T"
-"""The struct module's "?" in names of its functions."""
 OPERATORS = {"add": "+", "sub": "-", "mul": "*", "and": "&", "or": "|", "xor": "^", "shr": ">>"}
 LOGICAL = {"and": "and", "or": "or", "xor": "!="}
 COMPARISONS = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
 ROUNDINGS = {"floor": "math.floor", "ceil": "math.ceil", "trunc": "math.trunc", "rint": "round"}
-
-
-@dataclass(slots=True)
-class Scope:
-    """What the printers of a function share.
-
-    ``flat``: the fields of the message's row are locals, ``rows``, some of known ``offsets``, of which ``floats`` are floats, ``bools``
-    bools. ``views`` are the lanes that it reaches, with the code of the view, empty for the bytes themselves; ``paths`` are the fields
-    that lanes belong to; ``counted`` and ``rooms`` are lanes, ``loads`` functions that it needs, ``from_call`` what each call brings:
-    its time and number, registers, object. ``small`` are the locals of 64 bits, without a sign, that are known to be below 2**63,
-    ``sums`` those that are sums.
-    ``attributes`` are the fields of the message's row that are the object's at once, by offset, if it is made first.
-    """
-
-    locals: Namespace
-    lanes: Lanes
-    flat: bool
-    loads: set[str]
-    name: str
-    paths: tuple[str, ...]
-    views: set[tuple[int, str]] = field(default_factory=set[tuple[int, str]])
-    rows: set[str] = field(default_factory=set[str])
-    offsets: dict[str, int] = field(default_factory=dict[str, int])
-    floats: set[str] = field(default_factory=set[str])
-    bools: set[str] = field(default_factory=set[str])
-    counted: set[int] = field(default_factory=set[int])
-    rooms: set[int] = field(default_factory=set[int])
-    from_call: set[str] = field(default_factory=set[str])
-    direct: Direct = field(default_factory=Direct)
-    attributes: dict[int, str] | None = None
-    numpy: bool = False
-    small: set[str] = field(default_factory=set[str])
-    sums: dict[nodes.Expr, str] = field(default_factory=dict[nodes.Expr, str])
-
-    def note(self, name: str, *, is_small: bool) -> None:
-        """Know of a local whether it is below 2**63."""
-        (self.small.add if is_small else self.small.discard)(name)
-
-    def view(self, lane: int, code: str) -> str:
-        """The view of a lane's rows as numbers of one type."""
-        self.views.add((lane, code))
-        return view_name(self.lanes, lane, code)
-
-    def used(self, lane: int) -> str:
-        self.counted.add(lane)
-        return "1" if lane == 0 else f"{self.lanes.rows(lane)}_used"
-
-    def room(self, lane: int) -> str:
-        self.rooms.add(lane)
-        return "1" if lane == 0 else f"{self.lanes.rows(lane)}_room"
-
-    def struct(self, order: str, code: str, verb: str) -> str:
-        """A function of the struct module: ``load_I`` with the low byte first, ``load_I_be`` with the high one."""
-        code = "".join(f"{count}{each}" if (count := len([*same])) > 1 else each for each, same in groupby(code))
-        name = f"_{verb}_{code.replace('?', TRUTH)}{'' if order == '<' else '_be'}"
-        self.loads.add(name)
-        return name
-
-    def dtype(self, scalar: str, order: str = "<") -> str:
-        """Numpy's type of a scalar in the message."""
-        code = NUMPY[scalar][1]
-        name = f"_dtype_{code}{'_be' if order == '>' and code[1:] != '1' else ''}"
-        self.loads.add(name)
-        return name
-
-    def place(self, place: nodes.Place, scalar: str) -> str:
-        """The same for a place of a kernel."""
-        if place.lane in self.direct.elements:
-            return self.element(place.lane, self.direct.elements[place.lane].index(place))
-        return self.field(place.lane, expression(self, place.row), place.offset, scalar)
-
-    def truth_of(self, place: nodes.Place) -> str | None:  # noqa: ARG002 - of objects
-        """What stands for a bool of an object."""
-        return None
-
-    def element(self, lane: int, number: int) -> str:
-        """The local for an element of an array that has few."""
-        return self.locals.identifier(f"{self.lanes.rows(lane)}\0{number}")
-
-    def own(self, lane: int, offset: int, scalar: str) -> str:
-        """The local for a field of the row that a loop fills."""
-        path = self.lanes.field(lane, "", offset, scalar)
-        return self.locals.identifier(f"{self.lanes.rows(lane)}\0{offset}" if path is None else re.sub(r"\W+", "_", path).strip("_"))
-
-    def text(self, lane: int, offset: int) -> str:
-        """The local for a text that is decoded where it is checked, or the attribute."""
-        if lane == 0 and self.attributes and offset in self.attributes:
-            return self.attributes[offset]
-        start = flat_name(self.lanes, offset, "i64") if lane == 0 else self.own(lane, offset, "i64")
-        return self.locals.identifier(f"{start.removesuffix('_start')}\0text")
-
-    def visited(self, visit: Visit) -> str:
-        """The list of the messages, of a type that contains itself, that fill a span."""
-        return self.locals.identifier(f"{self.lanes.rows(visit.lane)}\0list")
-
-    def reader(self, lane: int) -> str:
-        """The function that reads such a message of a lane."""
-        return f"_read_{self.lanes.rows(lane)}"
-
-    def piece(self, lane: int, offset: int) -> str:
-        """The local for bytes that are taken where a statement says where they are, or the attribute."""
-        if lane == 0 and self.attributes and offset in self.attributes:
-            return self.attributes[offset]
-        return self.locals.identifier(f"{self.text(lane, offset).removesuffix('_text')}\0bytes")
-
-    def field(self, lane: int, row: str, offset: int, scalar: str) -> str:
-        """A scalar of a row."""
-        if lane == 0 and self.attributes and offset in self.attributes:
-            return self.attributes[offset]
-        if lane == 0 and self.flat:
-            name = flat_name(self.lanes, offset, scalar)
-            self.rows.add(name)
-            self.offsets[name] = offset
-            if scalar in FLOATS or scalar == "bool":
-                (self.bools if scalar == "bool" else self.floats).add(name)
-            return name
-        if lane in self.direct.appended or lane in self.direct.whole:
-            return self.own(lane, offset, scalar)
-        width, stride = nodes.WIDTH[scalar], self.lanes.stride(lane)
-        return f"{self.view(lane, CODES[scalar])}[{_scaled(row, stride // width, offset // width)}]"
-
-
-def view_name(lanes: Lanes, lane: int, code: str) -> str:
-    """What views of lanes are called."""
-    name = lanes.rows(lane)
-    return f"{name}_{code}" if code else name
-
-
-def flat_name(lanes: Lanes, offset: int, scalar: str) -> str:
-    """The local for a field of the message's row."""
-    path = lanes.field(0, "0", offset, scalar)
-    return f"m_{offset}" if path is None else "m_" + re.sub(r"\W+", "_", path.partition("->")[2]).strip("_")
-
-
-def _scaled(row: str, times: int, offset: int) -> str:
-    text = row if times == 1 else "0" if row == "0" else f"{row} * {times}"
-    if text == "0":
-        return str(offset)
-    return f"{text} + {offset}" if offset else text
 
 
 def expression(scope: Scope, expr: nodes.Expr) -> str:
@@ -200,7 +32,7 @@ def expression(scope: Scope, expr: nodes.Expr) -> str:
         case nodes.Load(type_, at, order):
             return _loaded(scope, type_, bare(expression(scope, at)), order)
         case nodes.Get(type_, place):
-            text = scope.place(place, type_)
+            text = scope.place(place, type_, lambda: expression(scope, place.row))
             return f"({text} != 0)" if type_ == "bool" and text not in scope.bools else text
         case nodes.Used() | nodes.Capacity() | nodes.HostValue() | nodes.Register():
             return _known(scope, expr)
@@ -391,6 +223,6 @@ def location(scope: Scope, address: nodes.Address) -> tuple[str, str]:
         case nodes.Wire(at):
             return "data", bare(expression(scope, at))
         case nodes.Place(lane, row, offset):
-            return scope.view(lane, ""), _scaled(expression(scope, row), scope.lanes.stride(lane), offset)
+            return scope.view(lane, ""), scaled(expression(scope, row), scope.lanes.stride(lane), offset)
         case _:
             assert_never(address)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 
-from rosetta_jit.generate.python.expressions import CODES
+from rosetta_jit.generate.python.scope import CODES
 from rosetta_jit.kernel.nodes import WIDTH, Assign, Call, Const, Convert, For, Get, Let, Place, Store
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Set
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.printing import Namespace, Writer
+from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.cleared import settled
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
@@ -15,10 +15,13 @@ from rosetta_jit.generate.python.bools import with_bytes
 from rosetta_jit.generate.python.classes import WORDS
 from rosetta_jit.generate.python.constants import with_constants
 from rosetta_jit.generate.python.descents import Descents, NotNested, descended
-from rosetta_jit.generate.python.direct import FEW, direct
-from rosetta_jit.generate.python.expressions import CODES, Scope, expression, flat_name, view_name
+from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.groups import not_negative
+from rosetta_jit.generate.python.late import late_fields
+from rosetta_jit.generate.python.local_names import Locals
 from rosetta_jit.generate.python.printed import Attempt, Function, Objects
+from rosetta_jit.generate.python.scope import CODES, Scope, flat_name, view_name
+from rosetta_jit.generate.python.search import FEW, direct
 from rosetta_jit.generate.python.statements import print_block
 from rosetta_jit.generate.python.sums import with_locals
 from rosetta_jit.generate.python.visiting import OF_READERS, counts_of_rows, print_readers, with_copy
@@ -105,7 +108,7 @@ def print_kernel(
     words = words_of(lanes) | objects.classes | (OF_READERS if objects.layout is not None and objects.layout.recursive else NONE)
 
     def scope(needed: set[str] = loads) -> Scope:
-        return Scope(Namespace(words), lanes, flat, needed, kernel.name, paths, numpy=objects.numpy)
+        return Scope(Locals(words), lanes, flat, needed, kernel.name, paths, numpy=objects.numpy)
 
     for routine in kernel.routines:
         function = Function(scope(), kernel, routine.sites, routines, (), objects, is_routine=True)
@@ -147,6 +150,8 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
     body = with_locals(with_bytes(with_constants(body))) if kernel.direction == "decode" else undamaged(body, kernel.sites)
     if kernel.direction == "decode" and scope.flat and objects.layout is not None:
         body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, objects.blobs, few=0 if scope.numpy else FEW)
+        known = {*scope.direct.whole, *scope.direct.appended, *scope.direct.elements, *scope.direct.rows}
+        body, scope.direct.fields = late_fields(body, kernel, objects.layout, known) if descents is None else (body, ())
     behind = frozenset[str]()
     if descents is not None:
         scope.direct.visits, scope.direct.left, behind = descents.visits, descents.left, descents.behind()
@@ -181,20 +186,33 @@ def _completed(line: str, function: Function) -> list[str]:
         begin, size = map(int, text[5:-1].split())
         if size == scope.lanes.stride(0):
             rows = scope.rows - {flat_name(scope.lanes, *each) for each in function.settled}
+            offsets = {*range(size)} - {offset for late in scope.direct.fields for offset in late.offsets}
+            rows -= {name for name in rows if scope.offsets.get(name, 0) not in offsets}
         else:
-            rows = {name for name, offset in scope.offsets.items() if begin <= offset < begin + size}
-        late = [span for span in scope.direct.late if begin <= span[1] < begin + size and span[1] not in (scope.attributes or ())]
-        texts = {scope.text(*span) for span in late if span in scope.direct.texts}
-        pieces = {scope.piece(*span) for span in late if span in scope.direct.pieces}
-        numbers = rows - scope.floats - scope.bools
-        groups = ((numbers, "0"), (rows & scope.floats, "0.0"), (rows & scope.bools, "False"), (texts, '""'), (pieces, 'b""'))
-        return [f"{before}{' = '.join(sorted(group))} = {zero}" for group, zero in groups if group]
+            offsets = {*range(begin, begin + size)}
+            rows = {name for name, offset in scope.offsets.items() if offset in offsets}
+        return [f"{before}{each}" for each in _cleared(scope, rows, offsets)]
+    if text.startswith("<late "):
+        late = scope.direct.fields[int(text[6:-1])]
+        has, rows = scope.has_field(late.name), {name for name, offset in scope.offsets.items() if offset in late.offsets}
+        lines = [f"{has} = True", *_empty(function, _lanes(function) & late.lanes), *_cleared(scope, rows, late.offsets)]
+        return [f"{before}if not {has}:", *(f"{before}    {each}" for each in lines)]
     if text.startswith("<views "):
         lane = int(text[7:-1])
         name = scope.lanes.rows(lane)
         codes = sorted(code for number, code in scope.views if number == lane and code)
         return [f'{before}{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
     return [line]
+
+
+def _cleared(scope: Scope, rows: Set[str], offsets: Set[int]) -> list[str]:
+    """The lines that set some ``rows``, which are locals, to 0, and the texts and bytes at some offsets to nothing."""
+    late = [span for span in scope.direct.late if span[1] in offsets and span[1] not in (scope.attributes or ())]
+    texts = {scope.text(*span) for span in late if span in scope.direct.texts}
+    pieces = {scope.piece(*span) for span in late if span in scope.direct.pieces}
+    numbers = rows - scope.floats - scope.bools
+    groups = ((numbers, "0"), (rows & scope.floats, "0.0"), (rows & scope.bools, "False"), (texts, '""'), (pieces, 'b""'))
+    return [f"{' = '.join(sorted(group))} = {zero}" for group, zero in groups if group]
 
 
 def _parameters(function: Function, *, own_only: bool) -> list[str]:
@@ -227,7 +245,7 @@ def chained(lines: list[str]) -> list[str]:
     found: dict[str, list[str]] = {}
     for line in lines:
         name, _, value = line.partition(" = ")
-        is_constant = value in ("0", "_NOTHING") or value.startswith("_EMPTY_")
+        is_constant = value in ("0", "False", "_NOTHING") or value.startswith("_EMPTY_")
         found.setdefault(value if is_constant else line, []).append(name)
     return [f"{' = '.join(names)} = {value}" if " = " not in value else value for value, names in found.items()]
 
@@ -236,7 +254,8 @@ def _begin(function: Function, role: Role) -> list[str]:
     """Lanes that start empty, or as another message has left them, and views of those that are given."""
     kept, moved, kind = function.kernel.kept, moved_lanes(function.kernel), kind_of(role)
     scope, own, lines = function.scope, function.scope.lanes.own, list[str]()
-    for lane in sorted(_lanes(function) - {0}):
+    late = scope.direct.fields
+    for lane in sorted(_lanes(function) - {0}.union(*(each.lanes for each in late))):
         name = scope.lanes.rows(lane)
         codes = sorted(code for number, code in scope.views if number == lane and code)
         if lane < own and kind in ("encode", "size"):
@@ -251,17 +270,30 @@ def _begin(function: Function, role: Role) -> list[str]:
         if lane in function.measured:
             lines += [f"{name}_room = len({name}) // {scope.lanes.stride(lane)}"] if lane in scope.rooms else []
             lines += [f'{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
+            lines += [f"{name}_used = 0"] if lane in scope.counted else []
         else:
-            lines.append(f"{name} = {'[]' if lane in scope.direct.gathered else '_NOTHING'}")
-            lines += [f"{name}_room = 0"] if lane in scope.rooms else []
-            lines += [f"{name}_{code} = _EMPTY_{code}" for code in codes]
-            scope.loads.update(f"_EMPTY_{code}" for code in codes)
-        lines += [f"{name}_used = 0"] if lane in scope.counted else []
-    lines = chained(lines)
+            lines += _empty_lane(function, lane)
+    lines = chained([*lines, *(f"{scope.has_field(each.name)} = False" for each in late)])
     if not scope.flat and kind in ("decode", "borrow"):
         lines.append('message = bytearray(_rows["message"])' if kept else f"message = bytearray({scope.lanes.stride(0)})")
         lines += [f'message_{code} = memoryview(message).cast("{code}")' for lane, code in sorted(scope.views) if lane == 0 and code]
     return lines
+
+
+def _empty_lane(function: Function, lane: int) -> list[str]:
+    """The locals of a lane that has no row yet."""
+    scope, name = function.scope, function.scope.lanes.rows(lane)
+    codes = sorted(code for number, code in scope.views if number == lane and code)
+    scope.loads.update(f"_EMPTY_{code}" for code in codes)
+    lines = [f"{name} = {'[]' if lane in scope.direct.gathered else '_NOTHING'}"]
+    lines += [f"{name}_room = 0"] if lane in scope.rooms else []
+    lines += [f"{name}_{code} = _EMPTY_{code}" for code in codes]
+    lines += [f"{scope.placed(*span)} = {{}}" for span in scope.direct.placed if span[0] == lane]
+    return [*lines, f"{name}_used = 0"] if lane in scope.counted else lines
+
+
+def _empty(function: Function, lanes: Set[int]) -> list[str]:
+    return chained([line for lane in sorted(lanes) for line in _empty_lane(function, lane)])
 
 
 def _blank(writer: Writer) -> None:

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.python.direct import numbers_of
-from rosetta_jit.generate.python.expressions import CODES, expression
+from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.object_rows import Binder, Listed, ObjectScope
 from rosetta_jit.generate.python.packed import ANY, Part, part_text, starred, with_numbers
 from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum
 from rosetta_jit.generate.python.runtime.varints import _varint  # pyright: ignore[reportPrivateUsage] - as generated modules name it
+from rosetta_jit.generate.python.scope import CODES
+from rosetta_jit.generate.python.search import numbers_of
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.nodes import WIDTH, Convert, Expr, Get, Place
 from rosetta_jit.kernel.terms import index, type_of

@@ -10,25 +10,21 @@ from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.unit_lanes import named_lanes
-from rosetta_jit.generate.python.borrowed import borrowed
 from rosetta_jit.generate.python.classes import WORDS, classes, names_of
 from rosetta_jit.generate.python.collecting import Collect
-from rosetta_jit.generate.python.direct import Direct
+from rosetta_jit.generate.python.decoder import print_decoder, taken_lanes
 from rosetta_jit.generate.python.encoder import encoder_in_parts
-from rosetta_jit.generate.python.expressions import CODES, TRUTH, Scope, view_name
 from rosetta_jit.generate.python.functions import Attempt, beside_lanes, is_flat, print_kernel
-from rosetta_jit.generate.python.making import Make, arrays_of
+from rosetta_jit.generate.python.making import Make
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.python.printed import Objects
-from rosetta_jit.generate.python.sparse import OBJECT, attributes_of, settings
+from rosetta_jit.generate.python.scope import CODES, TRUTH, Scope, view_name
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
-from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.nodes import Advance, Block, Const, Direction, Return
+from rosetta_jit.kernel.nodes import Const, Direction, Return
 from rosetta_jit.kernel.traits import asks_host
-from rosetta_jit.kernel.walk import statements
-from rosetta_jit.model.types import Bytes, Ref
+from rosetta_jit.model.types import Ref
 from rosetta_jit.startup.dataclass import replace
 
 REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
@@ -144,52 +140,15 @@ class _Module:
     # --- decoding --------------------------------------------------------------------------------------------------------------------
 
     def _decoder(self) -> str:
-        kernel, type_ = borrowed(undamaged_kernel(self.unit.kernels["borrow"]), self.unit.layout), Ref(self.unit.type)
-        taken = frozenset(stmt.lane for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, Advance))
-
-        def made(scope: Scope, _: str) -> str:
-            if scope.attributes is not None:
-                return OBJECT
-            return Make(self.unit, scope, self.names, taken).value(type_, self.unit.layout.root, 0, "0")
-
-        def inner(scope: Scope) -> list[str]:
-            lines: list[str] = []
-            for lane, struct in self.unit.layout.recursive:
-                text = Make(self.unit, scope, self.names, taken).value(Ref(struct), self.unit.layout.lanes[lane].element, lane, "index")
-                lines += [f"def made_{scope.lanes.rows(lane)}(index):", f"    return {text}", ""]
-            return lines
-
-        arrays, in_all = arrays_of(self.unit), arrays_of(self.unit, in_recursive=True)
-        rows = {**in_all, **{lane: Ref(struct) for lane, struct in self.unit.layout.recursive}}
-
-        def row(scope: Scope, lane: int) -> str:
-            return Make(self.unit, scope, self.names, taken).value(rows[lane], self.unit.layout.lanes[lane].element, lane, "")
-
-        def attributes(body: Block, settled: frozenset[tuple[int, str]], direct: Direct) -> dict[int, str] | None:
-            return attributes_of(self.unit, body, settled, direct)
-
-        def begun(scope: Scope) -> list[str]:
-            return [f"{OBJECT} = {self.root}()"] if scope.attributes is not None else []
-
-        def set_in_the_end(scope: Scope) -> list[str]:
-            return [*settings(Make(self.unit, scope, self.names, taken))] if scope.attributes is not None else []
-
-        origins, lanes = self.unit.origins.get("borrow", ()), self._lanes(kernel)
-        blobs = frozenset(lane for lane, type_ in in_all.items() if isinstance(self.unit.schema.resolve(type_), Bytes))
-        lists = frozenset(arrays), frozenset(in_all), blobs
-        objects = Objects(
-            made, attributes, begun, set_in_the_end, row, inner, self.unit.layout, *lists, self.unit.numpy, frozenset(self.names.values())
-        )
-        text, attempts = print_kernel(kernel, lanes, "borrow", self.loads, origins, objects, self.paths, flat=is_flat(kernel, lanes))
-        return "\n\n".join([self._sites("borrow"), f"\n{text.rstrip()}", f"\n{self._decode(attempts)}"])
+        text, attempts = print_decoder(self.unit, self.names, self.lanes, self.loads, self.paths)
+        return "\n\n".join([self._sites("borrow"), text, f"\n{self._decode(attempts)}"])
 
     def _decoder_of(self, wire: str, role: Role) -> str:
         """The decoder of one of several wires."""
         kernel = replace(self.unit.kernels[role], kept=tuple({*self.unit.kernels[role].kept} & {*staying(self.unit)}))
-        taken = frozenset(stmt.lane for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, Advance))
 
         def inner(scope: Scope) -> list[str]:
-            make = Make(self.unit, scope, self.names, taken)
+            make = Make(self.unit, scope, self.names, taken_lanes(kernel))
             return filling(make, kernel, self.unit.shares[role])
 
         objects = Objects(lambda _, __: "filled()", inner=inner, numpy=self.unit.numpy, classes=frozenset(self.names.values()))

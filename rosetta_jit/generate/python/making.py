@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 
 from rosetta_jit.generate.python.classes import NUMPY
-from rosetta_jit.generate.python.expressions import CODES, Scope
+from rosetta_jit.generate.python.scope import CODES, Scope, view_name
+from rosetta_jit.generate.python.slots import lanes_within
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.model.layout import WIDTH, Member, Number, Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Field, Map, Optional, Ref, String, Struct, Type, Union
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 _HOW = {"utf-8": "", "octets": '"utf-8", "surrogateescape"'}
 """How texts are decoded: those that were checked, and others."""
@@ -17,12 +19,17 @@ _HOW = {"utf-8": "", "octets": '"utf-8", "surrogateescape"'}
 
 @dataclass(slots=True)
 class Make:
-    """Expressions for objects; ``names`` are the classes, ``reserved`` the lanes of which the kernel takes rows: others stay empty."""
+    """Expressions for objects; ``names`` are the classes, ``reserved`` the lanes of which the kernel takes rows: others stay empty.
+
+    ``functions`` are those that make lists and maps of the message out of rows, by their text: a comprehension within the decoder would
+    make its locals slower. Without them these stand where they are used.
+    """
 
     unit: Unit
     scope: Scope
     names: Mapping[str, str]
     reserved: frozenset[int]
+    functions: dict[str, str] | None = None
     depth: int = 0
 
     def value(self, type_: Type, slot: Slot, lane: int, row: str) -> str:
@@ -52,27 +59,35 @@ class Make:
         return f"{self.row(type_, slot.lane, self._start(slot, lane, row))} if {self._count(slot, lane, row)} else {instead}"
 
     def _start(self, slot: Span, lane: int, row: str) -> str:
+        if self.scope.direct.late_at(slot) is not None:
+            return "0"
         return self.scope.field(lane, row, slot.offset, "i64")
 
     def _count(self, slot: Span, lane: int, row: str) -> str:
+        if self.scope.direct.late_at(slot) is not None:
+            return self.scope.used(slot.lane)
         return self.scope.field(lane, row, slot.offset + 8, "i64")
 
     def count(self, slot: Span) -> str:
-        """How many elements a sequence of the message has; nothing where it is an object already."""
+        """What is true where a sequence of the message has elements; nothing where it is an object already."""
         direct = self.scope.direct
-        known = {*direct.whole, *direct.appended, *direct.elements}
+        if (late := direct.late_at(slot)) is not None:
+            return self.scope.has_field(late.name)
+        known = {*direct.whole, *direct.appended, *direct.elements, *direct.rows}
         places = {*direct.pieces, *direct.texts}
         is_known = slot.lane in known or (0, slot.offset) in places or direct.visit_at(0, slot.offset) is not None
         return "" if is_known else self._count(slot, 0, "0")
 
-    def unknown(self, slot: Span) -> str:
+    def unknown(self, slot: Span, lane: int, row: str) -> str:
         """The fields that the schema does not know."""
-        return self._text("_bytes", slot, 0, "0")
+        return self._text("_bytes", slot, self._start(slot, lane, row), self._count(slot, lane, row))
 
     def struct(self, struct: Struct, slot: Row, lane: int, row: str) -> str:
         arguments = [self.member(each, member, slot, lane, row) for each, member in zip(struct.fields, slot.members, strict=True)]
         if slot.unknown is not None:
-            arguments.append(self._text("_bytes", slot.unknown, lane, row))
+            late = self.scope.direct.late_at(slot.unknown)
+            there = self._count(slot.unknown, lane, row) if late is None else self.scope.has_field(late.name)
+            arguments.append(f'{self.unknown(slot.unknown, lane, row)} if {there} else b""')
         return f"{self.names[struct.name]}({', '.join(arguments)})"
 
     def member(self, each: Field, member: Member, slot: Row, lane: int, row: str) -> str:
@@ -81,14 +96,28 @@ class Make:
             match self.unit.schema.resolve(each.type), member.slot:
                 case Struct(), Span() as link:
                     return self.linked(each.type, link, lane, row, "None")
+                case _, Span() as span if (late := self.scope.direct.late_at(span)) is not None:
+                    value = self.value(each.type, span, lane, row)
+                    return f"{value} if {self.scope.has_field(late.name)} else {self._nothing(each.type, span)}"
                 case _:
                     return self.value(each.type, member.slot, lane, row)
         assert isinstance(each.type, Optional)
-        there = self.is_there(member.presence, slot, lane, row)
+        there = self.is_there(member, slot, lane, row)
         return f"({self.value(each.type.value, member.slot, lane, row)}) if {there} else None"
 
-    def is_there(self, presence: int, slot: Row, lane: int, row: str) -> str:
-        word, bit = divmod(presence, 64)
+    def _nothing(self, type_: Type, slot: Span) -> str:
+        """A list or a map without elements."""
+        element = self.unit.layout.lanes[slot.lane].element
+        if isinstance(element, Number) and self.unit.numpy:
+            return f"np.zeros(0, np.{NUMPY[element.scalar][0]})"
+        return "{}" if isinstance(self.unit.schema.resolve(type_), Map) else "[]"
+
+    def is_there(self, member: Member, slot: Row, lane: int, row: str) -> str:
+        """Whether a row has a field that may be absent."""
+        assert member.presence is not None
+        if (late := self.scope.direct.late_at(member.slot)) is not None and late.is_presence:
+            return self.scope.has_field(late.name)
+        word, bit = divmod(member.presence, 64)
         return f"{self.scope.field(lane, row, slot.offset + 8 * word, 'u64')} & {1 << bit}"
 
     def union(self, union: Union, slot: Variant, lane: int, row: str) -> str:
@@ -99,14 +128,38 @@ class Make:
         ]
         return f"({''.join(cases)}None)"
 
-    def _text(self, function: str, slot: Span, lane: int, row: str) -> str:
-        return f"{function}({self.scope.view(slot.lane, '')}, data, {self._start(slot, lane, row)}, {self._count(slot, lane, row)})"
+    def _text(self, function: str, slot: Span, start: str, count: str) -> str:
+        return f"{function}({self.scope.view(slot.lane, '')}, data, {start}, {count})"
 
     def sequence(self, type_: String | Bytes | Array | Map, slot: Span, lane: int, row: str) -> str:
         known = self._direct(type_, slot, lane, row)
         if known is not None:
             return known
         start, count = self._start(slot, lane, row), self._count(slot, lane, row)
+        if lane == 0 and self.functions is not None:
+            return self._by_function(self.functions, type_, slot, start, count)
+        return self.elements(type_, slot, lane, start, count)
+
+    def _by_function(self, functions: dict[str, str], type_: String | Bytes | Array | Map, slot: Span, start: str, count: str) -> str:
+        """A sequence of the message, by a function where that takes a comprehension."""
+        inner = replace(self.scope, views=set[tuple[int, str]]())
+        text = replace(self, scope=inner, functions=None).elements(type_, slot, 0, start, count)
+        self.scope.views |= inner.views
+        if " for " not in text:
+            return text
+        lanes, direct = lanes_within(slot, self.unit.layout), self.scope.direct
+        needs = {view_name(self.scope.lanes, *view) for view in inner.views}
+        needs |= {self.scope.lanes.rows(each) for each in lanes & direct.gathered.keys()}
+        needs |= {self.scope.placed(*span) for span in direct.placed if span[0] in lanes}
+        needs |= {each for each in (start, count) if each.isidentifier()}
+        arguments = ", ".join([*(["data"] if re.search(r"\bdata\b", text) else []), *sorted(needs)])
+        own = f"_made_{self.scope.lanes.rows(slot.lane)}"
+        own = own if own not in functions.values() else f"{own}_{len(functions)}"
+        name = functions.setdefault(f"({arguments}):\n    return {text}\n", own)
+        return f"{name}({arguments})"
+
+    def elements(self, type_: String | Bytes | Array | Map, slot: Span, lane: int, start: str, count: str) -> str:
+        """Those of a sequence, from rows of its lane."""
         element = self.unit.layout.lanes[slot.lane].element
         match type_:
             case String("utf-16"):
@@ -115,17 +168,17 @@ class Make:
                 if slot.lane not in self.reserved:
                     text = f"data[{start} : {start} - 1 - {count}].decode({_HOW[encoding]})"
                     return f'{text} if {count} else ""'
-                return self._text("_text", slot, lane, row)
+                return self._text("_text", slot, start, count)
             case Bytes():
                 inside = slot.lane not in self.reserved
-                return f"data[{start} : {start} - 1 - {count}] if {count} else b''" if inside else self._text("_bytes", slot, lane, row)
+                return f"data[{start} : {start} - 1 - {count}] if {count} else b''" if inside else self._text("_bytes", slot, start, count)
             case Array() if isinstance(element, Number):
                 if WIDTH[element.scalar] == 1 and element.scalar != "bool":
-                    borrowed = self._text("_bytes", slot, lane, row)
+                    borrowed = self._text("_bytes", slot, start, count)
                     if self.unit.numpy:
                         return f"np.array(bytearray({borrowed}), np.uint8).view(np.{NUMPY[element.scalar][0]})"
                     return f'memoryview({borrowed}).cast("{CODES[element.scalar]}").tolist()'
-                numbers = f"{self.scope.view(slot.lane, CODES[element.scalar])}[{start} : {start} + {count}]"
+                numbers = f"{self.scope.view(slot.lane, CODES[element.scalar])}[{_rows(start, count)}]"
                 if self.unit.numpy:
                     return self._numbers(numbers, element.scalar)
                 numbers += ".tolist()"
@@ -135,7 +188,7 @@ class Make:
                 return self._texts(inner, slot, start, count)
             case Array(String("utf-8" | "octets")) if lane == 0 and isinstance(element, Span):
                 text_lane, rows = self.scope.view(element.lane, ""), self.scope.view(slot.lane, "q")
-                return f"_texts({text_lane}, data, {rows}[{start} * 2 : ({start} + {count}) * 2])"
+                return f"_texts({text_lane}, data, {rows}[{_rows(start, count, 2)}])"
             case Array(inner):
                 return f"[{self._each(lambda index: self.row(inner, slot.lane, index), start, count)}]"
             case Map(key, value):
@@ -147,7 +200,7 @@ class Make:
         """The text of each element by the name of its index, in a comprehension."""
         self.depth += 1
         index = f"i_{self.depth}"
-        found = f"{text(index)} for {index} in range({start}, {start} + {count})"
+        found = f"{text(index)} for {index} in range({count if start == '0' else f'{start}, {start} + {count}'})"
         self.depth -= 1
         return found
 
@@ -168,12 +221,18 @@ class Make:
             return f"{piece}.decode({_HOW[type_.encoding]})" if isinstance(type_, String) else piece
         if slot.lane in known.whole:
             return self.scope.lanes.rows(slot.lane)
+        if slot.lane in known.gathered and known.late_at(slot) is not None:
+            return self.scope.lanes.rows(slot.lane)
         if slot.lane in known.gathered:
             start = self._start(slot, lane, row)
             return f"{self.scope.lanes.rows(slot.lane)}[{start} : {start} + {self._count(slot, lane, row)}]"
         if slot.lane in known.appended:
             rows = self.scope.lanes.rows(slot.lane)
             return self._numbers(rows, element.scalar) if isinstance(element, Number) else rows
+        if (lane, slot.offset) in known.placed:
+            return f'{self.scope.placed(lane, slot.offset)}.get({self._start(slot, lane, row)}, "")'
+        if slot.lane in known.rows:
+            return f"[{', '.join(self.scope.element(slot.lane, number) for number in range(len(known.rows[slot.lane])))}]"
         if slot.lane in known.elements and isinstance(element, Number):
             texts = (self.scope.element(slot.lane, number) for number in range(len(known.elements[slot.lane])))
             return self._numbers(f"[{', '.join(texts)}]", element.scalar, is_few=True)
@@ -196,6 +255,13 @@ class Make:
         if self.unit.layout.lanes[lane].links is not None:
             return f"made_{self.scope.lanes.rows(lane)}({index})"
         return self.value(type_, self.unit.layout.lanes[lane].element, lane, index)
+
+
+def _rows(start: str, count: str, each: int = 1) -> str:
+    """Which numbers rows are, of which each is so many."""
+    if start == "0":
+        return f":{count}" if each == 1 else f": {count} * {each}"
+    return f"{start} : {start} + {count}" if each == 1 else f"{start} * {each} : ({start} + {count}) * {each}"
 
 
 def arrays_of(unit: Unit, *, in_recursive: bool = False) -> dict[int, Type]:

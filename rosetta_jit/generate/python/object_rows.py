@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.classes import member_names
 from rosetta_jit.generate.python.conversions import within
-from rosetta_jit.generate.python.expressions import CODES, Scope, expression
+from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.positions import NotInParts
+from rosetta_jit.generate.python.scope import CODES, Scope
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.nodes import WIDTH, Binary, Expr, Local, Place
 from rosetta_jit.kernel.terms import index
-from rosetta_jit.model.layout import Layout, Member, Number, Row, Slot, Span, Variant, map_entry
+from rosetta_jit.model.layout import Member, Number, Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Map, Optional, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass, field
 
@@ -75,7 +77,7 @@ class ObjectScope(Scope):
     linked: dict[int, str] = field(default_factory=dict[int, str])
     keeps_long: bool = False
 
-    def place(self, place: Place, scalar: str) -> str:
+    def place(self, place: Place, scalar: str, row: Callable[[], str]) -> str:  # noqa: ARG002 - of a scope
         """A scalar of a row of an object."""
         known = self.objects.get((place.lane, place.row))
         if known is not None and place.offset in known:
@@ -150,22 +152,6 @@ class ObjectScope(Scope):
     def has(self, place: Place) -> bool:
         """Whether a field of an object is known."""
         return place.offset in self.objects.get((place.lane, place.row), {})
-
-
-def lanes_within(slot: Slot, layout: Layout) -> set[int]:
-    """The lanes of the sequences that a row has, and of those in these."""
-    found: set[int] = set()
-    pending = [slot]
-    while pending:
-        row = pending.pop()
-        pending += [member.slot for member in row.members] if isinstance(row, Variant) else []
-        for each in slots_of(row):
-            if isinstance(each, Span) and each.lane not in found:
-                found.add(each.lane)
-                pending.append(layout.lanes[each.lane].element)
-            elif isinstance(each, Variant) and each is not row:
-                pending.append(each)
-    return found
 
 
 def _checked(text: str, scalar: str) -> str:

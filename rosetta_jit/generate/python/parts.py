@@ -8,32 +8,29 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.python.bools import Bools, bools_written
 from rosetta_jit.generate.python.defaults import asked_first, reads_of
 from rosetta_jit.generate.python.expressions import expression
-from rosetta_jit.generate.python.flags import Flags, flags_of
-from rosetta_jit.generate.python.groups import turned
-from rosetta_jit.generate.python.messages_in_parts import Messages
-from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope, lanes_within
+from rosetta_jit.generate.python.loops_in_parts import Loops
+from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope
 from rosetta_jit.generate.python.packed import Part
-from rosetta_jit.generate.python.positions import NotInParts, Positions, Sum, known_width
+from rosetta_jit.generate.python.positions import NotInParts, Positions
 from rosetta_jit.generate.python.presence import bit_tested, case_tested, may_be_empty, places_read, words_tested
 from rosetta_jit.generate.python.printed import Function
 from rosetta_jit.generate.python.recursive_rows import is_hidden
+from rosetta_jit.generate.python.slots import lanes_within
 from rosetta_jit.generate.python.statements import fail, print_statement
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import index
-from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
+from rosetta_jit.kernel.walk import expressions_of, statements
 from rosetta_jit.model.layout import Number
 
 
-class Parts(Messages):
+class Parts(Loops):
     """Prints a body.
 
     ``routines`` are the functions that give the bytes which routines write, ``called`` those of them that are. ``lengths`` are the locals
@@ -213,7 +210,7 @@ class Parts(Messages):
         self.end("message")
         print_statement(self.function, nodes.Return(index(0), stmt.registers))
 
-    # --- branches and loops ----------------------------------------------------------------------------------------------------------
+    # --- branches ------------------------------------------------------------------------------------------------------------------
 
     def _if(self, stmt: nodes.If) -> None:
         match stmt:
@@ -267,130 +264,3 @@ class Parts(Messages):
                 ends.append(before.branch())
         before.join(ends)
         self.positions = before
-
-    def _for(self, loop: nodes.For) -> None:
-        if (found := turned(loop)) is not None and isinstance(loop.body[-1], nodes.Store):
-            self._turned(loop, *found)
-            return
-        if (bools := bools_written(loop)) is not None and self._is_count_of(bools.first.lane, loop.count):
-            self._bools(loop, bools)
-            return
-        width = known_width(loop.body)
-        self.flush()
-        outer = self.positions.at
-        holds = self.positions.loop(stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, nodes.Assign))
-        self.positions.values[loop.variable] = self.positions.new()
-        if holds is None:
-            self.positions.at = outer.plus(self.positions.values[loop.variable], width)
-        begin = self.positions.at
-        exact, objects = dict(self.exact), dict(self.scope.objects)
-        self._as_python_has_them(loop)
-        lines = self.function.writer.lines
-        before = len(lines)
-        with self.function.writer.indented(self._head(loop, is_counted=True)):
-            self._rows(loop)
-            self.block(loop.body)
-            self.flush()
-        if not any(re.search(rf"\b{self.scope.locals.identifier(loop.variable)}\b", line) for line in lines[before + 1 :]):
-            lines[before] = lines[before][: -len(lines[before].lstrip())] + f"{self._head(loop, is_counted=False)}"
-        if len(lines) == before + 1:
-            lines.pop()  # the loop does nothing
-        elif (flags := flags_of(loop)) is not None and (sequence := self._sequence_of_flags(loop, flags)) is not None:
-            del lines[before:]
-            self.line(f"{self.list_name} += [{flags.true!r} if each else {flags.false!r} for each in {sequence.local}]")
-        self.exact, self.scope.objects = exact, objects
-        self._end(holds, begin, width)
-        if holds is None:
-            self.positions.at = outer.plus(self.positions.sum(loop.count), width)
-
-    def _as_python_has_them(self, loop: nodes.For) -> None:
-        """Elements of arrays of numpy's become Python's at once, where a loop goes through them."""
-        parts = [part for stmt, _ in statements(loop.body) for expr in expressions_of(stmt) for part in subexpressions(expr)]
-        lanes = {part.place.lane for part in parts if isinstance(part, nodes.Get) and part.place.row != index(0)}
-        for lane in sorted(lanes) if self.unit.numpy else ():
-            sequence = self.scope.sequences.get(lane)
-            if sequence is not None and isinstance(sequence.slot, Number) and sequence.element is not None:
-                self.line(f"{sequence.local} = _few({sequence.local})")
-
-    def _end(self, holds: str | None, begin: Sum, width: int) -> None:
-        now = self.positions.at
-        if (begin.plus(Sum(width)) if holds is None else self.positions.values[holds]) != now:
-            raise NotInParts
-        if holds is not None:
-            self.positions.at = self.positions.values[holds] = self.positions.new()
-
-    def _sequence_of(self, loop: nodes.For) -> Listed | None:
-        """What a loop over rows goes through."""
-        parts = [part for stmt, _ in statements(loop.body) for expr in expressions_of(stmt) for part in subexpressions(expr)]
-        round_ = nodes.Local("i64", loop.variable)
-        found = {part.place.lane for part in parts if isinstance(part, nodes.Get) and self.scope.behind(part.place) == round_}
-        rows = [self.scope.sequences[lane] for lane in found if not isinstance(self.scope.sequences[lane].slot, Number)]
-        if len(rows) > 1 or (rows and not self._is_count_of(rows[0].lane, loop.count)):
-            raise NotInParts
-        return rows[0] if rows else None
-
-    def _sequence_of_flags(self, loop: nodes.For, flags: Flags) -> Listed | None:
-        """The bools that a loop writes, if those are all of a sequence."""
-        is_round = self.scope.behind(flags.place) == nodes.Local("i64", loop.variable)
-        return self.scope.sequences.get(flags.place.lane) if is_round and self._is_count_of(flags.place.lane, loop.count) else None
-
-    def _head(self, loop: nodes.For, *, is_counted: bool) -> str:
-        sequence, own = self._sequence_of(loop), self.scope.locals.identifier(loop.variable)
-        if sequence is None:
-            return f"for {own} in range({self.function.text(loop.count)}):"
-        rows = ", ".join(self._row_names(loop, sequence))
-        if not is_counted:
-            return f"for {rows} in {self._elements(loop, sequence)}:"
-        return f"for {own}, {f'({rows})' if sequence.is_map else rows} in enumerate({self._elements(loop, sequence)}):"
-
-    def _elements(self, loop: nodes.For, sequence: Listed) -> str:
-        """What a loop goes through: most maps have no entries."""
-        return f"{sequence.local}.items() if {self.function.text(loop.count)} else ()" if sequence.is_map else sequence.local
-
-    def _row_names(self, loop: nodes.For, sequence: Listed) -> list[str]:
-        """The locals for an element, or for key and value of a map."""
-        return [
-            self.scope.locals.identifier(f"{each}\0{loop.variable}") for each in (("key", "value") if sequence.is_map else ("element",))
-        ]
-
-    def _rows(self, loop: nodes.For) -> None:
-        sequence = self._sequence_of(loop)
-        if sequence is None:
-            return
-        assert sequence.element is not None
-        start = next(name for name, lane in self.scope.starts.items() if lane == sequence.lane)
-        row = nodes.Binary("add", nodes.Local("i64", start), nodes.Local("i64", loop.variable))
-        names = self._row_names(loop, sequence)
-        if not sequence.is_map and self.unit.layout.lanes[sequence.lane].links is not None:
-            self.scope.messages[sequence.lane, row] = names[0]
-        elif sequence.is_map:
-            self.at_entry = True
-            self.binder.bind_entry(sequence, row, names)
-        else:
-            self.binder.bind(sequence.lane, row, names[0], sequence.element, sequence.slot)
-
-    def _turned(self, loop: nodes.For, place: nodes.Place, base: nodes.Expr, type_: str) -> None:
-        sequence = self.scope.sequences.get(place.lane)
-        if sequence is None or self.scope.behind(place) != index(0) or not self._is_count_of(place.lane, loop.count):
-            raise NotInParts
-        self._numbers(sequence, ">", self.exact.get(place.lane))
-        self.positions.written(base, Sum().plus(self.positions.sum(loop.count), nodes.WIDTH[type_]))
-
-    def _bools(self, loop: nodes.For, bools: Bools) -> None:
-        sequence = self.scope.sequences[bools.first.lane]
-        if self.scope.behind(bools.first) != index(0):
-            raise NotInParts
-        self._numbers(sequence, "<", self.exact.get(bools.first.lane))
-        self.positions.written(bools.base, self.positions.sum(loop.count))
-
-    def _while(self, loop: nodes.While) -> None:
-        self.flush()
-        holds = self.positions.loop(stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, nodes.Assign))
-        begin, exact, objects = self.positions.at, dict(self.exact), dict(self.scope.objects)
-        with self.function.writer.indented(f"while {self.function.text(loop.condition)}:"):
-            self.block(loop.body)
-            self.flush()
-            if not loop.body:
-                self.line("pass")
-        self.exact, self.scope.objects = exact, objects
-        self._end(holds, begin, 0)

@@ -9,7 +9,8 @@ from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.direct import Direct
-from rosetta_jit.generate.python.expressions import Scope, expression
+from rosetta_jit.generate.python.expressions import expression
+from rosetta_jit.generate.python.scope import Scope
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.model.layout import Layout
 from rosetta_jit.startup.dataclass import dataclass, field
@@ -42,6 +43,7 @@ class Objects:
     Where a body sets ``attributes`` of the object (`sparse`), ``begun`` makes it, and ``settings`` are the lines before a return.
 
     Of decoders ``row`` is the object of a lane's row, ``inner`` are the lines of functions for rows that contain rows of their own type,
+    ``inner_names`` what these are called: they refer to themselves, and to all rows, which would stay in memory for a while.
     ``arrays`` are the lanes of arrays in the ``layout``, ``inner_arrays`` these and those in types that contain themselves, and ``blobs``
     those of bytes among them. ``numpy``: arrays of numbers are numpy's; ``classes`` are the names of classes, which no local hides.
     """
@@ -52,6 +54,7 @@ class Objects:
     settings: Callable[[Scope], list[str]] = lambda _: []
     row: Callable[[Scope, int], str] = lambda _, lane: f"<row {lane}>"
     inner: Callable[[Scope], list[str]] = lambda _: []
+    inner_names: Callable[[Scope], list[str]] = lambda _: []
     layout: Layout | None = None
     arrays: frozenset[int] = frozenset()
     inner_arrays: frozenset[int] = frozenset()

@@ -7,19 +7,26 @@ from itertools import groupby
 
 from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.python.expressions import CODES, Scope, expression, slice_of
-from rosetta_jit.kernel.nodes import Binary, Const, Expr, IsText, Wire
+from rosetta_jit.generate.python.expressions import expression, slice_of
+from rosetta_jit.generate.python.scope import CODES, Scope
+from rosetta_jit.kernel.nodes import WIDTH, Binary, Const, Expr, For, IsText, Let, Load, Local, Place, SetField, Stmt, Wire
+from rosetta_jit.kernel.rewrite import locals_in
+from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.model.layout import Number, Slot
+from rosetta_jit.startup.dataclass import replace
 
 SOME = 100
 """Numbers of an array from which on a view of them is quicker than the struct module."""
+FEW_ROWS = 3
+"""Rows up to which a loop takes no longer than reading all of them at once."""
 
 
 def takes_text(scope: Scope, condition: Expr) -> str | None:
     """The line that decodes a text, where a check is that of one which is taken where it is checked."""
     match condition:
         case IsText(Wire(at), size) if (span := scope.direct.text_at(at, size)) is not None:
-            return f"{scope.text(*span)} = {slice_of(scope, at, size)}.decode()"
+            text = f"{scope.placed(*span)}[{bare(expression(scope, at))}]" if span in scope.direct.placed else scope.text(*span)
+            return f"{text} = {slice_of(scope, at, size)}.decode()"
         case _:
             return None
 
@@ -62,6 +69,60 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
     names = names.strip() if len(numbers) == 1 else names[:-2]
     found = f'[{row()} for {names} in _unpack_each("{order}{code}", {part})]'
     return found if isinstance(size, Const) else f"{found} if {expression(scope, _divided(size, stride))} else []"
+
+
+def rows_read(scope: Scope, loop: For) -> str | None:
+    """The rows, of as many bytes or numbers each, that a loop takes from the message one behind the other: a list of them."""
+    lane, round_ = scope.direct.loops.get(loop.variable), Local("i64", loop.variable)
+    if isinstance(loop.count, Const) and loop.count.value <= FEW_ROWS:
+        return None
+    match loop.body:
+        case (Let(item, Binary("add", one, other)), *fills) if lane is not None:
+            size = _size_of_bytes(scope, lane, item, fills) or _size_of_numbers(scope, item, fills)
+            steps = [each.right for each in (one, other) if isinstance(each, Binary) and (each.op, each.left) == ("mul", round_)]
+            bases = [each for each in (one, other) if loop.variable not in locals_in(each)]
+            if size is None or len(bases) != 1 or steps != [index(size)]:
+                return None
+            return _rows(scope, fills[0], bases[0], loop.count, size)
+        case _:
+            return None
+
+
+def _size_of_bytes(scope: Scope, lane: int, item: str, fills: list[Stmt]) -> int | None:
+    """How many bytes rows have that are bytes."""
+    match fills, scope.direct.pieces.get((lane, 0)):
+        case [SetField(Place(of, _, 0))], (Local(_, name), Const(_, size)) if (of, name) == (lane, item) and size > 0:
+            return int(size)
+        case _:
+            return None
+
+
+def _size_of_numbers(scope: Scope, item: str, fills: list[Stmt]) -> int | None:
+    """How many bytes rows have that are numbers of one type."""
+    match fills[0] if fills else None:
+        case SetField(Place(lane), Load(type_) as load) if type_ != "bool":
+            width, places = WIDTH[type_], scope.direct.elements.get(lane, [])
+            loads = (replace(load, at=add(Local("i64", item), number * width)) for number in range(len(places)))
+            wanted = [SetField(place, each) for place, each in zip(places, loads, strict=True)]
+            return len(places) * width if fills == wanted else None
+        case _:
+            return None
+
+
+def _rows(scope: Scope, first: Stmt, base: Expr, count: Expr, size: int) -> str:
+    """A list of rows, by the statement that fills the first field of one."""
+    begin, whole = bare(expression(scope, base)), expression(scope, mul(count, size))
+    part = f"data[{begin} : {expression(scope, base)} + {whole}]"
+    match first:
+        case SetField(_, Load(type_, _, order)):
+            number = size // WIDTH[type_]
+            order = "" if WIDTH[type_] == 1 else order
+            if not scope.numpy:
+                return f'[[*each] for each in _unpack_each("{order}{number}{CODES[type_]}", {part})]'
+            dtype, numbers = scope.dtype(type_, order or "<"), bare(expression(scope, mul(count, number)))
+            return f"[*np.frombuffer(data, {dtype}, {numbers}, {begin}).astype({scope.dtype(type_)}).reshape(-1, {number})]"
+        case _:
+            return f'[each for (each,) in _unpack_each("{size}s", {part})]'
 
 
 def _divided(size: Expr, stride: int) -> Expr:

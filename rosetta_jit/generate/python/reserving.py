@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.python.expressions import Scope
     from rosetta_jit.generate.python.printed import Function
+    from rosetta_jit.generate.python.scope import Scope
 
 
 def reserve(function: Function, lane: int, count: str) -> None:

@@ -16,10 +16,11 @@ from collections.abc import Iterator
 from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.python.classes import member_names
 from rosetta_jit.generate.python.direct import Direct
+from rosetta_jit.generate.python.late import says_presence
 from rosetta_jit.generate.python.making import Make
 from rosetta_jit.generate.python.mentions import blocks_within
 from rosetta_jit.generate.unit import Unit
-from rosetta_jit.kernel.nodes import Assign, Binary, Block, Const, Expect, Fill, IsText, Local, Place, SetField, Stmt, Wire
+from rosetta_jit.kernel.nodes import Block, Const, Expect, Fill, IsText, Place, SetField, Wire
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.layout import Member, Number, Row, Span
@@ -37,25 +38,33 @@ def attributes_of(unit: Unit, body: Block, settled: frozenset[tuple[int, str]], 
     cleared = _cleared_again(body)
     if not isinstance(slot, Row) or cleared is None:
         return None
-    always = {offset for offset, _ in settled if not _comes_in_parts(offset, unit, direct)}
+    always = {offset for offset, _ in settled if not _comes_in_parts(offset, unit, direct)} | _always(slot, direct)
     names = dict(zip(member_names(root), slot.members, strict=True))
     late = {name: member for name, member in names.items() if getattr(member.slot, "offset", None) not in always}
-    if len(late) < LEAST:
+    if sum(not (isinstance(each.slot, Span) and direct.late_at(each.slot)) for each in late.values()) < LEAST:
         return None
     blocks = blocks_within(body)
     found = ((name, member, _setting(blocks, member, direct)) for name, member in late.items())
     return {
         member.slot.offset: f"{OBJECT}.{name}"
         for name, member, setting in found
-        if isinstance(member.slot, Number | Span) and setting and _says_presence(blocks, slot, member, setting)
+        if isinstance(member.slot, Number | Span) and setting and says_presence(blocks, slot, member, setting)
         if not any(member.slot.offset in each for each in cleared)
     }
+
+
+def _always(slot: Row, direct: Direct) -> set[int]:
+    """Where fields lie that are objects at once, whatever the message is."""
+    at_once = {*direct.whole, *direct.appended, *direct.elements, *direct.rows}
+    spans = [each for each in slots_of(slot) if isinstance(each, Span)]
+    known = {(0, each.offset) for each in spans} & ({*direct.texts, *direct.pieces} - direct.late)
+    return {offset for _, offset in known} | {each.offset for each in spans if each.lane in at_once}
 
 
 def _comes_in_parts(offset: int, unit: Unit, direct: Direct) -> bool:
     """Whether a field is a sequence of which the rows of a lane become objects in the end."""
     spans = [each for each in slots_of(unit.layout.root) if isinstance(each, Span) and each.offset == offset]
-    lanes = {*direct.whole, *direct.appended, *direct.elements}
+    lanes = {*direct.whole, *direct.appended, *direct.elements, *direct.rows}
     return bool(spans) and spans[0].lane not in lanes and direct.visit_at(0, offset) is None
 
 
@@ -90,30 +99,6 @@ def _setting(blocks: list[Block], member: Member, direct: Direct) -> list[Block]
             return []
 
 
-def _says_presence(blocks: list[Block], slot: Row, member: Member, setting: list[Block]) -> bool:
-    """Whether a field that may be absent is said to be there where it is set, and nowhere else."""
-    if member.presence is None:
-        return True
-    word, bit = divmod(member.presence, 64)
-    place = Place(0, index(0), slot.offset + 8 * word)
-    words = [stmt.value for block in blocks for stmt in block if isinstance(stmt, SetField) and stmt.place == place]
-    if len(words) != 1 or not isinstance(words[0], Local):
-        return False
-    name = words[0].name
-    told = [block for block in blocks if any(_tells(stmt, name, 1 << bit) for stmt in block)]
-    return [*map(id, told)] == [*map(id, setting)]
-
-
-def _tells(stmt: Stmt, name: str, bit: int) -> bool:
-    match stmt:
-        case Assign(of, Binary("or", Local(_, same), Const(_, bits))):
-            return name == of == same and bool(int(bits) & bit)
-        case Assign(of, _):
-            return name == of
-        case _:
-            return False
-
-
 def settings(make: Make) -> Iterator[str]:
     """The lines that set the other fields of the object, which is made."""
     attributes = make.scope.attributes or {}
@@ -127,15 +112,15 @@ def settings(make: Make) -> Iterator[str]:
         value = None
         if member.presence is not None:
             assert isinstance(each.type, Optional)
-            there, value = make.is_there(member.presence, slot, 0, "0"), make.value(each.type.value, member.slot, 0, "0")
+            there, value = make.is_there(member, slot, 0, "0"), make.value(each.type.value, member.slot, 0, "0")
         elif isinstance(unit.schema.resolve(each.type), Array | Map | String | Bytes) and isinstance(member.slot, Span):
-            there = make.count(member.slot)
+            there, value = make.count(member.slot), make.value(each.type, member.slot, 0, "0")
         else:
             there = ""
         value = make.member(each, member, slot, 0, "0") if value is None else value
         yield from _set(name, value, there)
     if slot.unknown is not None:
-        yield from _set("unknown_fields", make.unknown(slot.unknown), make.count(slot.unknown))
+        yield from _set("unknown_fields", make.unknown(slot.unknown, 0, "0"), make.count(slot.unknown))
 
 
 def _set(name: str, value: str, there: str) -> list[str]:

@@ -8,14 +8,16 @@ from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.bools import Bools, bools_read
 from rosetta_jit.generate.python.descents import Visit
-from rosetta_jit.generate.python.expressions import CODES, expression, is_small, location, slice_of, view_name
+from rosetta_jit.generate.python.expressions import expression, is_small, location, slice_of
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
 from rosetta_jit.generate.python.printed import Attempt, Function
-from rosetta_jit.generate.python.reading import gathered, numbers_read, takes_text
+from rosetta_jit.generate.python.reading import gathered, numbers_read, rows_read, takes_text
 from rosetta_jit.generate.python.reserving import reserve, take
+from rosetta_jit.generate.python.scope import CODES, view_name
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import mul, type_of
+from rosetta_jit.model.layout import Span
 
 COPY = "<copy>"
 """Stands for what functions of rows get besides, where some arrays are views of the message."""
@@ -26,6 +28,9 @@ OF_SEVERAL_BYTES = {**dict.fromkeys(("read_varint", "read_element", "read_packed
 def print_block(function: Function, block: nodes.Block) -> None:
     """The statements of a block."""
     before = len(function.writer.lines)
+    for number, late in enumerate(function.scope.direct.fields):
+        if id(block) in late.cases:
+            function.line(f"<late {number}>")
     for group in grouped(block):
         if len(group) == 1:
             print_statement(function, group[0])
@@ -105,7 +110,13 @@ def _return(function: Function, stmt: nodes.Return) -> None:
         position = "call_end"
     for line in objects.settings(function.scope):
         function.line(line)
-    function.line(f"return {objects.result(function.scope, position)}")
+    result = objects.result(function.scope, position)
+    if names := objects.inner_names(function.scope) if function.scope.direct.left is None else []:
+        made = function.scope.locals.identifier("made\0message")
+        function.line(f"{made} = {result}")
+        function.line(f"del {', '.join(names)}")
+        result = made
+    function.line(f"return {result}")
 
 
 def _origin(function: Function, stmt: nodes.Stmt) -> str:
@@ -166,6 +177,9 @@ def _effect(function: Function, stmt: nodes.Effect) -> None:
             function.line(f"{scope.lanes.rows(lane)}.append({gathered(scope, lane)}){origin}")
         case nodes.SetField(nodes.Place(lane, _, offset), _) if (lane, offset) in scope.direct.pieces:
             function.line(f"{scope.piece(lane, offset)} = {slice_of(scope, *scope.direct.pieces[lane, offset])}{origin}")
+        case nodes.SetField(nodes.Place(lane) as place, _) if place in scope.direct.rows.get(lane, ()):
+            number = [*scope.direct.rows[lane]].index(place)
+            function.line(f"{scope.element(lane, number)} = {_row_of(function, lane, *scope.direct.rows[lane][place])}{origin}")
         case nodes.SetField(place, value):
             target = _target(function, place, value)
             text = function.text(value)
@@ -189,7 +203,7 @@ def _effect(function: Function, stmt: nodes.Effect) -> None:
 
 def _target(function: Function, place: nodes.Place, value: nodes.Expr) -> str:
     """What a field is assigned to."""
-    return function.scope.place(place, type_of(value))
+    return function.scope.place(place, type_of(value), lambda: expression(function.scope, place.row))
 
 
 def _taken(function: Function, taken: str, failure: nodes.Failure) -> None:
@@ -207,6 +221,15 @@ def _list(function: Function, lane: int, at: nodes.Expr, size: nodes.Expr, order
     return numbers_read(scope, lane, objects.layout.lanes[lane].element, lambda: objects.row(scope, lane), at, size, order)
 
 
+def _row_of(function: Function, lane: int, at: nodes.Expr, size: nodes.Expr) -> str:
+    """A row, of an array of arrays, that lies in the message."""
+    objects = function.objects
+    assert objects.layout is not None
+    inner = objects.layout.lanes[lane].element
+    assert isinstance(inner, Span)
+    return slice_of(function.scope, at, size) if lane in objects.blobs else _list(function, inner.lane, at, size, "<")
+
+
 def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
     scope = function.scope
     match stmt:
@@ -214,6 +237,8 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
             _turn(function, count, found, decodes=isinstance(stmt.body[-1], nodes.SetField))
         case nodes.For(variable, count, _) if (bools := bools_read(stmt)) is not None and bools.first.lane in scope.direct.whole:
             _bools(function, variable, count, bools)
+        case nodes.For(variable) if (rows := rows_read(scope, stmt)) is not None:
+            function.line(f"{scope.lanes.rows(scope.direct.loops[variable])} += {rows}")
         case nodes.For(variable, count, body):
             with function.writer.indented(f"for {scope.locals.identifier(variable)} in range({function.text(count)}):"):
                 print_block(function, body)
@@ -233,11 +258,9 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
                     print_block(function, otherwise)
         case nodes.Switch(value, cases, default):
             with function.writer.indented(f"match {function.text(value)}:"):
-                for number, body in cases:
-                    with function.writer.indented(f"case {number}:"):
+                for head, body in (*((f"case {number}:", body) for number, body in cases), ("case _:", default)):
+                    with function.writer.indented(head), scope.locals.case(body):
                         print_block(function, body)
-                with function.writer.indented("case _:"):
-                    print_block(function, default)
         case _:
             assert_never(stmt)
 

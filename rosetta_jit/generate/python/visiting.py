@@ -13,10 +13,10 @@ from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.python.bools import with_bytes
 from rosetta_jit.generate.python.borrowed import borrowed_block
 from rosetta_jit.generate.python.descents import Descents, NotNested
-from rosetta_jit.generate.python.direct import FEW, direct
-from rosetta_jit.generate.python.expressions import Scope
 from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.printed import Function
+from rosetta_jit.generate.python.scope import Scope
+from rosetta_jit.generate.python.search import FEW, direct
 from rosetta_jit.generate.python.statements import COPY, print_block
 from rosetta_jit.generate.python.sums import with_locals
 from rosetta_jit.generate.reachable import read_names

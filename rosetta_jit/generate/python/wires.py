@@ -68,7 +68,7 @@ def _set(make: Make, struct: Struct, slot: Row, ways: Ways, at: str) -> Iterator
         if member.presence is None:
             yield from lines
             continue
-        yield f"if not {make.is_there(member.presence, slot, 0, '0')}:"
+        yield f"if not {make.is_there(member, slot, 0, '0')}:"
         yield f"    {place} = None"
         yield "else:"
         yield f"    {place} = {make.names[inner.name]}() if {place} is None else {place}"

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 
 from rosetta_jit.kernel.nodes import Binary, Block, Compare, Const, Expect, Expr, Get, If, Local, SetField, Switch, Used, While
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, joined, mul
+from rosetta_jit.kernel.visits import Stack, entering, going, going_back
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderElements, HolderFields
 from rosetta_jit.lowering.codec.walk import begin_elements, if_present, switch_cases, walk
 from rosetta_jit.lowering.codec.work_list import link
@@ -60,10 +61,7 @@ class Descent:
     writer: Writer
     nested: Mapping[str, Codec]
     root: HolderFields
-    at: Local
-    state: Local
-    row: Local
-    depth: Local
+    stack: Stack
     opened: tuple[Local, ...] = ()
     pieces: list[Piece] = field(default_factory=list[Piece])
 
@@ -82,7 +80,7 @@ class Descent:
     def block(self, piece: Piece) -> Block:
         """The statements of a state."""
         with self.writer.nested() as body:
-            self.writer.position = self.at
+            self.writer.position = self.stack.at
             fields = self.fields(piece.lane)
             if piece.codec is None:
                 self.finish(piece.lane)
@@ -99,9 +97,9 @@ class Descent:
             return self.root
         where = Where().members(tuple(self.root.layout.lanes[lane].name.split(".")))
         where = Where(f"{where.path}[]")
-        known = Binary("and", Compare("ge", self.row, index(0)), Compare("lt", self.row, Used(lane)))
+        known = Binary("and", Compare("ge", self.stack.row, index(0)), Compare("lt", self.stack.row, Used(lane)))
         self.writer.expect(known, "length", where, "the holder is damaged")
-        return HolderFields(self.writer, self.root.layout, Cell(lane, self.row, self.root.layout.lanes[lane].element), where)
+        return HolderFields(self.writer, self.root.layout, Cell(lane, self.stack.row, self.root.layout.lanes[lane].element), where)
 
     # --- within a row --------------------------------------------------------------------------------------------------
 
@@ -175,15 +173,14 @@ class Descent:
             self.writer.assign(self.opened[piece.open], value)
         else:
             assert piece.open < MAX_OPEN_SIZES  # encodings refuse more
-            self.remember(piece.lane, self.row, {OPEN_WORD + piece.open: value})
+            self.remember(piece.lane, self.stack.row, {OPEN_WORD + piece.open: value})
 
     def noted(self, piece: Piece) -> Expr:
         return self.opened[piece.open] if piece.lane == ROOT else self.recall(piece.lane, OPEN_WORD + piece.open)
 
     def go(self, state: int) -> None:
         self.writer.settle()
-        self.writer.assign(self.at, self.writer.position)
-        self.writer.assign(self.state, index(state))
+        self.writer.emit(*going(self.stack, self.writer.position, state))
 
     # --- from row to row -----------------------------------------------------------------------------------------------
 
@@ -191,12 +188,10 @@ class Descent:
         """The rows of an array, the first of them next."""
         writer = self.writer
         with writer.nested() as some:
-            shallow = Compare("lt", self.depth, index(MAX_RECURSION))
+            shallow = Compare("lt", self.stack.depth, index(MAX_RECURSION))
             writer.expect(shallow, "nesting", elements.where, f"more than {MAX_RECURSION} structs within each other")
-            words = {ROW_WORD: self.row, STATE_WORD: index(then), LEFT_WORD: Binary("sub", count, index(1))}
-            self.remember(elements.lane, elements.start, words)
-            writer.assign(self.depth, add(self.depth, 1))
-            writer.assign(self.row, elements.start)
+            words = [link(self.root.layout, elements.lane, elements.start, word) for word in (ROW_WORD, STATE_WORD, LEFT_WORD)]
+            writer.emit(*entering(self.stack, words, elements.start, count, then))
             self.go(self.entry(elements.lane))
         with writer.nested() as none:
             self.go(then)
@@ -207,17 +202,15 @@ class Descent:
         writer = self.writer
         left = writer.let("left", self.recall(lane, LEFT_WORD))
         with writer.nested() as neighbour:
-            following = writer.let("following", add(self.row, 1))
+            following = writer.let("following", add(self.stack.row, 1))
             writer.expect(Compare("lt", following, Used(lane)), "length", Where(), "the holder is damaged")
             words = {ROW_WORD: self.recall(lane, ROW_WORD), STATE_WORD: self.recall(lane, STATE_WORD), LEFT_WORD: add(left, -1)}
             self.remember(lane, following, words)
-            writer.assign(self.row, following)
-            writer.assign(self.state, index(self.entry(lane)))
+            writer.assign(self.stack.row, following)
+            writer.assign(self.stack.state, index(self.entry(lane)))
         with writer.nested() as back:
-            writer.expect(Compare("gt", self.depth, index(0)), "length", Where(), "the holder is damaged")
-            writer.assign(self.depth, add(self.depth, -1))
-            writer.assign(self.state, self.recall(lane, STATE_WORD))
-            writer.assign(self.row, self.recall(lane, ROW_WORD))
+            writer.expect(Compare("gt", self.stack.depth, index(0)), "length", Where(), "the holder is damaged")
+            writer.emit(*going_back(self.stack, [self.recall(lane, word) for word in (ROW_WORD, STATE_WORD)]))
         writer.emit(If(Compare("gt", left, index(0)), block(neighbour), block(back)))
 
     def remember(self, lane: int, row: Expr, words: Mapping[int, Expr]) -> None:
@@ -225,14 +218,14 @@ class Descent:
             self.writer.emit(SetField(link(self.root.layout, lane, row, word), value))
 
     def recall(self, lane: int, word: int) -> Expr:
-        return Get("i64", link(self.root.layout, lane, self.row, word))
+        return Get("i64", link(self.root.layout, lane, self.stack.row, word))
 
 
 def descend(nested: Mapping[str, Codec], attempt: Codec, fields: HolderFields, writer: Writer) -> None:
     """Read or write a message that contains recursive structs."""
     at, state, row = writer.cursor("at"), writer.var("state", index(0)), writer.var("here", index(0))
     opened = tuple(writer.var("opened", index(0)) for _ in range(open_sizes(attempt)))
-    descent = Descent(writer, nested, fields, at, state, row, writer.var("depth", index(0)), opened)
+    descent = Descent(writer, nested, fields, Stack(at, state, row, writer.var("depth", index(0))), opened)
     descent.number(Piece(ROOT, attempt, DONE))
     rounds = writer.var("rounds", index(0))
     blocks: list[tuple[int, Block]] = []
@@ -244,14 +237,14 @@ def descend(nested: Mapping[str, Codec], attempt: Codec, fields: HolderFields, w
         writer.emit(Switch(state, tuple(blocks), block(unknown)))
         writer.position = at
         inside = Binary("and", *writer.position_invariant(at))
-        deep = Binary("and", Compare("ge", descent.depth, index(0)), Compare("le", descent.depth, index(MAX_RECURSION)))
+        deep = Binary("and", Compare("ge", descent.stack.depth, index(0)), Compare("le", descent.stack.depth, index(MAX_RECURSION)))
         writer.expect(Binary("and", inside, deep), "length", Where(), "the holder is damaged")  # true anyway; said for the proof
         writer.assign(rounds, add(rounds, 1))
     limit = _most_rounds(writer, fields, len(blocks))
     invariant = (
         Compare("ge", rounds, index(0)),
-        Compare("ge", descent.depth, index(0)),
-        Compare("le", descent.depth, index(MAX_RECURSION)),
+        Compare("ge", descent.stack.depth, index(0)),
+        Compare("le", descent.stack.depth, index(MAX_RECURSION)),
         *writer.position_invariant(at),
     )
     goes_on = Binary("and", Compare("ge", state, index(0)), Compare("lt", rounds, limit))
