@@ -272,22 +272,33 @@ def _assign(frame: Frame, name: str, value: nodes.Expr) -> None:
 
 
 def _for(frame: Frame, loop: nodes.For) -> None:
-    builder, count = frame.builder, expression(frame, loop.count)
+    count = expression(frame, loop.count)
+    if widths.joins_streams(loop, frame.strides) and widths.are_known():
+        done = _rounds(frame, loop, constant(0), frame.builder.and_(count, constant(-widths.ROUNDS)), is_wide=True)
+        _rounds(frame, loop, done, count)
+    else:
+        _rounds(frame, loop, constant(0), count)
+
+
+def _rounds(frame: Frame, loop: nodes.For, first: ir.Value, end: ir.Value, *, is_wide: bool = False) -> ir.Value:
+    """The rounds of a loop from one to the end, if there are any; gives the number of the one behind the last."""
+    builder = frame.builder
     before, head, inside, behind = builder.block, frame.block("for"), frame.block("each"), frame.block("after")
     builder.branch(head)
     builder.position_at_end(head)
     index = builder.phi(I64, name=loop.variable)
-    index.add_incoming(constant(0), before)
-    builder.cbranch(builder.icmp_signed("<", index, count), inside, behind)
+    index.add_incoming(first, before)
+    builder.cbranch(builder.icmp_signed("<", index, end), inside, behind)
     builder.position_at_end(inside)
     frame.locals[loop.variable] = index
     block(frame, loop.body)
     if not builder.block.is_terminated:
         index.add_incoming(builder.add(index, constant(1), flags=("nsw",)), builder.block)
         latch = builder.branch(head)
-        if widths.joins_streams(loop, frame.strides) and widths.are_known():
+        if is_wide:
             widths.widen(builder.module, latch)
     builder.position_at_end(behind)
+    return index
 
 
 def _while(frame: Frame, loop: nodes.While) -> None:

@@ -1,7 +1,7 @@
 """How many rounds of a loop LLVM is to do at once, where it would do fewer than pay.
 
-That is so of loops that put three or four streams of bytes together, or take them apart, as the channels of an image:
-`.a[3 * i + c] = .b[n * c + i]`.
+That is so of loops that put three or four streams of bytes together, as planes become pixels: `.message[3 * i + c] = .lane[n * c + i]`.
+Those that take streams apart gain where rows have a multiple of 64 pixels, and lose more where they have not.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import type_of
 
 ROUNDS = 64
-"""As many as the widest registers have bytes. LLVM takes half of it, and needs as many instructions for that."""
+"""As many as the widest registers have bytes. LLVM takes half of it, and needs as many instructions for that. What is left it does so."""
 
 STREAMS = (3, 4)
 
@@ -29,36 +29,38 @@ def are_known() -> bool:
 
 
 def joins_streams(loop: nodes.For, strides: Sequence[int]) -> bool:
-    """Whether the rounds of a loop do nothing but move so many bytes, each next to that of the round or of the stream before.
+    """Whether the rounds of a loop do nothing but write so many bytes, each next to that of the round or of the stream before.
 
     LLVM reports of a loop for which it is told a width that it cannot do so; this one it can, whatever it has to find out before.
     """
-    moves = [each for each in loop.body if isinstance(each, nodes.Store | nodes.SetField)]
-    if len(moves) not in STREAMS:
+    count = sum(isinstance(each, nodes.Store) for each in loop.body)
+    if count not in STREAMS:
         return False
     steps: dict[str, int | None] = {loop.variable: 1}
     for each in loop.body:
         match each:
             case nodes.Let(name, value) if type_of(value) == "i64":
                 steps[name] = _step(value, steps)
-            case nodes.Let(_, value) | nodes.Store(_, value) | nodes.SetField(_, value):
-                places = [_place(part, strides) for part in (each, value) if not isinstance(part, nodes.Let | nodes.Local)]
-                if type_of(value) != "u8" or any(place is None or _step(place, steps) not in (1, len(moves)) for place in places):
-                    return False
+            case nodes.Let(_, value) if _is_moved(value, steps, strides, count):
+                pass
+            case nodes.Store(at, nodes.Local("u8")) if _step(at, steps) == count:
+                pass
+            case nodes.Store(at, value) if _step(at, steps) == count and _is_moved(value, steps, strides, count):
+                pass
             case _:
                 return False
     return True
 
 
-def _place(part: nodes.Stmt | nodes.Expr, strides: Sequence[int]) -> nodes.Expr | None:
-    """Which byte is moved, of the message or of a lane of bytes."""
-    match part:
-        case nodes.Store(at) | nodes.Load(_, at):
-            return at
-        case nodes.SetField(place) | nodes.Get(_, place) if strides[place.lane] == 1:
-            return place.row
+def _is_moved(value: nodes.Expr, steps: dict[str, int | None], strides: Sequence[int], count: int) -> bool:
+    """Whether a byte is of the message or of a lane of bytes, next to that of the round or of the stream before."""
+    match value:
+        case nodes.Load("u8", at):
+            return _step(at, steps) in (1, count)
+        case nodes.Get("u8", place) if strides[place.lane] == 1:
+            return _step(place.row, steps) in (1, count)
         case _:
-            return None
+            return False
 
 
 def _step(value: nodes.Expr, steps: dict[str, int | None]) -> int | None:
