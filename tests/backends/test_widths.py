@@ -48,7 +48,12 @@ JOINED = [together(3), together(4), together(3, at=Binary("add", mul(ROUND, 3), 
 
 @pytest.mark.parametrize("loop", JOINED, ids=str)
 def test_loops_that_join_channels_are_told_a_width(loop):
-    assert widths.joins_streams(loop, STRIDES)
+    assert widths.streams_of(loop, STRIDES) == "joined"
+
+
+@pytest.mark.parametrize("streams", [3, 4])
+def test_loops_that_take_channels_apart_are_told_one_where_nothing_is_left(streams):
+    assert widths.streams_of(apart(streams), STRIDES) == "taken apart"
 
 
 OTHERS = [
@@ -60,7 +65,8 @@ OTHERS = [
     together(3, at=Binary("mul", ROUND, ROUND)),
     together(3, at=Binary("div", ROUND, index(2))),
     together(3, type_="u16"),
-    apart(3),
+    apart(2),
+    apart(5),
     For("i", COUNT, (*together(3).body, For("j", COUNT, ()))),
     For("i", COUNT, (*together(3).body, Let("x", Const("f64", 1.0)))),
 ]
@@ -69,7 +75,7 @@ OTHERS = [
 @pytest.mark.parametrize("loop", OTHERS, ids=str)
 def test_others_are_not(loop):
     """Bytes of messages within a message, or that lie apart, LLVM would move one by one."""
-    assert not widths.joins_streams(loop, STRIDES)
+    assert widths.streams_of(loop, STRIDES) is None
 
 
 @pytest.mark.parametrize("channels", [3, 4])
@@ -96,10 +102,20 @@ def test_all_bytes_are_where_they_belong(tmp_path, capfd, channels):
 
 
 @pytest.mark.parametrize("width", [1, 21, 63, 64, 65, 130])
-def test_rows_of_pixels_are_what_they_are_in_python(width):
+def test_rows_of_planes_are_what_they_are_in_python(width):
     """Rows are padded, so that one of them is a loop."""
     mapping = "yarp/icub/camera_image.mapping"
     pixels = np.random.default_rng(width).integers(0, 256, 3 * 2 * width, np.uint8).tobytes()
     fields = {"width": width, "height": 2, "channels": 3, "data": pixels, "data_order": "DATA_SEPARATE"}
     compiled, slow = (rj.Encoder(mapping, encoding="yarp3", backend=backend) for backend in ("llvm", "python"))
     assert compiled(fields) == slow(fields)
+
+
+@pytest.mark.parametrize("width", [1, 21, 63, 64, 65, 128, 130])
+def test_rows_of_pixels_are_what_they_are_in_python(width):
+    step = 3 * width + 5
+    data = np.random.default_rng(width).integers(0, 256, 2 * step, np.uint8).tobytes()
+    fields = {"width": width, "height": 2, "step": step, "encoding": "rgb8", "data": data}
+    message = rj.Encoder.of("sensor_msgs/Image", encoding="ros1")(fields)
+    compiled, slow = (rj.Decoder("ros1/image_planar.mapping", encoding="ros1", backend=backend) for backend in ("llvm", "python"))
+    assert bytes(compiled(message).data) == bytes(slow(message).data)

@@ -272,12 +272,23 @@ def _assign(frame: Frame, name: str, value: nodes.Expr) -> None:
 
 
 def _for(frame: Frame, loop: nodes.For) -> None:
-    count = expression(frame, loop.count)
-    if widths.joins_streams(loop, frame.strides) and widths.are_known():
-        done = _rounds(frame, loop, constant(0), frame.builder.and_(count, constant(-widths.ROUNDS)), is_wide=True)
-        _rounds(frame, loop, done, count)
-    else:
-        _rounds(frame, loop, constant(0), count)
+    count, streams = expression(frame, loop.count), widths.streams_of(loop, frame.strides)
+    builder, first = frame.builder, constant(0)
+    match streams if widths.are_known() else None:
+        case "joined":
+            whole = builder.and_(count, constant(-widths.ROUNDS))
+            _rounds(frame, loop, _rounds(frame, loop, first, whole, is_wide=True), count)
+        case "taken apart":
+            whole, others, behind = frame.block("whole"), frame.block("others"), frame.block("after")
+            left = builder.and_(count, constant(widths.ROUNDS - 1))
+            builder.cbranch(builder.icmp_signed("==", left, constant(0)), whole, others)
+            for chosen in (whole, others):
+                builder.position_at_end(chosen)
+                _rounds(frame, loop, first, count, is_wide=chosen is whole)
+                builder.branch(behind)
+            builder.position_at_end(behind)
+        case None:
+            _rounds(frame, loop, first, count)
 
 
 def _rounds(frame: Frame, loop: nodes.For, first: ir.Value, end: ir.Value, *, is_wide: bool = False) -> ir.Value:

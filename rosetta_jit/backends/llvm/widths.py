@@ -1,7 +1,8 @@
 """How many rounds of a loop LLVM is to do at once, where it would do fewer than pay.
 
 That is so of loops that put three or four streams of bytes together, as planes become pixels: `.message[3 * i + c] = .lane[n * c + i]`.
-Those that take streams apart gain where rows have a multiple of 64 pixels, and lose more where they have not.
+What is left behind whole turns is another loop. Of those that take streams apart it is so where nothing is left: LLVM makes a poor loop
+of the rest.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from functools import cache
+from typing import Literal
 
 from llvmlite import binding, ir
 
@@ -28,39 +30,43 @@ def are_known() -> bool:
     return machine in ("aarch64", "arm64") or "+avx2" in binding.get_host_cpu_features().flatten().split(",")
 
 
-def joins_streams(loop: nodes.For, strides: Sequence[int]) -> bool:
-    """Whether the rounds of a loop do nothing but write so many bytes, each next to that of the round or of the stream before.
+def streams_of(loop: nodes.For, strides: Sequence[int]) -> Literal["joined", "taken apart"] | None:
+    """What the rounds of a loop do with so many streams of bytes; None where they do anything else.
 
-    LLVM reports of a loop for which it is told a width that it cannot do so; this one it can, whatever it has to find out before.
+    LLVM reports of a loop for which it is told a width that it cannot do so; these it can, whatever it has to find out before.
     """
-    count = sum(isinstance(each, nodes.Store) for each in loop.body)
-    if count not in STREAMS:
-        return False
+    moves = [each for each in loop.body if isinstance(each, nodes.Store | nodes.SetField)]
     steps: dict[str, int | None] = {loop.variable: 1}
+    read, written = set[int | None](), set[int | None]()
     for each in loop.body:
         match each:
             case nodes.Let(name, value) if type_of(value) == "i64":
                 steps[name] = _step(value, steps)
-            case nodes.Let(_, value) if _is_moved(value, steps, strides, count):
-                pass
-            case nodes.Store(at, nodes.Local("u8")) if _step(at, steps) == count:
-                pass
-            case nodes.Store(at, value) if _step(at, steps) == count and _is_moved(value, steps, strides, count):
-                pass
+            case nodes.Let(_, value):
+                read.add(_step_of_byte(value, steps, strides))
+            case nodes.Store(at, value):
+                written.add(_step(at, steps) if type_of(value) == "u8" else None)
+                read |= set() if isinstance(value, nodes.Local) else {_step_of_byte(value, steps, strides)}
+            case nodes.SetField(place, value) if strides[place.lane] == 1:
+                written.add(_step(place.row, steps))
+                read |= set() if isinstance(value, nodes.Local) else {_step_of_byte(value, steps, strides)}
             case _:
-                return False
-    return True
+                return None
+    count = len(moves)
+    if count not in STREAMS or not read <= {1, count}:
+        return None
+    return "joined" if written == {count} else "taken apart" if (read, written) == ({count}, {1}) else None
 
 
-def _is_moved(value: nodes.Expr, steps: dict[str, int | None], strides: Sequence[int], count: int) -> bool:
-    """Whether a byte is of the message or of a lane of bytes, next to that of the round or of the stream before."""
+def _step_of_byte(value: nodes.Expr, steps: dict[str, int | None], strides: Sequence[int]) -> int | None:
+    """By how much the place of a byte grows with each round, in the message or in a lane of bytes; None for anything else."""
     match value:
         case nodes.Load("u8", at):
-            return _step(at, steps) in (1, count)
+            return _step(at, steps)
         case nodes.Get("u8", place) if strides[place.lane] == 1:
-            return _step(place.row, steps) in (1, count)
+            return _step(place.row, steps)
         case _:
-            return False
+            return None
 
 
 def _step(value: nodes.Expr, steps: dict[str, int | None]) -> int | None:
