@@ -3,29 +3,43 @@
 ;
 ; Nobody else knows these lanes, and who calls has the interpreter lock from begin to end: threads share them. Where a kernel may let it go
 ; (`hosted.ll`) the epoch says that they are in use, and the slow path takes others.
-;
-; A bytes object alone is bridged here, and little is kept across what is called, so that few registers are saved for the caller.
 define ptr @call(ptr %self, ptr %args, i64 %nargsf, ptr %names) {
-  %alone = call i1 @is_alone(i64 %nargsf, ptr %names)
-  br i1 %alone, label %look, label %other, !prof !0
+  %view = alloca [80 x i8], align 8
+  %context = call ptr @context(ptr %self)
+  %state = load ptr, ptr %context
+  %count = call i64 @positional(i64 %nargsf, ptr %names)
+  %alone = icmp eq i64 %count, 1
+  br i1 %alone, label %look, label %more, !prof !0
 look:
   %message = load ptr, ptr %args
   %type.at = getelementptr i8, ptr %message, i64 8
   %type = load ptr, ptr %type.at
   %is_bytes = icmp eq ptr %type, @PyBytes_Type
-  br i1 %is_bytes, label %bytes, label %other, !prof !1
+  br i1 %is_bytes, label %bytes, label %buffer, !prof !1
 bytes:
-  %context = call ptr @context(ptr %self)
-  %state = load ptr, ptr %context
+  %bytes.size.at = getelementptr i8, ptr %message, i64 16
+  %bytes.size = load i64, ptr %bytes.size.at
+  %bytes.data = getelementptr i8, ptr %message, i64 32
+  br label %check
+buffer:
+  %has = call i32 @open_message(ptr %message, ptr %view)
+  switch i32 %has, label %raise [ i32 1, label %viewed
+                                  i32 0, label %slow ], !prof !2
+viewed:
+  %view.data = load ptr, ptr %view
+  %view.size.at = getelementptr i8, ptr %view, i64 16
+  %view.size = load i64, ptr %view.size.at
+  br label %check
+check:
+  %data = phi ptr [ %bytes.data, %bytes ], [ %view.data, %viewed ]
+  %end = phi i64 [ %bytes.size, %bytes ], [ %view.size, %viewed ]
+  ; looked at here: to open a buffer may run any code
   %epoch = call i64 @epoch(ptr %state)
   %unused = icmp sge i64 %epoch, 0
   %unshared = call i1 @registers_are_free(ptr %context)
   %free = and i1 %unused, %unshared
-  br i1 %free, label %run, label %other, !prof !0
+  br i1 %free, label %run, label %close, !prof !0
 run:
-  %data = getelementptr i8, ptr %message, i64 32
-  %end.at = getelementptr i8, ptr %message, i64 16
-  %end = load i64, ptr %end.at
   call void @enter(ptr %state, i64 %epoch, i64 1)
   call void @lend_registers(ptr %context, ptr %state)
   call void @save_registers(ptr %state)
@@ -40,81 +54,6 @@ allocate:
 write:
   %room = getelementptr i8, ptr %made, i64 32
   %written = call i64 @write(ptr %room, i64 0, i64 %size, ptr %state, i64 0) #2
-  %exact = icmp eq i64 %written, %size
-  br i1 %exact, label %done, label %drop, !prof !0
-done:
-  call void @leave(ptr %state, i64 %epoch, i64 1)
-  ret ptr %made
-drop:
-  call void @Py_DecRef(ptr %made)
-  br label %stop
-stop:
-  %raised = phi i1 [ false, %run ], [ true, %allocate ], [ false, %drop ]
-  call void @restore_registers(ptr %state)
-  call void @untell(ptr %context, ptr %state)
-  call void @leave(ptr %state, i64 %epoch, i64 1)
-  br i1 %raised, label %raise, label %slow
-slow:
-  %found = tail call ptr @slow(ptr %context, ptr %args, i64 1, ptr null)
-  ret ptr %found
-raise:
-  ret ptr null
-other:
-  %answer = musttail call ptr @any_call(ptr %self, ptr %args, i64 %nargsf, ptr %names)
-  ret ptr %answer
-}
-
-; Whatever is not the common call.
-define internal ptr @any_call(ptr %self, ptr %args, i64 %nargsf, ptr %names) noinline {
-  %count = call i64 @positional(i64 %nargsf, ptr %names)
-  switch i64 %count, label %slow [ i64 1, label %message
-                                   i64 2, label %both ]
-message:
-  %made = musttail call ptr @of_view(ptr %self, ptr %args, i64 %nargsf, ptr %names)
-  ret ptr %made
-both:
-  %filled = musttail call ptr @into(ptr %self, ptr %args, i64 %nargsf, ptr %names)
-  ret ptr %filled
-slow:
-  %context = call ptr @context(ptr %self)
-  %found = call ptr @slow(ptr %context, ptr %args, i64 %nargsf, ptr %names)
-  ret ptr %found
-}
-
-; bridge(message) of any bytes-like object.
-define internal ptr @of_view(ptr %self, ptr %args, i64 %nargsf, ptr %names) noinline {
-  %view = alloca [80 x i8], align 8
-  %context = call ptr @context(ptr %self)
-  %state = load ptr, ptr %context
-  %message = load ptr, ptr %args
-  %has = call i32 @open_message(ptr %message, ptr %view)
-  switch i32 %has, label %raise [ i32 1, label %check
-                                  i32 0, label %slow ], !prof !2
-check:
-  %data = load ptr, ptr %view
-  %end.at = getelementptr i8, ptr %view, i64 16
-  %end = load i64, ptr %end.at
-  ; looked at here: to open a buffer may run any code
-  %epoch = call i64 @epoch(ptr %state)
-  %unused = icmp sge i64 %epoch, 0
-  %unshared = call i1 @registers_are_free(ptr %context)
-  %free = and i1 %unused, %unshared
-  br i1 %free, label %run, label %close, !prof !0
-run:
-  call void @enter(ptr %state, i64 %epoch, i64 1)
-  call void @lend_registers(ptr %context, ptr %state)
-  call void @save_registers(ptr %state)
-  call void @tell(ptr %context, ptr %state)
-  %size = call i64 @taken_at_once(ptr %data, i64 %end, ptr %state)
-  %measured = icmp sge i64 %size, 0
-  br i1 %measured, label %allocate, label %stop, !prof !0
-allocate:
-  %made = call ptr @new_bytes(i64 %size)
-  %allocated = icmp ne ptr %made, null
-  br i1 %allocated, label %write, label %stop, !prof !0
-write:
-  %room = getelementptr i8, ptr %made, i64 32
-  %written = call i64 @write(ptr %room, i64 0, i64 %size, ptr %state, i64 0)
   %exact = icmp eq i64 %written, %size
   br i1 %exact, label %leave, label %drop, !prof !0
 drop:
@@ -133,12 +72,22 @@ leave:
 close:
   %answer = phi ptr [ null, %check ], [ %result, %leave ]
   %raised = phi i1 [ false, %check ], [ %out.of.memory, %leave ]
+  br i1 %is_bytes, label %judge, label %release, !prof !1
+release:
   call void @close(ptr %message, ptr %view)
+  br label %judge
+judge:
   %done = icmp ne ptr %answer, null
   %over = or i1 %done, %raised
   br i1 %over, label %return, label %slow, !prof !0
 return:
   ret ptr %answer
+more:
+  %two = icmp eq i64 %count, 2
+  br i1 %two, label %into, label %slow, !prof !0
+into:
+  %filled = musttail call ptr @into(ptr %self, ptr %args, i64 %nargsf, ptr %names)
+  ret ptr %filled
 slow:
   %found = call ptr @slow(ptr %context, ptr %args, i64 %nargsf, ptr %names)
   ret ptr %found
@@ -191,7 +140,7 @@ run:
   call void @lend_registers(ptr %context, ptr %state)
   call void @save_registers(ptr %state)
   call void @tell(ptr %context, ptr %state)
-  %size = call i64 @taken_at_once(ptr %data, i64 %end, ptr %state)
+  %size = call i64 @taken(ptr %data, i64 0, i64 %end, ptr %state)
   %measured = icmp sge i64 %size, 0
   %small = icmp sle i64 %size, %room.size
   %fits = and i1 %measured, %small
@@ -238,12 +187,6 @@ measure:
   ret i64 %size
 failed:
   ret i64 %result
-}
-
-; The same of a whole buffer, for calls that are not the common one.
-define internal i64 @taken_at_once(ptr %data, i64 %end, ptr %state) noinline {
-  %size = call i64 @taken(ptr %data, i64 0, i64 %end, ptr %state)
-  ret i64 %size
 }
 
 ; Many messages in one call, without the interpreter lock. Message i lies at begins[i] to ends[i], and is written to places[i] on,
