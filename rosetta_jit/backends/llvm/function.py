@@ -15,7 +15,7 @@ from llvmlite import ir
 
 from rosetta_jit.backends.llvm import checks as llvm_checks
 from rosetta_jit.backends.llvm import definitions
-from rosetta_jit.backends.llvm.alike import NOTHING, may_have_series
+from rosetta_jit.backends.llvm.alike import NOTHING, Found, may_have_series
 from rosetta_jit.backends.llvm.frame import COLD, I64, POINTER, Exit, Frame, Parameters, StoredExit, constant, new_function, state_word
 from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.routines import Printed, routines_of
@@ -152,8 +152,7 @@ def _attempt(
     frame = Frame(function.module, entry, entry.beside(first), parameters, *lanes, {}, done, failed, emptied, routines)
     frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
     counted = counted_lanes(kernel, body)
-    frame.alike = stretches.found(kernel, body) if may_have_series(kernel, body) else NOTHING
-    frame.counting = bool(counted)
+    frame.alike, frame.counting = _series_of(kernel, body), bool(counted)
     if frame.alike and counted:
         series.begin_rows(frame, kernel.direction)
     llvm_checks.body(frame, body, in_vectors=is_first and are_straight_and_compute((kernel,)))
@@ -173,6 +172,11 @@ def _attempt(
             builder.ret(builder.call(otherwise, function.args))
         case _:
             builder.ret(otherwise)
+
+
+def _series_of(kernel: Kernel, body: Block) -> Found:
+    """What repeats itself in a body: most are too short for that to be looked for."""
+    return stretches.found(kernel, body) if may_have_series(kernel, body) else NOTHING
 
 
 def _following(module: ir.Module, kernel: Kernel, number: int, name: str, routines: Printed) -> ir.Function | None:

@@ -35,27 +35,27 @@ def streams_of(loop: nodes.For, strides: Sequence[int]) -> Literal["joined", "ta
 
     LLVM reports of a loop for which it is told a width that it cannot do so; these it can, whatever it has to find out before.
     """
-    moves = [each for each in loop.body if isinstance(each, nodes.Store | nodes.SetField)]
     steps: dict[str, int | None] = {loop.variable: 1}
-    read, written = set[int | None](), set[int | None]()
+    read, written = list[int | None](), list[int | None]()
     for each in loop.body:
         match each:
             case nodes.Let(name, value) if type_of(value) == "i64":
                 steps[name] = _step(value, steps)
+                continue
             case nodes.Let(_, value):
-                read.add(_step_of_byte(value, steps, strides))
+                pass
             case nodes.Store(at, value):
-                written.add(_step(at, steps) if type_of(value) == "u8" else None)
-                read |= set() if isinstance(value, nodes.Local) else {_step_of_byte(value, steps, strides)}
+                written.append(_step(at, steps))
             case nodes.SetField(place, value) if strides[place.lane] == 1:
-                written.add(_step(place.row, steps))
-                read |= set() if isinstance(value, nodes.Local) else {_step_of_byte(value, steps, strides)}
+                written.append(_step(place.row, steps))
             case _:
                 return None
-    count = len(moves)
-    if count not in STREAMS or not read <= {1, count}:
+        if not (isinstance(value, nodes.Local) and value.type == "u8"):
+            read.append(_step_of_byte(value, steps, strides))
+    count = len(written)
+    if count not in STREAMS or not {*read} <= {1, count}:
         return None
-    return "joined" if written == {count} else "taken apart" if (read, written) == ({count}, {1}) else None
+    return "joined" if {*written} == {count} else "taken apart" if ({*read}, {*written}) == ({count}, {1}) else None
 
 
 def _step_of_byte(value: nodes.Expr, steps: dict[str, int | None], strides: Sequence[int]) -> int | None:

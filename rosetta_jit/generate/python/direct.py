@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rosetta_jit.generate.python.descents import Visit
-from rosetta_jit.generate.python.late import Late
+from rosetta_jit.generate.python.late_fields import LateField
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.model.layout import Slot
@@ -44,7 +44,7 @@ class Direct:
     placed: dict[tuple[int, int], tuple[nodes.Expr, nodes.Expr]] = field(
         default_factory=dict[tuple[int, int], "tuple[nodes.Expr, nodes.Expr]"]
     )
-    fields: tuple[Late, ...] = ()
+    fields: tuple[LateField, ...] = ()
 
     def read(self) -> set[str]:
         """The locals that say where texts and bytes are, which no statement may say any more."""
@@ -57,7 +57,7 @@ class Direct:
         places = ((each, each.place) for each in self.visits.values())
         return next((each for each, place in places if place is not None and (place.lane, place.offset) == (lane, offset)), None)
 
-    def late_at(self, slot: Slot) -> Late | None:
+    def late_at(self, slot: Slot) -> LateField | None:
         """The late field at a slot of the message's row."""
         return next((each for each in self.fields if each.slot is slot), None)
 

@@ -17,7 +17,7 @@ from rosetta_jit.generate.python.constants import with_constants
 from rosetta_jit.generate.python.descents import Descents, NotNested, descended
 from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.groups import not_negative
-from rosetta_jit.generate.python.late import late_fields
+from rosetta_jit.generate.python.late_fields import late_fields
 from rosetta_jit.generate.python.local_names import Locals
 from rosetta_jit.generate.python.printed import Attempt, Function, Objects
 from rosetta_jit.generate.python.scope import CODES, Scope, flat_name, view_name

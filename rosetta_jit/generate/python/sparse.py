@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.python.classes import member_names
 from rosetta_jit.generate.python.direct import Direct
-from rosetta_jit.generate.python.late import says_presence
+from rosetta_jit.generate.python.late_fields import says_presence
 from rosetta_jit.generate.python.making import Make
 from rosetta_jit.generate.python.mentions import blocks_within
 from rosetta_jit.generate.unit import Unit

@@ -34,7 +34,7 @@ ENDS = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Late:
+class LateField:
     """A field of the message, by name, with what it needs: ``lanes``, and numbers of the message's row by their ``offsets``.
 
     ``slot`` is that of a list, a map, or unknown fields, which are all rows of a lane, or of a message. ``cases`` are the blocks that have
@@ -49,7 +49,7 @@ class Late:
     is_presence: bool = False
 
 
-def late_fields(block: Block, kernel: Kernel, layout: Layout, known: Collection[int]) -> tuple[Block, tuple[Late, ...]]:
+def late_fields(block: Block, kernel: Kernel, layout: Layout, known: Collection[int]) -> tuple[Block, tuple[LateField, ...]]:
     """A decoder's body that neither begins nor ends its late fields, and these; those of ``known`` lanes are objects at once."""
     if kernel.kept or not isinstance(layout.root, Row):
         return block, ()
@@ -65,7 +65,7 @@ def late_fields(block: Block, kernel: Kernel, layout: Layout, known: Collection[
     cases = _Cases(found)
     cases.block(rewritten, NOBODY)
     blocks, members = blocks_within(rewritten), {each.name: each for each in layout.root.members}
-    late: list[Late] = []
+    late: list[LateField] = []
     for each in found:
         own = [block for block in blocks if id(block) in cases.found[each.name]]
         tells = isinstance(each.slot, Row) and says_presence(blocks, layout.root, members[each.name], own)
@@ -73,16 +73,16 @@ def late_fields(block: Block, kernel: Kernel, layout: Layout, known: Collection[
     return rewritten, tuple(late)
 
 
-def _candidates(root: Row, layout: Layout) -> Iterator[Late]:
+def _candidates(root: Row, layout: Layout) -> Iterator[LateField]:
     """Lists, maps and unknown fields of a message, and messages within it that may be absent."""
     spans = [(each.name, each.slot) for each in root.members if each.presence is None and isinstance(each.slot, Span)]
     spans += [("unknown", root.unknown)] if root.unknown is not None else []
     for name, span in spans:
         if layout.lanes[span.lane].links is None:
-            yield Late(name, span, frozenset(lanes_within(span, layout)), frozenset())
+            yield LateField(name, span, frozenset(lanes_within(span, layout)), frozenset())
     for each in root.members:
         if each.presence is not None and isinstance(each.slot, Row):
-            yield Late(each.name, each.slot, frozenset(lanes_within(each.slot, layout)), frozenset(offsets_within(each.slot)))
+            yield LateField(each.name, each.slot, frozenset(lanes_within(each.slot, layout)), frozenset(offsets_within(each.slot)))
 
 
 def _lanes(stmt: Stmt) -> set[int]:
@@ -97,7 +97,7 @@ class _Cases:
     What says where a list ends has to do with all of them.
     """
 
-    def __init__(self, wanted: list[Late]) -> None:
+    def __init__(self, wanted: list[LateField]) -> None:
         self.found = {each.name: set[int]() for each in wanted}
         self.by_lane = {lane: each.name for each in wanted for lane in each.lanes}
         self.by_offset = {offset: each.name for each in wanted for offset in each.offsets}
@@ -126,7 +126,7 @@ def _is_end(stmt: Stmt, span: Span, firsts: Mapping[int, str]) -> bool:
     return (stmt.place, stmt.value) in ((begin, first), (count, Binary("sub", Used(span.lane), first)))
 
 
-def _without_ends(block: Block, fields: list[Late], firsts: Mapping[int, str]) -> Block:
+def _without_ends(block: Block, fields: list[LateField], firsts: Mapping[int, str]) -> Block:
     """A body without the statements that begin the lists of fields, of which none has a row yet, and those that end them."""
     spans = [each.slot for each in fields if isinstance(each.slot, Span)]
     begins = {firsts.get(span.lane) for span in spans}
