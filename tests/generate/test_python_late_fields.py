@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import dataclasses
 import gc
 import random
 
@@ -100,3 +102,14 @@ def test_cases_share_their_locals():
         return unit._borrow_1.__code__.co_nlocals
 
     assert locals_of(21) - locals_of(1) <= 20 * 8
+
+
+def test_the_object_is_whole_whatever_came():
+    """All fields are set, without a call of the class: objects are compared, shown and copied as any."""
+    unit = module(type_request("decode", "t.M", protobuf(BODY)))
+    for message in (b"", UNKNOWN, b"\x70\x07", b"\x22\x01a"):
+        found = unit.decode(message)
+        made = unit.M(**{each.name: getattr(found, each.name) for each in dataclasses.fields(unit.M)})
+        assert found == made == copy.copy(found) == copy.deepcopy(found)
+        assert repr(found) == repr(made)
+        assert unit.encode(found) == message

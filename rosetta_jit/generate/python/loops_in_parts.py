@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 
 from rosetta_jit.generate.python.bools import Bools, bools_written
 from rosetta_jit.generate.python.flags import Flags, flags_of
@@ -17,7 +18,9 @@ from rosetta_jit.model.layout import Number
 
 
 class Loops(Messages):
-    """Prints loops; ``block`` prints the statements in them."""
+    """Prints loops; ``block`` prints the statements in them, ``reads`` says how often anything reads a local."""
+
+    reads: Counter[str]
 
     def block(self, block: nodes.Block) -> None:
         """The statements of a block."""
@@ -48,6 +51,7 @@ class Loops(Messages):
             self.flush()
         if not any(re.search(rf"\b{self.scope.locals.identifier(loop.variable)}\b", line) for line in lines[before + 1 :]):
             lines[before] = lines[before][: -len(lines[before].lstrip())] + f"{self._head(loop, is_counted=False)}"
+            before -= self._without_count(loop, before)
         if len(lines) == before + 1:
             lines.pop()  # the loop does nothing
         elif (flags := flags_of(loop)) is not None and (sequence := self._sequence_of_flags(loop, flags)) is not None:
@@ -57,6 +61,15 @@ class Loops(Messages):
         self._end(holds, begin, width)
         if holds is None:
             self.positions.at = outer.plus(self.positions.sum(loop.count), width)
+
+    def _without_count(self, loop: nodes.For, at: int) -> bool:
+        """Leave out the line above a loop which says how many rounds it has, where nothing else needs that."""
+        lines, sequence = self.function.writer.lines, self._sequence_of(loop)
+        is_needed = sequence is None or not isinstance(loop.count, nodes.Local) or self.reads[loop.count.name] > 1
+        if is_needed or not at or not lines[at - 1].lstrip().startswith(f"{self.function.text(loop.count)} = len("):
+            return False
+        del lines[at - 1]
+        return True
 
     def _as_python_has_them(self, loop: nodes.For) -> None:
         """Elements of arrays of numpy's become Python's at once, where a loop goes through them."""
@@ -93,14 +106,10 @@ class Loops(Messages):
         sequence, own = self._sequence_of(loop), self.scope.locals.identifier(loop.variable)
         if sequence is None:
             return f"for {own} in range({self.function.text(loop.count)}):"
-        rows = ", ".join(self._row_names(loop, sequence))
+        rows, elements = ", ".join(self._row_names(loop, sequence)), f"{sequence.local}.items()" if sequence.is_map else sequence.local
         if not is_counted:
-            return f"for {rows} in {self._elements(loop, sequence)}:"
-        return f"for {own}, {f'({rows})' if sequence.is_map else rows} in enumerate({self._elements(loop, sequence)}):"
-
-    def _elements(self, loop: nodes.For, sequence: Listed) -> str:
-        """What a loop goes through: most maps have no entries."""
-        return f"{sequence.local}.items() if {self.function.text(loop.count)} else ()" if sequence.is_map else sequence.local
+            return f"for {rows} in {elements}:"
+        return f"for {own}, {f'({rows})' if sequence.is_map else rows} in enumerate({elements}):"
 
     def _row_names(self, loop: nodes.For, sequence: Listed) -> list[str]:
         """The locals for an element, or for key and value of a map."""

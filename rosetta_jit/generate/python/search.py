@@ -20,6 +20,7 @@ from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.mentions import blocks_within, changes, counted_lanes, places_of, reads_any, reads_behind
+from rosetta_jit.generate.python.slots import spans_of
 from rosetta_jit.generate.python.written_out import written_out
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
@@ -113,7 +114,7 @@ class _Search:
     def _pieces(self, block: nodes.Block, row: nodes.Place) -> None:
         """Bytes of a row of which a block says where they are in the message, once and nowhere else."""
         places = {each.place: each for each in block if isinstance(each, nodes.SetField)}
-        for offset, lane in _spans(self.layout, row.lane).items():
+        for offset, lane in spans_of(self.layout, row.lane).items():
             begin, end = (places.get(nodes.Place(row.lane, row.row, offset + behind)) for behind in (0, 8))
             once = all(len(self.fields.get((row.lane, offset + behind), ())) == 1 for behind in (0, 8))
             if begin is None or end is None or not once or self.mentions.get(lane) or (row.lane, offset) in self.direct.texts:
@@ -137,7 +138,7 @@ class _Search:
             for end in self._sets(block, row, nodes.Binary("sub", index(-1), size))
             if end.place.offset == begin.place.offset + 8
         ]
-        slots = _spans(self.layout, row.lane)
+        slots = spans_of(self.layout, row.lane)
         if len(spans) != 1 or self.mentions.get(slots.get(spans[0][0].place.offset, -1)):
             return
         (begin, end) = spans[0]
@@ -175,7 +176,7 @@ class _Search:
         """A text of a row, of which the row goes on to say where it lies."""
         counts = self._sets(block, place, nodes.Binary("sub", index(-1), size))
         once = sum(not isinstance(each, nodes.Fill) for each in self.fields[place.lane, place.offset]) == 1
-        lane = _spans(self.layout, place.lane).get(place.offset) if isinstance(self.layout.lanes[place.lane].element, Row) else None
+        lane = spans_of(self.layout, place.lane).get(place.offset) if isinstance(self.layout.lanes[place.lane].element, Row) else None
         if once and lane is not None and not self.mentions.get(lane) and [each.place.offset for each in counts] == [place.offset + 8]:
             self.direct.placed[place.lane, place.offset] = at, size
             self.instead[id(counts[0])] = ()
@@ -204,7 +205,7 @@ class _Search:
             for end in self._sets(block, row, count)
             if end.place.offset == begin.place.offset + 8
         ]
-        if len(spans) != 1 or _spans(self.layout, row.lane).get(spans[0][0].place.offset) != lane:
+        if len(spans) != 1 or spans_of(self.layout, row.lane).get(spans[0][0].place.offset) != lane:
             return
         fills = [each for each in found if id(each) not in own]
         if {id(each) for each in self.readers[start.name]} != {id(spans[0][0]), *map(id, fills)}:
@@ -359,11 +360,6 @@ def _if_any(stmt: nodes.Stmt, count: nodes.Expr, copy: nodes.Copy) -> bool:
         and stmt.then == (copy,)
         and not stmt.otherwise
     )
-
-
-def _spans(layout: Layout, lane: int) -> dict[int, int]:
-    """The lanes of a row's spans by their offsets."""
-    return {each.offset: each.lane for each in slots_of(layout.lanes[lane].element if lane else layout.root) if isinstance(each, Span)}
 
 
 def numbers_of(slot: Slot, stride: int) -> tuple[nodes.Scalar, ...]:
