@@ -14,6 +14,7 @@ from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.asked import asked_count, taken_late
 from rosetta_jit.generate.python.defaults import asked_first, reads_of
 from rosetta_jit.generate.python.expressions import expression
+from rosetta_jit.generate.python.failures import fail
 from rosetta_jit.generate.python.loops_in_parts import Loops
 from rosetta_jit.generate.python.object_rows import Asked, Listed, Maybe, ObjectScope
 from rosetta_jit.generate.python.packed import Part
@@ -22,7 +23,7 @@ from rosetta_jit.generate.python.presence import bit_tested, case_tested, places
 from rosetta_jit.generate.python.printed import Function
 from rosetta_jit.generate.python.recursive_rows import is_hidden
 from rosetta_jit.generate.python.slots import lanes_within
-from rosetta_jit.generate.python.statements import fail, print_statement
+from rosetta_jit.generate.python.statements import print_statement
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
