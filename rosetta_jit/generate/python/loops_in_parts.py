@@ -11,6 +11,7 @@ from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.messages_in_parts import Messages
 from rosetta_jit.generate.python.object_rows import Listed
 from rosetta_jit.generate.python.positions import NotInParts, Sum, known_width
+from rosetta_jit.generate.python.scope import CODES
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
@@ -42,7 +43,7 @@ class Loops(Messages):
             self.positions.at = outer.plus(self.positions.values[loop.variable], width)
         begin = self.positions.at
         exact, objects = dict(self.exact), dict(self.scope.objects)
-        self._as_python_has_them(loop)
+        self._check_numbers(loop)
         lines = self.function.writer.lines
         before = len(lines)
         with self.function.writer.indented(self._head(loop, is_counted=True)):
@@ -71,14 +72,23 @@ class Loops(Messages):
         del lines[at - 1]
         return True
 
-    def _as_python_has_them(self, loop: nodes.For) -> None:
-        """Elements of arrays of numpy's become Python's at once, where a loop goes through them."""
-        parts = [part for stmt, _ in statements(loop.body) for expr in expressions_of(stmt) for part in subexpressions(expr)]
-        lanes = {part.place.lane for part in parts if isinstance(part, nodes.Get) and part.place.row != index(0)}
-        for lane in sorted(lanes) if self.unit.numpy else ():
+    def _check_numbers(self, loop: nodes.For) -> None:
+        """Integers of an array fit their field, which is seen of all of them before a loop goes through them; numpy's become Python's."""
+        in_all = [(stmt, expr) for stmt, _ in statements(loop.body) for expr in expressions_of(stmt)]
+        parts = [(stmt, part) for stmt, expr in in_all for part in subexpressions(expr) if isinstance(part, nodes.Get)]
+        lanes = {part.place.lane for _, part in parts if part.place.row != index(0)}
+        computed = {part.place.lane for stmt, part in parts if not (isinstance(stmt, nodes.Store) and stmt.value == part)}
+        for lane in sorted(lanes):
             sequence = self.scope.sequences.get(lane)
-            if sequence is not None and isinstance(sequence.slot, Number) and sequence.element is not None:
-                self.line(f"{sequence.local} = _few({sequence.local})")
+            if sequence is None or not isinstance(sequence.slot, Number) or sequence.element is None:
+                continue
+            scalar, own = sequence.slot.scalar, sequence.local
+            if scalar[0] in "iu" and lane in computed:
+                numbers = f"_integers({self.scope.dtype(scalar)}, {own})" if self.unit.numpy else f'_fitting("{CODES[scalar]}", {own})'
+                self.line(f"{own} = {numbers}")
+                self.scope.integers.add(lane)
+            elif self.unit.numpy:
+                self.line(f"{own} = _few({own})")
 
     def _end(self, holds: str | None, begin: Sum, width: int) -> None:
         now = self.positions.at

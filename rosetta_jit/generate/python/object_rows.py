@@ -71,7 +71,8 @@ class ObjectScope(Scope):
     program has set, and that may be no numbers of their type; ``float_fields`` has the types of the fields that are floats, by lane, row
     and offset: the cases of a union share a local. ``maybe`` has what is there under a condition, by the field that says so and the bit
     or number of it. ``messages`` are the locals that hold messages of types that contain themselves, by lane and row, ``linked`` those
-    which are fields, by lane. ``keeps_long``: long texts stay what they are until all parts are joined. ``asked`` are sequences by the
+    which are fields, by lane. ``keeps_long``: long texts stay what they are until all parts are joined. ``integers`` are the
+    lanes of arrays whose elements are known to be integers that fit; ``asked`` are sequences by the
     fields that say how many elements they have.
     """
 
@@ -85,6 +86,7 @@ class ObjectScope(Scope):
     messages: dict[tuple[int, Expr], str] = field(default_factory=dict[tuple[int, "Expr"], str])
     linked: dict[int, str] = field(default_factory=dict[int, str])
     keeps_long: bool = False
+    integers: set[int] = field(default_factory=set[int])
     asked: dict[Place, Asked] = field(default_factory=dict[Place, "Asked"])
 
     def place(self, place: Place, scalar: str, row: Callable[[], str]) -> str:  # noqa: ARG002 - of a scope
@@ -95,7 +97,7 @@ class ObjectScope(Scope):
                 return f"_bits{8 * WIDTH[float_]}({known[place.offset]})"
             return _checked(known[place.offset], scalar) if known[place.offset] in self.numbers else known[place.offset]
         found = self.element_of(place, scalar)
-        if self.numpy and scalar[0] in "iu" and self.sequences[place.lane].element is not None:
+        if self.numpy and scalar[0] in "iu" and self.sequences[place.lane].element is not None and place.lane not in self.integers:
             return f"int({found})"
         return f"_single({found})" if scalar == "f32" else f"float({found})" if scalar == "f64" else found
 
