@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import dataclasses
 import gc
 import random
 
@@ -100,3 +102,27 @@ def test_cases_share_their_locals():
         return unit._borrow_1.__code__.co_nlocals
 
     assert locals_of(21) - locals_of(1) <= 20 * 8
+
+
+def test_the_object_is_whole_whatever_came():
+    """All fields are set, without a call of the class: objects are compared, shown and copied as any."""
+    unit = module(type_request("decode", "t.M", protobuf(BODY)))
+    for message in (b"", UNKNOWN, b"\x70\x07", b"\x22\x01a"):
+        found = unit.decode(message)
+        made = unit.M(**{each.name: getattr(found, each.name) for each in dataclasses.fields(unit.M)})
+        assert found == made == copy.copy(found) == copy.deepcopy(found)
+        assert repr(found) == repr(made)
+        assert unit.encode(found) == message
+
+
+def test_texts_of_messages_that_may_be_absent():
+    """Where a message within another begins, and where its text ends, are found in any order."""
+    inner = "@mutable struct Inner { string text; unsigned short u; };"
+    idl = f"module t {{ {inner} @mutable struct M {{ @optional Inner a; @optional Inner b; double d; sequence<string> texts; }}; }};"
+    given = {"encoding": "cdr", "schema": {"t.idl": idl}}
+    unit = module(type_request("decode", "t::M", given))
+    programs = rj.Decoder.of("t::M", **given), rj.Encoder.of("t::M", **given)
+    whole = {"a": {"text": "ab", "u": 1}, "b": {"text": "", "u": 2}, "d": 0.5, "texts": ["", "x"]}
+    some = [{}, whole, *({name: value} for name, value in whole.items())]
+    messages = [bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in some]
+    answers_as_the_library(unit, programs, harmed(messages, 40, "mutable"))

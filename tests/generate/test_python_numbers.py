@@ -7,9 +7,9 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
-from rosetta_jit.generate.build import Wishes, generated
+from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
 from tests.generate.driver import harmed
-from tests.generate.python import BOTH, answers_as_the_library, module
+from tests.generate.python import BOTH, answers_as_the_library, module, protobuf
 
 BOOLS = {
     "ros1": "bool a\nbool[] some\nbool[3] few\nint16 n\nbool[36] many\nbool b\nbool c\n",
@@ -144,3 +144,27 @@ def test_rows_of_several_dimensions_are_read_at_once(arrays):
         for row in found.d:
             row[0] = 7.0  # rows are their object's own
         answers_as_the_library(unit, programs, harmed([message], 30, f"rows {arrays} {count}"))
+
+
+@pytest.mark.parametrize("wishes", [NO_WISHES, Wishes(numpy=True)])
+def test_integers_of_lists_are_those_of_their_fields(wishes):
+    """What is written one by one is looked at as what is written by one call: too large, negative, no integer at all."""
+    schema = """
+        enum E { ZERO = 0; } message S { repeated uint32 numbers = 1; }
+        message M {
+            repeated int32 a = 1; repeated sint64 b = 2 [packed = false]; repeated uint64 c = 3 [packed = false]; repeated E d = 4;
+            repeated uint32 e = 5; repeated S f = 6; repeated int64 g = 7; repeated fixed32 h = 8 [packed = false];
+        }
+    """
+    unit = module(type_request("decode", "t.M", protobuf(schema)), BOTH, wishes)
+    bounds = {"a": (-(1 << 31), 1 << 31), "b": (-(1 << 63), 1 << 63), "c": (0, 1 << 64), "d": (-(1 << 31), 1 << 31)}
+    bounds |= {"e": (0, 1 << 32), "f": (0, 1 << 32), "g": (-(1 << 63), 1 << 63), "h": (0, 1 << 32)}
+    for name, (least, end) in bounds.items():
+        for numbers in ([least, 1, end - 1], [True]):
+            given = [unit.S(numbers)] if name == "f" else numbers
+            found = getattr(unit.decode(unit.encode(unit.M(**{name: given}))), name)
+            assert [*(found[0].numbers if name == "f" else found)] == numbers
+        for wrong in ([least - 1], [0, end], [1.5], ["1"], [None], 7, None):
+            with pytest.raises(unit.EncodeError) as caught:
+                unit.encode(unit.M(**{name: [unit.S(wrong)] if name == "f" else wrong}))
+            assert caught.value.kind == "range"

@@ -75,7 +75,7 @@ def test_what_comes_of_many_fields(label, wishes):
     given = protobuf(schema(label))
     programs = rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given)
     request = type_request("decode", "t.M", given)
-    assert "made = M()" in generated(request, "python", BOTH, "unit", wishes)["unit.py"]
+    assert "made = _new(M)" in generated(request, "python", BOTH, "unit", wishes)["unit.py"]
     unit, (_, encode) = module(request, BOTH, wishes), programs
     all_of, without_maps = values(label), [{name: value for name, value in each.items() if name not in MAPS} for each in values(label)]
     messages, parts = ([bytes(encode(encode.holder_type.from_dict(each))) for each in some] for some in (all_of, without_maps))

@@ -6,6 +6,7 @@ import builtins
 import keyword
 import re
 import sys
+from collections.abc import Mapping
 from typing import assert_never
 
 from rosetta_jit.backends.printing import Namespace
@@ -158,6 +159,19 @@ def _type(type_: Type, names: dict[str, str], unit: Unit, *, inside: bool = Fals
 
 
 def _default(type_: Type, names: dict[str, str], unit: Unit) -> str:
+    """What the field of a dataclass says of its first value: objects that can change are made for each."""
+    value = first_value(type_, names, unit)
+    if value in FACTORIES:
+        return f"field(default_factory={FACTORIES[value]})"
+    is_shared = value in ("0", "None") or not isinstance(type_, Array | Map | Ref)
+    return value if is_shared else f"field(default_factory=lambda: {value})"
+
+
+FACTORIES = {"[]": "list", "{}": "dict"}
+
+
+def first_value(type_: Type, names: Mapping[str, str], unit: Unit, *, inside: bool = False) -> str:
+    """An expression for the value that a field has before anything sets it, or that an element ``inside`` a first value has."""
     match type_:
         case Bool():
             return "False"
@@ -172,37 +186,20 @@ def _default(type_: Type, names: dict[str, str], unit: Unit) -> str:
         case Bytes():
             return 'b""'
         case Array(element, length) if (scalar := numpy_scalar(element, unit)) is not None:
-            return f"field(default_factory=lambda: np.zeros({length if isinstance(length, int) else 0}, np.{scalar}))"
-        case Array(_, int(length)):
-            return f"field(default_factory=lambda: {_elements(type_, names, unit)})" if length else "field(default_factory=list)"
+            return f"np.zeros({length if isinstance(length, int) else 0}, np.{scalar})"
+        case Array(element, int(length)) if length:
+            return f"[{first_value(element, names, unit, inside=True)} for _ in range({length})]"
         case Array():
-            return "field(default_factory=list)"
+            return "[]"
         case Map():
-            return "field(default_factory=dict)"
+            return "{}"
         case Optional() | Union():
             return "None"
         case Ref(name):
             if isinstance(unit.schema.types[name], Enum):
                 return "0"
-            return "None" if name in {struct for _, struct in unit.layout.recursive} else f"field(default_factory=lambda: {names[name]}())"
+            return "None" if not inside and name in {struct for _, struct in unit.layout.recursive} else f"{names[name]}()"
         case Enum() | Struct():
             raise AssertionError(type_)
         case _:
             assert_never(type_)
-
-
-def _elements(type_: Type, names: dict[str, str], unit: Unit) -> str:
-    """An expression for the first value of an array of a fixed length, and of what is in it."""
-    match type_:
-        case Array(element, length) if (scalar := numpy_scalar(element, unit)) is not None:
-            return f"np.zeros({length if isinstance(length, int) else 0}, np.{scalar})"
-        case Array(element, int(length)):
-            return f"[{_elements(element, names, unit)} for _ in range({length})]"
-        case Array():
-            return "[]"
-        case Map():
-            return "{}"
-        case Ref(name) if not isinstance(unit.schema.types[name], Enum):
-            return f"{names[name]}()"
-        case _:
-            return _default(type_, names, unit)

@@ -11,7 +11,7 @@ from rosetta_jit.generate.python.functions import is_flat, print_kernel
 from rosetta_jit.generate.python.making import Make, arrays_of
 from rosetta_jit.generate.python.printed import Attempt, Objects
 from rosetta_jit.generate.python.scope import Scope
-from rosetta_jit.generate.python.sparse import OBJECT, attributes_of, settings
+from rosetta_jit.generate.python.sparse import OBJECT, attributes_of, begun, settings
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.ir import Kernel
@@ -59,7 +59,7 @@ class _Decoder:
         return attributes_of(self.unit, body, settled, direct)
 
     def begun(self, scope: Scope) -> list[str]:
-        return [f"{OBJECT} = {self.names[self.unit.type]}()"] if scope.attributes is not None else []
+        return begun(self.make(scope)) if scope.attributes is not None else []
 
     def settings(self, scope: Scope) -> list[str]:
         return [*settings(self.make(scope, self.beside))] if scope.attributes is not None else []

@@ -19,7 +19,8 @@ class Direct:
     they are checked, by lane and offset, with the place and size of the check: ``late`` are those of them that may not come.
     ``pieces`` are spans of bytes, with their place and size: they are taken where a statement sets where they start.
     ``gathered`` are lanes of texts and of bytes, with the place and size of one in the message: it is appended where a statement sets where
-    it starts. ``visits`` are the calls of `Descents` by name, whose rows become lists; of messages within others ``left`` has the lanes
+    it starts. ``listed`` are the lanes of texts that are appended where they are checked.
+    ``visits`` are the calls of `Descents` by name, whose rows become lists; of messages within others ``left`` has the lanes
     that all of them share, by number: a list says how many more rows each may have.
     """
 
@@ -36,6 +37,7 @@ class Direct:
         default_factory=dict[tuple[int, int], "tuple[nodes.Expr, nodes.Expr]"]
     )
     gathered: dict[int, tuple[nodes.Expr, nodes.Expr]] = field(default_factory=dict[int, "tuple[nodes.Expr, nodes.Expr]"])
+    listed: set[int] = field(default_factory=set[int])
     visits: dict[str, Visit] = field(default_factory=dict[str, Visit])
     left: dict[int, int] | None = None
     rows: dict[int, dict[nodes.Place, tuple[nodes.Expr, nodes.Expr]]] = field(

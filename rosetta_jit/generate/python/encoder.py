@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Writer
+from rosetta_jit.generate.python.asked import counts_asked_first
 from rosetta_jit.generate.python.bools import with_stored_bools
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.descents import Descents, NotNested, descended
@@ -135,6 +136,7 @@ def _scope(kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], loads: set[str]
 
 def _parts(unit: Unit, kernel: Kernel, scope: ObjectScope, block: Block, written: dict[str, str], depth: int) -> Parts:
     body = with_stored_bools(without_positions(counted(without_lengths(block, kernel.sites, scope.lanes.own))))
+    body = counts_asked_first(body, unit.layout)
     objects = Objects(lambda _, __: "message")
     function = Function(scope, kernel, kernel.sites, {}, unit.origins.get("encode", ()), objects, writer=Writer(depth=depth))
     function.read = read_names(without_places(body))

@@ -213,8 +213,16 @@ def slice_of(scope: Scope, at: nodes.Expr, size: nodes.Expr) -> str:
     begin = bare(expression(scope, at))
     if isinstance(at, nodes.Const) and isinstance(size, nodes.Const):
         return f"data[{begin} : {int(at.value + size.value)}]"
-    end = scope.sums.get(nodes.Binary("add", at, size)) or f"{begin} + {expression(scope, size)}"
-    return f"data[{begin} : {end}]"
+    return f"data[{begin} : {_end_of(scope, at, size) or f'{begin} + {expression(scope, size)}'}]"
+
+
+def _end_of(scope: Scope, at: nodes.Expr, size: nodes.Expr) -> str | None:
+    """Where bytes end, if a local has that, or the place some bytes behind it."""
+    match size:
+        case nodes.Binary("add", more, nodes.Const(_, less)) if less < 0 and nodes.Binary("add", at, more) in scope.sums:
+            return f"{scope.sums[nodes.Binary('add', at, more)]} - {-int(less)}"
+        case _:
+            return scope.sums.get(nodes.Binary("add", at, size))
 
 
 def location(scope: Scope, address: nodes.Address) -> tuple[str, str]:

@@ -19,11 +19,12 @@ from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.late_fields import late_fields
 from rosetta_jit.generate.python.local_names import Locals
+from rosetta_jit.generate.python.mentions import blocks_within
 from rosetta_jit.generate.python.printed import Attempt, Function, Objects
 from rosetta_jit.generate.python.scope import CODES, Scope, flat_name, view_name
 from rosetta_jit.generate.python.search import FEW, direct
 from rosetta_jit.generate.python.statements import print_block
-from rosetta_jit.generate.python.sums import with_locals
+from rosetta_jit.generate.python.sums import ends_first, with_locals
 from rosetta_jit.generate.python.visiting import OF_READERS, counts_of_rows, print_readers, with_copy
 from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.shares import moved_lanes
@@ -151,10 +152,12 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
     if kernel.direction == "decode" and scope.flat and objects.layout is not None:
         body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, objects.blobs, few=0 if scope.numpy else FEW)
         known = {*scope.direct.whole, *scope.direct.appended, *scope.direct.elements, *scope.direct.rows}
+        body = ends_first(body)
         body, scope.direct.fields = late_fields(body, kernel, objects.layout, known) if descents is None else (body, ())
     behind = frozenset[str]()
     if descents is not None:
         scope.direct.visits, scope.direct.left, behind = descents.visits, descents.left, descents.behind()
+    assert {number for each in scope.direct.fields for number in each.cases} <= {*map(id, blocks_within(body))}
     function.settled = settled(body)
     if kernel.direction == "decode" and scope.flat:
         scope.attributes = objects.attributes(body, function.settled, scope.direct)

@@ -33,6 +33,7 @@ REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 RUNTIME = Path(__file__).with_name("runtime")
 MORE = {
     "_varint(": ("varints.py", "_SHORT"),
+    "_fitting(": ("integers.py", "def "),
     "_several_bytes(": ("long_varints.py", "def "),
     "_long_length(": ("long_lengths.py", "def "),
     "_joined(": ("long_parts.py", "_LONG"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 
 from rosetta_jit.generate.python.bools import Bools, bools_written
 from rosetta_jit.generate.python.flags import Flags, flags_of
@@ -10,6 +11,7 @@ from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.messages_in_parts import Messages
 from rosetta_jit.generate.python.object_rows import Listed
 from rosetta_jit.generate.python.positions import NotInParts, Sum, known_width
+from rosetta_jit.generate.python.scope import CODES
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
@@ -17,7 +19,9 @@ from rosetta_jit.model.layout import Number
 
 
 class Loops(Messages):
-    """Prints loops; ``block`` prints the statements in them."""
+    """Prints loops; ``block`` prints the statements in them, ``reads`` says how often anything reads a local."""
+
+    reads: Counter[str]
 
     def block(self, block: nodes.Block) -> None:
         """The statements of a block."""
@@ -39,7 +43,7 @@ class Loops(Messages):
             self.positions.at = outer.plus(self.positions.values[loop.variable], width)
         begin = self.positions.at
         exact, objects = dict(self.exact), dict(self.scope.objects)
-        self._as_python_has_them(loop)
+        self._check_numbers(loop)
         lines = self.function.writer.lines
         before = len(lines)
         with self.function.writer.indented(self._head(loop, is_counted=True)):
@@ -48,6 +52,7 @@ class Loops(Messages):
             self.flush()
         if not any(re.search(rf"\b{self.scope.locals.identifier(loop.variable)}\b", line) for line in lines[before + 1 :]):
             lines[before] = lines[before][: -len(lines[before].lstrip())] + f"{self._head(loop, is_counted=False)}"
+            before -= self._without_count(loop, before)
         if len(lines) == before + 1:
             lines.pop()  # the loop does nothing
         elif (flags := flags_of(loop)) is not None and (sequence := self._sequence_of_flags(loop, flags)) is not None:
@@ -58,14 +63,32 @@ class Loops(Messages):
         if holds is None:
             self.positions.at = outer.plus(self.positions.sum(loop.count), width)
 
-    def _as_python_has_them(self, loop: nodes.For) -> None:
-        """Elements of arrays of numpy's become Python's at once, where a loop goes through them."""
-        parts = [part for stmt, _ in statements(loop.body) for expr in expressions_of(stmt) for part in subexpressions(expr)]
-        lanes = {part.place.lane for part in parts if isinstance(part, nodes.Get) and part.place.row != index(0)}
-        for lane in sorted(lanes) if self.unit.numpy else ():
+    def _without_count(self, loop: nodes.For, at: int) -> bool:
+        """Leave out the line above a loop which says how many rounds it has, where nothing else needs that."""
+        lines, sequence = self.function.writer.lines, self._sequence_of(loop)
+        is_needed = sequence is None or not isinstance(loop.count, nodes.Local) or self.reads[loop.count.name] > 1
+        if is_needed or not at or not lines[at - 1].lstrip().startswith(f"{self.function.text(loop.count)} = len("):
+            return False
+        del lines[at - 1]
+        return True
+
+    def _check_numbers(self, loop: nodes.For) -> None:
+        """Integers of an array fit their field, which is seen of all of them before a loop goes through them; numpy's become Python's."""
+        in_all = [(stmt, expr) for stmt, _ in statements(loop.body) for expr in expressions_of(stmt)]
+        parts = [(stmt, part) for stmt, expr in in_all for part in subexpressions(expr) if isinstance(part, nodes.Get)]
+        lanes = {part.place.lane for _, part in parts if part.place.row != index(0)}
+        computed = {part.place.lane for stmt, part in parts if not (isinstance(stmt, nodes.Store) and stmt.value == part)}
+        for lane in sorted(lanes):
             sequence = self.scope.sequences.get(lane)
-            if sequence is not None and isinstance(sequence.slot, Number) and sequence.element is not None:
-                self.line(f"{sequence.local} = _few({sequence.local})")
+            if sequence is None or not isinstance(sequence.slot, Number) or sequence.element is None:
+                continue
+            scalar, own = sequence.slot.scalar, sequence.local
+            if scalar[0] in "iu" and lane in computed:
+                numbers = f"_integers({self.scope.dtype(scalar)}, {own})" if self.unit.numpy else f'_fitting("{CODES[scalar]}", {own})'
+                self.line(f"{own} = {numbers}")
+                self.scope.integers.add(lane)
+            elif self.unit.numpy:
+                self.line(f"{own} = _few({own})")
 
     def _end(self, holds: str | None, begin: Sum, width: int) -> None:
         now = self.positions.at
@@ -93,14 +116,10 @@ class Loops(Messages):
         sequence, own = self._sequence_of(loop), self.scope.locals.identifier(loop.variable)
         if sequence is None:
             return f"for {own} in range({self.function.text(loop.count)}):"
-        rows = ", ".join(self._row_names(loop, sequence))
+        rows, elements = ", ".join(self._row_names(loop, sequence)), f"{sequence.local}.items()" if sequence.is_map else sequence.local
         if not is_counted:
-            return f"for {rows} in {self._elements(loop, sequence)}:"
-        return f"for {own}, {f'({rows})' if sequence.is_map else rows} in enumerate({self._elements(loop, sequence)}):"
-
-    def _elements(self, loop: nodes.For, sequence: Listed) -> str:
-        """What a loop goes through: most maps have no entries."""
-        return f"{sequence.local}.items() if {self.function.text(loop.count)} else ()" if sequence.is_map else sequence.local
+            return f"for {rows} in {elements}:"
+        return f"for {own}, {f'({rows})' if sequence.is_map else rows} in enumerate({elements}):"
 
     def _row_names(self, loop: nodes.For, sequence: Listed) -> list[str]:
         """The locals for an element, or for key and value of a map."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 
-from rosetta_jit.generate.python.classes import NUMPY
+from rosetta_jit.generate.python.classes import NUMPY, first_value
 from rosetta_jit.generate.python.scope import CODES, Scope, view_name
 from rosetta_jit.generate.python.slots import lanes_within
 from rosetta_jit.generate.unit import Unit
@@ -80,14 +80,18 @@ class Make:
 
     def unknown(self, slot: Span, lane: int, row: str) -> str:
         """The fields that the schema does not know."""
-        return self._text("_bytes", slot, self._start(slot, lane, row), self._count(slot, lane, row))
+        late, count = self.scope.direct.late_at(slot), self._count(slot, lane, row)
+        there = count if late is None else self.scope.has_field(late.name)
+        return f'{self._text("_bytes", slot, self._start(slot, lane, row), count)} if {there} else b""'
+
+    def first(self, each: Field) -> str:
+        """The value of a field that nothing has set."""
+        return first_value(each.type, self.names, self.unit)
 
     def struct(self, struct: Struct, slot: Row, lane: int, row: str) -> str:
         arguments = [self.member(each, member, slot, lane, row) for each, member in zip(struct.fields, slot.members, strict=True)]
         if slot.unknown is not None:
-            late = self.scope.direct.late_at(slot.unknown)
-            there = self._count(slot.unknown, lane, row) if late is None else self.scope.has_field(late.name)
-            arguments.append(f'{self.unknown(slot.unknown, lane, row)} if {there} else b""')
+            arguments.append(self.unknown(slot.unknown, lane, row))
         return f"{self.names[struct.name]}({', '.join(arguments)})"
 
     def member(self, each: Field, member: Member, slot: Row, lane: int, row: str) -> str:

@@ -1,4 +1,4 @@
-"""What the statements of a decoder have to do with lanes."""
+"""What the statements of a decoder have to do with: lanes, locals."""
 
 from __future__ import annotations
 
@@ -80,3 +80,8 @@ def reads_behind(block: nodes.Block, readers: set[int], row: nodes.Place) -> boo
         if isinstance(outer, nodes.SetField) and (outer.place.lane, outer.place.row) == (row.lane, row.row):
             known.add(outer.place.offset)
     return seen == readers
+
+
+def assigned(block: nodes.Block) -> set[str]:
+    """The variables that a block sets again."""
+    return {stmt.name for stmt, _ in statements(block) if isinstance(stmt, nodes.Assign)}

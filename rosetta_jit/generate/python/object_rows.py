@@ -54,6 +54,14 @@ class Maybe:
     case: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A sequence of an object that is taken out of it where it has elements: the condition for that, and the line."""
+
+    condition: str
+    line: str
+
+
 @dataclass(slots=True)
 class ObjectScope(Scope):
     """What the fields of rows are in objects.
@@ -63,7 +71,9 @@ class ObjectScope(Scope):
     program has set, and that may be no numbers of their type; ``float_fields`` has the types of the fields that are floats, by lane, row
     and offset: the cases of a union share a local. ``maybe`` has what is there under a condition, by the field that says so and the bit
     or number of it. ``messages`` are the locals that hold messages of types that contain themselves, by lane and row, ``linked`` those
-    which are fields, by lane. ``keeps_long``: long texts stay what they are until all parts are joined.
+    which are fields, by lane. ``keeps_long``: long texts stay what they are until all parts are joined. ``integers`` are the
+    lanes of arrays whose elements are known to be integers that fit; ``asked`` are sequences by the
+    fields that say how many elements they have.
     """
 
     objects: dict[tuple[int, Expr], dict[int, str]] = field(default_factory=dict[tuple[int, "Expr"], dict[int, str]])
@@ -76,6 +86,8 @@ class ObjectScope(Scope):
     messages: dict[tuple[int, Expr], str] = field(default_factory=dict[tuple[int, "Expr"], str])
     linked: dict[int, str] = field(default_factory=dict[int, str])
     keeps_long: bool = False
+    integers: set[int] = field(default_factory=set[int])
+    asked: dict[Place, Asked] = field(default_factory=dict[Place, "Asked"])
 
     def place(self, place: Place, scalar: str, row: Callable[[], str]) -> str:  # noqa: ARG002 - of a scope
         """A scalar of a row of an object."""
@@ -85,7 +97,7 @@ class ObjectScope(Scope):
                 return f"_bits{8 * WIDTH[float_]}({known[place.offset]})"
             return _checked(known[place.offset], scalar) if known[place.offset] in self.numbers else known[place.offset]
         found = self.element_of(place, scalar)
-        if self.numpy and scalar[0] in "iu" and self.sequences[place.lane].element is not None:
+        if self.numpy and scalar[0] in "iu" and self.sequences[place.lane].element is not None and place.lane not in self.integers:
             return f"int({found})"
         return f"_single({found})" if scalar == "f32" else f"float({found})" if scalar == "f64" else found
 
@@ -163,15 +175,15 @@ def _checked(text: str, scalar: str) -> str:
 class Binder:
     """Prints the statements that take objects apart.
 
-    ``needed`` are the fields, by lane and offset, that anything reads, ``lacking`` the sequences of which some statement asks whether they
-    are empty; ``row`` is that at hand.
+    ``needed`` are the fields, by lane and offset, that anything reads, ``late`` the sequences of which statements ask whether they are
+    empty before they do anything else with them; ``row`` is that at hand.
     """
 
     unit: Unit
     function: Function
     scope: ObjectScope
     needed: set[tuple[int, int]]
-    lacking: frozenset[tuple[int, int]] = frozenset()
+    late: frozenset[tuple[int, int]] = frozenset()
     row: Expr = field(default_factory=lambda: index(0))
 
     def local(self, what: str) -> str:
@@ -218,7 +230,7 @@ class Binder:
             case ((String() | Bytes() | Array()), Span()):
                 self._sequence(lane, at, resolved, slot, found)
             case Map(key, value), Span():
-                self._map(at, map_entry(key, value), slot, found)
+                self._map(lane, at, map_entry(key, value), slot, found)
             case Union(), Variant():
                 self._union(lane, at, resolved, slot, found)
             case Struct(), Span():
@@ -227,12 +239,19 @@ class Binder:
             case _:
                 raise NotInParts
 
-    def _map(self, at: str, entry: Struct, slot: Span, found: dict[int, str]) -> None:
+    def _map(self, of: int, at: str, entry: Struct, slot: Span, found: dict[int, str]) -> None:
         lane = self.unit.layout.lanes[slot.lane]
         own = self.local(lane.name.rpartition(".")[2] or "entries")
-        self.function.line(f"{own} = {at}")
+        self._take(of, slot, f"len({at})", f"{own} = {at}")
         self.scope.sequences[slot.lane] = Listed(own, slot.lane, entry, lane.element, is_map=True)
         found[slot.offset], found[slot.offset + 8] = f"{START}{slot.lane}", f"len({own})"
+
+    def _take(self, of: int, slot: Span, condition: str, line: str) -> None:
+        """Take a sequence out of an object: at once, or where it has elements, as a condition says."""
+        if (of, slot.offset) in self.late:
+            self.scope.asked[Place(of, self.row, slot.offset + 8)] = Asked(condition, line)
+        else:
+            self.function.line(line)
 
     def _union(self, lane: int, at: str, union: Union, slot: Variant, found: dict[int, str]) -> None:
         """The number of the case that a pair names, or 0; what it has is taken apart where that is known."""
@@ -284,9 +303,8 @@ class Binder:
             raise NotInParts
         own = self.local((at if at.replace(".", "").isidentifier() and "." in at else lane.name).rpartition(".")[2] or "value")
         encoded = f"_utf8({at})" if self.scope.keeps_long else f'{at}.encode("utf-8", "surrogateescape")'
-        if isinstance(type_, String) and (of, slot.offset) in self.lacking:
-            encoded = f'b"" if {at} == "" else {encoded}'
-        self.function.line(f"{own} = {encoded if isinstance(type_, String) else at}")
+        is_text = isinstance(type_, String)
+        self._take(of, slot, f'{at} != ""' if is_text else f"len({at})", f"{own} = {encoded if is_text else at}")
         element = type_.element if isinstance(type_, Array) else None
-        self.scope.sequences[slot.lane] = Listed(own, slot.lane, element, lane.element, is_text=isinstance(type_, String))
+        self.scope.sequences[slot.lane] = Listed(own, slot.lane, element, lane.element, is_text=is_text)
         found[slot.offset], found[slot.offset + 8] = f"{START}{slot.lane}", f"len({own})"

@@ -11,17 +11,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.python.asked import asked_count, taken_late
 from rosetta_jit.generate.python.defaults import asked_first, reads_of
 from rosetta_jit.generate.python.expressions import expression
+from rosetta_jit.generate.python.failures import fail
 from rosetta_jit.generate.python.loops_in_parts import Loops
-from rosetta_jit.generate.python.object_rows import Listed, Maybe, ObjectScope
+from rosetta_jit.generate.python.object_rows import Asked, Listed, Maybe, ObjectScope
 from rosetta_jit.generate.python.packed import Part
 from rosetta_jit.generate.python.positions import NotInParts, Positions
-from rosetta_jit.generate.python.presence import bit_tested, case_tested, may_be_empty, places_read, words_tested
+from rosetta_jit.generate.python.presence import bit_tested, case_tested, places_read, words_tested
 from rosetta_jit.generate.python.printed import Function
 from rosetta_jit.generate.python.recursive_rows import is_hidden
 from rosetta_jit.generate.python.slots import lanes_within
-from rosetta_jit.generate.python.statements import fail, print_statement
+from rosetta_jit.generate.python.statements import print_statement
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
@@ -47,7 +49,7 @@ class Parts(Loops):
         self.body, self.routines, self.called, self.depth = body, routines, set[str](), function.writer.depth
         self.lengths, self.words = set[str](), dict[str, nodes.Place]()
         self.reads = reads_of(body)
-        self.binder.lacking = may_be_empty(body)
+        self.binder.late = taken_late(body)
 
     # --- statements ------------------------------------------------------------------------------------------------------------------
 
@@ -133,6 +135,11 @@ class Parts(Loops):
         """What an object has if a condition holds: a field that may be absent, or the case of a union."""
         tested = bit_tested(condition, self.words) or case_tested(condition, self.words)
         return None if tested is None else self.scope.maybe.get(tested)
+
+    def _asked(self, condition: nodes.Expr) -> Asked | None:
+        """The sequence that has elements if a condition holds."""
+        place = asked_count(condition)
+        return None if place is None else self.scope.asked.get(place)
 
     def _let(self, stmt: nodes.Let) -> None:
         if isinstance(stmt.value, nodes.Get) and stmt.value.place.lane >= self.scope.lanes.own:
@@ -221,26 +228,30 @@ class Parts(Loops):
             case nodes.If(condition, then, otherwise):
                 maybe = self._maybe(condition)
                 text = self._condition(condition) if maybe is None or maybe.case else f"{maybe.local} is not None"
-                self._branches(f"if {text}:", [("", then, maybe)], otherwise)
+                self._branches(f"if {text}:", [("", then, maybe or self._asked(condition))], otherwise)
 
     def _condition(self, condition: nodes.Expr) -> str:
         match condition:
             case nodes.Compare("ne", nodes.Get(_, place), nodes.Const(_, 0)) if self.scope.is_number(place):
                 return self.scope.is_not_zero(place)
+            case _ if (asked := self._asked(condition)) is not None:
+                return asked.condition
             case _:
                 return self.function.text(condition)
 
-    def _branches(self, head: str, cases: list[tuple[str, nodes.Block, Maybe | None]], default: nodes.Block) -> None:
+    def _branches(self, head: str, cases: Sequence[tuple[str, nodes.Block, Maybe | Asked | None]], default: nodes.Block) -> None:
         self.flush()
         before, ends = self.positions, list[Positions]()
         writer = self.function.writer
         is_match = bool(cases[0][0]) if cases else True
 
-        def inside(block: nodes.Block, maybe: Maybe | None = None) -> None:
+        def inside(block: nodes.Block, has: Maybe | Asked | None = None) -> None:
             lines, exact, objects = len(writer.lines), dict(self.exact), dict(self.scope.objects)
             self.positions = before.branch()
-            if maybe is not None:
-                self.binder.there(maybe)
+            if isinstance(has, Maybe):
+                self.binder.there(has)
+            elif has is not None:
+                self.line(has.line)
             self.block(block)
             self.flush()
             self.exact, self.scope.objects = exact, objects
@@ -251,9 +262,9 @@ class Parts(Loops):
 
         if is_match:
             with writer.indented(head):
-                for line, block, maybe in (*cases, ("case _:", default, None)):
+                for line, block, has in (*cases, ("case _:", default, None)):
                     with writer.indented(line):
-                        inside(block, maybe)
+                        inside(block, has)
         else:
             with writer.indented(head):
                 inside(*cases[0][1:])

@@ -69,22 +69,6 @@ def _is_word(value: Expr) -> TypeGuard[Get]:
     return isinstance(value, Get) and value.type == "u64"
 
 
-def may_be_empty(block: Block) -> frozenset[tuple[int, int]]:
-    """The sequences of rows, by lane and offset, that a block leaves out where they are empty."""
-    counts = {stmt.name: stmt.value.place for stmt, _ in statements(block) if isinstance(stmt, Let) and isinstance(stmt.value, Get)}
-    asked = {each.condition.left for each, _ in statements(block) if isinstance(each, If) and _asks_for_any(each.condition)}
-    places = (counts.get(each.name) if isinstance(each, Local) else each.place if isinstance(each, Get) else None for each in asked)
-    return frozenset((place.lane, place.offset - 8) for place in places if place is not None)
-
-
-def _asks_for_any(condition: Expr) -> TypeGuard[Compare]:
-    match condition:
-        case Compare("ne" | "gt", _, Const(_, 0)):
-            return True
-        case _:
-            return False
-
-
 def _place(value: Expr, words: Mapping[str, Place]) -> Place | None:
     match value:
         case Get(_, place):

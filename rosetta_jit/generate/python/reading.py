@@ -25,18 +25,13 @@ def takes_text(scope: Scope, condition: Expr) -> str | None:
     """The line that decodes a text, where a check is that of one which is taken where it is checked."""
     match condition:
         case IsText(Wire(at), size) if (span := scope.direct.text_at(at, size)) is not None:
+            decoded = f"{slice_of(scope, at, size)}.decode()"
+            if span[0] in scope.direct.listed:
+                return f"{scope.lanes.rows(span[0])}.append({decoded})"
             text = f"{scope.placed(*span)}[{bare(expression(scope, at))}]" if span in scope.direct.placed else scope.text(*span)
-            return f"{text} = {slice_of(scope, at, size)}.decode()"
+            return f"{text} = {decoded}"
         case _:
             return None
-
-
-def gathered(scope: Scope, lane: int) -> str:
-    """The text or bytes that is appended to the list of a lane."""
-    if (lane, 0) in scope.direct.texts:
-        return scope.text(lane, 0)
-    at, size = scope.direct.gathered[lane]
-    return slice_of(scope, at, size)
 
 
 def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at: Expr, size: Expr, order: str) -> str:

@@ -7,7 +7,7 @@ position_used           how many rows are in use                position_room   
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from itertools import groupby
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,7 @@ from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.generate.python.local_names import Locals
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS
+from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
@@ -75,6 +76,10 @@ class Scope:
     def note(self, name: str, *, is_small: bool) -> None:
         """Know of a local whether it is below 2**63."""
         (self.small.add if is_small else self.small.discard)(name)
+
+    def forget(self, names: Set[str]) -> None:
+        """Know no more of sums of locals that change."""
+        self.sums = {each: name for each, name in self.sums.items() if not locals_in(each) & names}
 
     def view(self, lane: int, code: str) -> str:
         """The view of a lane's rows as numbers of one type."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span, Variant
 
 
@@ -25,6 +26,11 @@ def lanes_within(slot: Slot, layout: Layout) -> set[int]:
         found |= {each.lane for each in spans}
         pending += [layout.lanes[each.lane].element for each in spans]
     return found
+
+
+def spans_of(layout: Layout, lane: int) -> dict[int, int]:
+    """The lanes of the sequences that a row of a lane has, by their offsets; not those of cases of unions."""
+    return {each.offset: each.lane for each in slots_of(layout.lanes[lane].element) if isinstance(each, Span)}
 
 
 def offsets_within(slot: Slot) -> Iterator[int]:

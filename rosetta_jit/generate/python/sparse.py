@@ -1,11 +1,11 @@
 """Messages that may lack most of their fields: the object is made first, and gets those that come as its attributes.
 
-made = M()                                          what is not in the message has its default
+made = _new(M)
+made.speed = made.height = 0.0                      what is not in the message has its first value
 while at < end:
     ...
         made.speed = _load_d(data, at)[0]
-if m_joints_count:
-    made.joints = ...                               what comes in parts is set in the end
+made.joints = ... if has_joints else []             what comes in parts is set in the end
 return made
 """
 
@@ -24,7 +24,7 @@ from rosetta_jit.kernel.nodes import Block, Const, Expect, Fill, IsText, Place, 
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.layout import Member, Number, Row, Span
-from rosetta_jit.model.types import Array, Bytes, Map, Optional, String, Struct
+from rosetta_jit.model.types import Array, Bytes, Field, Map, String, Struct
 
 OBJECT = "made"
 LEAST = 8
@@ -41,7 +41,7 @@ def attributes_of(unit: Unit, body: Block, settled: frozenset[tuple[int, str]], 
     always = {offset for offset, _ in settled if not _comes_in_parts(offset, unit, direct)} | _always(slot, direct)
     names = dict(zip(member_names(root), slot.members, strict=True))
     late = {name: member for name, member in names.items() if getattr(member.slot, "offset", None) not in always}
-    if sum(not (isinstance(each.slot, Span) and direct.late_at(each.slot)) for each in late.values()) < LEAST:
+    if len(late) < LEAST:
         return None
     blocks = blocks_within(body)
     found = ((name, member, _setting(blocks, member, direct)) for name, member in late.items())
@@ -99,30 +99,40 @@ def _setting(blocks: list[Block], member: Member, direct: Direct) -> list[Block]
             return []
 
 
+def begun(make: Make) -> list[str]:
+    """The lines that make the object, with what fields have that are set at once if they come."""
+    found: dict[str, list[str]] = {}
+    for field, member, name in _fields(make):
+        if _is_attribute(member, make):
+            found.setdefault(make.first(field), []).append(f"{OBJECT}.{name}")
+    return [f"{OBJECT} = _new({make.names[make.unit.type]})", *(f"{' = '.join(names)} = {value}" for value, names in found.items())]
+
+
 def settings(make: Make) -> Iterator[str]:
     """The lines that set the other fields of the object, which is made."""
-    attributes = make.scope.attributes or {}
-    unit = make.unit
-    root, slot = unit.schema.types[unit.type], unit.layout.root
+    unit, slot = make.unit, make.unit.layout.root
+    assert isinstance(slot, Row)
+    for field, member, name in _fields(make):
+        if _is_attribute(member, make):
+            continue
+        value, there = make.member(field, member, slot, 0, "0"), ""
+        match unit.schema.resolve(field.type), member.slot:
+            case Array() | Map() | String() | Bytes(), Span() as span if make.scope.direct.late_at(span) is None:
+                there = make.count(span)
+            case _:
+                pass
+        yield f"{OBJECT}.{name} = {value} if {there} else {make.first(field)}" if there else f"{OBJECT}.{name} = {value}"
+    if slot.unknown is not None:
+        yield f"{OBJECT}.unknown_fields = {make.unknown(slot.unknown, 0, '0')}"
+
+
+def _fields(make: Make) -> Iterator[tuple[Field, Member, str]]:
+    """The fields of the message, with their slots and attributes."""
+    root, slot = make.unit.schema.types[make.unit.type], make.unit.layout.root
     assert isinstance(root, Struct)
     assert isinstance(slot, Row)
-    for each, member, name in zip(root.fields, slot.members, member_names(root), strict=True):
-        if getattr(member.slot, "offset", None) in attributes:
-            continue
-        value = None
-        if member.presence is not None:
-            assert isinstance(each.type, Optional)
-            there, value = make.is_there(member, slot, 0, "0"), make.value(each.type.value, member.slot, 0, "0")
-        elif isinstance(unit.schema.resolve(each.type), Array | Map | String | Bytes) and isinstance(member.slot, Span):
-            there, value = make.count(member.slot), make.value(each.type, member.slot, 0, "0")
-        else:
-            there = ""
-        value = make.member(each, member, slot, 0, "0") if value is None else value
-        yield from _set(name, value, there)
-    if slot.unknown is not None:
-        yield from _set("unknown_fields", make.unknown(slot.unknown, 0, "0"), make.count(slot.unknown))
+    yield from zip(root.fields, slot.members, member_names(root), strict=True)
 
 
-def _set(name: str, value: str, there: str) -> list[str]:
-    line = f"{OBJECT}.{name} = {value}"
-    return [f"if {there}:", f"    {line}"] if there else [line]
+def _is_attribute(member: Member, make: Make) -> bool:
+    return getattr(member.slot, "offset", None) in (make.scope.attributes or {})

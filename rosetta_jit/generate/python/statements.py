@@ -9,9 +9,11 @@ from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.bools import Bools, bools_read
 from rosetta_jit.generate.python.descents import Visit
 from rosetta_jit.generate.python.expressions import expression, is_small, location, slice_of
+from rosetta_jit.generate.python.failures import fail, fail_if, lacks
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
+from rosetta_jit.generate.python.mentions import assigned
 from rosetta_jit.generate.python.printed import Attempt, Function
-from rosetta_jit.generate.python.reading import gathered, numbers_read, rows_read, takes_text
+from rosetta_jit.generate.python.reading import numbers_read, rows_read, takes_text
 from rosetta_jit.generate.python.reserving import reserve, take
 from rosetta_jit.generate.python.scope import CODES, view_name
 from rosetta_jit.kernel import nodes
@@ -27,7 +29,7 @@ OF_SEVERAL_BYTES = {**dict.fromkeys(("read_varint", "read_element", "read_packed
 
 def print_block(function: Function, block: nodes.Block) -> None:
     """The statements of a block."""
-    before = len(function.writer.lines)
+    before, sums = len(function.writer.lines), dict(function.scope.sums)
     for number, late in enumerate(function.scope.direct.fields):
         if id(block) in late.cases:
             function.line(f"<late {number}>")
@@ -38,6 +40,8 @@ def print_block(function: Function, block: nodes.Block) -> None:
             _together(function, group)
     if len(function.writer.lines) == before:
         function.line("pass")
+    function.scope.sums = sums
+    function.scope.forget(assigned(block))
 
 
 def _together(function: Function, group: list[nodes.Stmt]) -> None:
@@ -66,19 +70,20 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
     """One statement."""
     match stmt:
         case nodes.Require(at, size, failure):
-            _fail_if(function, _lacks(function, at, size), failure)
+            fail_if(function, lacks(function, at, size), failure)
         case nodes.Expect(condition, failure):
             if condition == FALSE:
                 fail(function, failure)
             elif (taken := takes_text(function.scope, condition)) is not None:
                 _taken(function, taken, failure)
             else:
-                _fail_if(function, function.text(folded(nodes.Unary("not", condition))), failure)
+                fail_if(function, function.text(folded(nodes.Unary("not", condition))), failure)
         case nodes.Let(name, value) | nodes.Var(name, value) | nodes.Assign(name, value):
             function.scope.note(name, is_small=isinstance(stmt, nodes.Let) and is_small(value, function.scope.small))
             if name in function.read:
                 text = function.text(value)
                 function.line(f"{function.scope.locals.identifier(name)} = {text}{_origin(function, stmt)}")
+                function.scope.forget({name} if isinstance(stmt, nodes.Assign) else set())
                 if isinstance(stmt, nodes.Let) and isinstance(value, nodes.Binary) and value.op == "add":
                     function.scope.sums[value] = function.scope.locals.identifier(name)
         case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
@@ -124,44 +129,6 @@ def _origin(function: Function, stmt: nodes.Stmt) -> str:
     return "" if line is None else f"  # {ascii(line)[1:-1]}"
 
 
-def _lacks(function: Function, at: nodes.Expr, size: nodes.Expr) -> str:
-    """Whether bytes are missing."""
-    where, length = function.text(at), expression(function.scope, size)
-    if is_not_negative(at, function.positive) and is_not_negative(size, function.positive):
-        if isinstance(size, nodes.Const):
-            return f"end < {where} + {length}" if not isinstance(at, nodes.Const) else f"end < {int(at.value) + int(size.value)}"
-        return f"{bare(length)} > end - {expression(function.scope, at)}"
-    if isinstance(size, nodes.Const):
-        if isinstance(at, nodes.Const):
-            return f"end < {int(at.value) + int(size.value)}"
-        return f"not 0 <= {where} <= end - {length}"
-    if not isinstance(at, nodes.Const):
-        return f"{where} < 0 or not 0 <= {bare(length)} <= end - {expression(function.scope, at)}"
-    return f"not 0 <= {bare(length)} <= end - {where}"
-
-
-def _fail_if(function: Function, condition: str, failure: nodes.Failure) -> None:
-    with function.writer.indented(f"if {condition}:"):
-        fail(function, failure)
-
-
-def fail(function: Function, failure: nodes.Failure) -> None:
-    """The line that ends an attempt."""
-    site = function.sites[failure.site]
-    at = function.text(failure.at)
-    if function.is_routine:
-        function.line(f"raise _Failed(sites[{failure.site - 1}], {at}, indices)")
-        return
-    indices = [function.text(each) for each in failure.indices]
-    detail = ""
-    if site.detail_lane is not None:
-        *indices, first, count = indices
-        detail = f", bytes({function.scope.view(site.detail_lane, '')}[{first} : {first} + {count}])"
-    said = f"  # {ascii(f'{site.kind} {site.path}: {site.detail}')[1:-1]}"
-    places = f", ({', '.join(indices)}{',' if len(indices) == 1 else ''})" if indices or detail else ""
-    function.line(f"raise _Failed({failure.site}, {at}{places}{detail}){said}")
-
-
 def _effect(function: Function, stmt: nodes.Effect) -> None:
     scope, origin = function.scope, _origin(function, stmt)
     match stmt:
@@ -174,7 +141,8 @@ def _effect(function: Function, stmt: nodes.Effect) -> None:
                     f"{scope.struct('<' if nodes.WIDTH[type_] == 1 else order, CODES[type_], 'store')}(data, {where}, {text}){origin}"
                 )
         case nodes.SetField(nodes.Place(lane), _) if lane in scope.direct.gathered:
-            function.line(f"{scope.lanes.rows(lane)}.append({gathered(scope, lane)}){origin}")
+            if lane not in scope.direct.listed:
+                function.line(f"{scope.lanes.rows(lane)}.append({slice_of(scope, *scope.direct.gathered[lane])}){origin}")
         case nodes.SetField(nodes.Place(lane, _, offset), _) if (lane, offset) in scope.direct.pieces:
             function.line(f"{scope.piece(lane, offset)} = {slice_of(scope, *scope.direct.pieces[lane, offset])}{origin}")
         case nodes.SetField(nodes.Place(lane) as place, _) if place in scope.direct.rows.get(lane, ()):
@@ -232,6 +200,8 @@ def _row_of(function: Function, lane: int, at: nodes.Expr, size: nodes.Expr) -> 
 
 def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
     scope = function.scope
+    if isinstance(stmt, nodes.For | nodes.While):
+        scope.forget(assigned(stmt.body))
     match stmt:
         case nodes.For(_, count, _) if (found := turned(stmt)) is not None:
             _turn(function, count, found, decodes=isinstance(stmt.body[-1], nodes.SetField))
@@ -242,8 +212,7 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
         case nodes.For(variable, count, body):
             with function.writer.indented(f"for {scope.locals.identifier(variable)} in range({function.text(count)}):"):
                 print_block(function, body)
-                if variable in scope.direct.loops:
-                    lane = scope.direct.loops[variable]
+                if (lane := scope.direct.loops.get(variable)) is not None and lane not in scope.direct.listed:
                     function.line(f"{scope.lanes.rows(lane)}.append({function.objects.row(scope, lane)})")
         case nodes.While(condition, body):
             with function.writer.indented(f"while {function.text(condition)}:"):

@@ -36,6 +36,23 @@ def with_locals(block: Block) -> Block:
     return tuple(with_blocks(stmt, with_locals) for stmt in found)
 
 
+def ends_first(block: Block) -> Block:
+    """A block that computes where a part of the message ends before it checks that the message has it."""
+    found: list[Stmt] = []
+    for stmt in block:
+        number = next((number for number, each in enumerate(found) if _is_check_of(each, stmt)), None)
+        if number is not None and isinstance(stmt, Let) and _holds(found[number:], stmt.value):
+            found.insert(number, stmt)
+        else:
+            found.append(with_blocks(stmt, ends_first))
+    return tuple(found)
+
+
+def _is_check_of(check: Stmt, stmt: Stmt) -> bool:
+    """Whether one statement checks that the message has a part, and another computes where that ends."""
+    return isinstance(check, Require) and isinstance(stmt, Let) and stmt.value == Binary("add", check.at, check.size)
+
+
 def _with(block: Block, let: Let) -> Block | None:
     """A block with a local before the first statement that names its value; nothing where that does not stay the same."""
     named = [number for number, stmt in enumerate(block) if let.value in {*_all_sums(stmt), *_computed(stmt)}]

@@ -18,7 +18,7 @@ from rosetta_jit.generate.python.printed import Function
 from rosetta_jit.generate.python.scope import Scope
 from rosetta_jit.generate.python.search import FEW, direct
 from rosetta_jit.generate.python.statements import COPY, print_block
-from rosetta_jit.generate.python.sums import with_locals
+from rosetta_jit.generate.python.sums import ends_first, with_locals
 from rosetta_jit.generate.reachable import read_names
 from rosetta_jit.kernel import nodes
 
@@ -53,7 +53,7 @@ def _reader(lane: int, descents: Descents, function: Function) -> tuple[Scope, l
     block = borrowed_block(with_locals(with_bytes(descents.rows[lane])), kernel, objects.layout)
     row = nodes.Place(lane, descents.row)
     block, scope.direct = direct(block, kernel, objects.layout, objects.inner_arrays, objects.blobs, few=0 if scope.numpy else FEW, row=row)
-    *stmts, last = block
+    *stmts, last = ends_first(block)
     assert isinstance(last, nodes.Return)
     scope.direct.visits, scope.direct.left = descents.visits, descents.left
     function.read, function.positive = read_names(block, scope.direct.read()), not_negative(block, descents.behind())

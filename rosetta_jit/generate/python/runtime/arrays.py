@@ -2,6 +2,7 @@
 
 # pyright: reportUnusedImport=false, reportUnusedFunction=false, reportUnusedClass=false, reportUnknownArgumentType=false
 
+from array import array
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,13 @@ def _array(dtype: "np.dtype[Any]", data: Any, count: int, at: int, copy: bool) -
 def _few(numbers: Any) -> Any:
     """Few numbers as Python's, which are packed together with those around them."""
     return numbers.tolist() if type(numbers) is np.ndarray and numbers.dtype.kind not in "mM" else numbers
+
+
+def _integers(dtype: "np.dtype[Any]", numbers: Any) -> Any:
+    """The integers of an array as Python's; raises `ValueError` where they are none that the field can have."""
+    if type(numbers) is not np.ndarray:
+        return array(dtype.char, numbers).tolist()
+    return numbers.tolist() if numbers.dtype is dtype and numbers.ndim == 1 else np.frombuffer(_raw(dtype, numbers), dtype).tolist()
 
 
 def _raw(dtype: "np.dtype[Any]", numbers: Any, is_bool: bool = False) -> bytes:

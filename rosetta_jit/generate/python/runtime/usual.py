@@ -84,6 +84,9 @@ _ZERO, _ZERO_FLOAT = 0, 0.0
 _NOTHING = bytearray()
 """Rows of lanes that have no room yet."""
 
+_new = object.__new__
+"""Makes an object that has no field yet: what makes it sets them all."""
+
 
 def _more(lane: Any, room: int, missing: int, size: int, most: int, path: str) -> tuple[bytearray, int]:
     """A lane with room for more rows of ``size`` bytes; a message that asks for more than ``most`` takes a length from what it says."""
