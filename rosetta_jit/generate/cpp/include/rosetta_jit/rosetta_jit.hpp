@@ -487,6 +487,28 @@ inline void copy_few(void *target, std::int64_t to, const void *source, std::int
     }
 }
 
+/* Copies an array of numbers, of which there may be few, too, as of a joint or a pose: a call takes longer than to copy them. */
+inline void copy_numbers(void *target, std::int64_t to, const void *source, std::int64_t from, std::int64_t size) noexcept
+{
+    unsigned char *const at = static_cast<unsigned char *>(target) + to;
+    const unsigned char *const begin = static_cast<const unsigned char *>(source) + from;
+    if (size > 64) {
+        std::memcpy(at, begin, static_cast<std::size_t>(size));
+    } else if (size > 32) { /* the first ones and the last ones, some of which may be the same */
+        unsigned char first[16], second[16], third[16], last[16];
+        std::memcpy(first, begin, 16);
+        std::memcpy(second, begin + 16, 16);
+        std::memcpy(third, begin + size - 32, 16);
+        std::memcpy(last, begin + size - 16, 16);
+        std::memcpy(at, first, 16);
+        std::memcpy(at + 16, second, 16);
+        std::memcpy(at + size - 32, third, 16);
+        std::memcpy(at + size - 16, last, 16);
+    } else {
+        copy_few(target, to, source, from, size);
+    }
+}
+
 /* Copies bytes whose number compilers know: of more than these some take an instruction that starts slowly, and is slow where addresses are odd. */
 template <std::int64_t Size> ROSETTA_JIT_INLINE void copy_known(void *target, std::int64_t to, const void *source, std::int64_t from) noexcept
 {
