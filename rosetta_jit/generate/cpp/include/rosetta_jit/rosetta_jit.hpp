@@ -509,19 +509,22 @@ inline void copy_numbers(void *target, std::int64_t to, const void *source, std:
     }
 }
 
-/* Copies bytes whose number compilers know: of more than these some take an instruction that starts slowly, and is slow where addresses are odd. */
+/* Copies bytes by the function of the C library. */
+ROSETTA_JIT_APART inline void copy_apart(unsigned char *target, const unsigned char *source, std::size_t size) noexcept
+{
+    std::memcpy(target, source, size);
+}
+
+/* Copies bytes whose number compilers know: of some hundred they make an instruction that starts slowly, and is slow where addresses are odd. */
 template <std::int64_t Size> ROSETTA_JIT_INLINE void copy_known(void *target, std::int64_t to, const void *source, std::int64_t from) noexcept
 {
-    constexpr std::int64_t AT_ONCE = 64, FEW = 256, MANY = 4096;
+    constexpr std::int64_t FEW = 256;
     unsigned char *const at = static_cast<unsigned char *>(target) + to;
     const unsigned char *const begin = static_cast<const unsigned char *>(source) + from;
-    if constexpr (Size <= FEW || Size > MANY) {
+    if constexpr (Size <= FEW) {
         std::memcpy(at, begin, static_cast<std::size_t>(Size));
     } else {
-        for (std::int64_t done = 0; done < Size - AT_ONCE; done += AT_ONCE) {
-            std::memcpy(at + done, begin + done, AT_ONCE);
-        }
-        std::memcpy(at + Size - AT_ONCE, begin + Size - AT_ONCE, AT_ONCE); /* some of them again, if there are fewer */
+        copy_apart(at, begin, static_cast<std::size_t>(Size));
     }
 }
 
@@ -1648,18 +1651,24 @@ template <class Message> auto &mutable_unknown_fields(Message &message)
     }
 }
 
-/* Gives a message the unknown fields that a decoder has found, which are none nearly always. */
-template <class Message, class Lane, class Span> void keep_unknown(Message &message, const Lane &from, const Span &span)
+/* Gives a message the unknown fields that a decoder has found in place of its own. */
+template <class Message, class Lane, class Span> ROSETTA_JIT_COLD void keep_unknown_fields(Message &message, const Lane &from, const Span &span)
 {
-    if (has_unknown_fields(message)) {
-        mutable_unknown_fields(message).Clear();
-    }
+    mutable_unknown_fields(message).Clear();
     if (span.count > 0) {
         mutable_unknown_fields(message).ParseFromArray(from.rows + span.start, static_cast<int>(span.count));
     }
 }
 
-/* Takes the bytes of those that a message has. */
+/* The same where nearly always there are none. */
+template <class Message, class Lane, class Span> ROSETTA_JIT_INLINE void keep_unknown(Message &message, const Lane &from, const Span &span)
+{
+    if (span.count > 0 || has_unknown_fields(message)) {
+        keep_unknown_fields(message, from, span);
+    }
+}
+
+/* Takes the bytes of the unknown fields that a message has. */
 template <class Lane, class Span, class Message> ROSETTA_JIT_COLD void take_unknown_fields(Lane &to, Span &span, const Message &message)
 {
     std::string unknown;
