@@ -178,16 +178,22 @@ def test_lists_of_texts_that_grow_and_shrink(encoding, tmp_path):
 
 FEW = """
 #include <rosetta_jit/rosetta_jit.hpp>
+using namespace rosetta_jit::detail;
 int main() {
-    unsigned char given[64];
-    for (int at = 0; at < 64; at++) { given[at] = static_cast<unsigned char>(at); }
-    for (int size = 0; size < 40; size++) {
-        unsigned char filled[64] = {}, copied[64] = {};
-        rosetta_jit::detail::fill_few(filled, 3, size, 255);
-        rosetta_jit::detail::copy_few(copied, 3, given, 5, size);
-        for (int at = 0; at < 64; at++) {
+    unsigned char given[128];
+    for (int at = 0; at < 128; at++) { given[at] = static_cast<unsigned char>(at % 3 == 0 ? 0 : at); }
+    for (int size = 0; size < 100; size++) {
+        unsigned char filled[128] = {}, copied[128] = {}, numbers[128] = {}, flags[128];
+        std::memset(flags, 255, sizeof flags);
+        fill_few(filled, 3, size, 255);
+        copy_few(copied, 3, given, 5, size);
+        copy_numbers(numbers, 3, given, 5, size);
+        copy_flags(flags + 3, given + 5, size);
+        for (int at = 0; at < 128; at++) {
             const bool is_within = at >= 3 && at < 3 + size;
-            if (filled[at] != (is_within ? 255 : 0) || copied[at] != (is_within ? at + 2 : 0)) { return 1; }
+            const int expected = is_within ? given[at + 2] : 0;
+            if (filled[at] != (is_within ? 255 : 0) || copied[at] != expected || numbers[at] != expected) { return 1; }
+            if (flags[at] != (!is_within ? 255 : expected != 0 ? 1 : 0)) { return 2; }
         }
     }
 }

@@ -39,6 +39,9 @@ OWN_WORDS = frozenset(
 )
 """What the functions call their parameters, and the holder its other members."""
 
+WORD = 8
+"""Bytes of a row that is a 64-bit integer."""
+
 Dialect = Literal["c", "c++"]
 """What compiles the functions."""
 
@@ -89,8 +92,8 @@ class Lanes:
     The rows of ``addressed`` lanes are bytes anywhere in memory, by their addresses; those of ``viewed`` lanes are made of an object's
     elements when they are read. ``row``: the functions are given the message's row. ``straight`` are the fields, by lane and offset, that
     no row keeps, as an object has them; the rows of ``opened`` lanes are elements of the object, and so are those of ``given`` ones, of
-    which each message has one array. ``shared`` begins the names of functions
-    of the support, where they are those of a header.
+    which each message has one array. ``shared`` begins the names of functions of the support, where they are those of a header.
+    ``forward``: a message is written from its begin to its end, so that bytes behind those that are written are not in use.
     """
 
     prefix: str
@@ -105,6 +108,7 @@ class Lanes:
     given: Mapping[int, Given] = field(default_factory=dict[int, "Given"])
     shown: Mapping[int, str] = field(default_factory=dict[int, str])
     shared: str = ""
+    forward: bool = True
 
     def stride(self, lane: int) -> int:
         """Bytes of a row."""
@@ -121,8 +125,10 @@ class Lanes:
     def capacity(self, lane: int) -> str:
         """How many rows there is room for."""
         if lane >= self.own:
-            size = f"holder->scratch[{lane - self.own}].size"
-            return size if self.stride(lane) == 1 else f"({size} / {self.stride(lane)})"
+            scratch, stride = f"holder->scratch[{lane - self.own}]", self.stride(lane)
+            if self.dialect == "c++" and stride == WORD:
+                return f"{scratch}.words"
+            return f"{scratch}.size" if stride == 1 else f"({scratch}.size / {stride})"
         return "1" if lane == 0 else f"holder->{self.rows(lane)}.capacity"
 
     def member(self, lane: int) -> str:

@@ -166,7 +166,10 @@ def _copy(scope: Scope, target: nodes.Address, source: nodes.Address, count: nod
     if scope.lanes.dialect == "c++" and isinstance(count, nodes.Const):
         return f"rosetta_jit::detail::copy_known<{size}>({', '.join((*location(scope, target), *location(scope, source)))});"
     copied = ", ".join((*location(scope, target), *location(scope, source), size))
-    if scope.lanes.dialect == "c++" and isinstance(source, nodes.Place) and scope.lanes.stride(source.lane) == 1:
+    lanes = [each.lane for each in (target, source) if isinstance(each, nodes.Place)]
+    if scope.lanes.dialect == "c++" and any(scope.lanes.stride(lane) > 1 for lane in lanes):
+        return f"rosetta_jit::detail::copy_numbers({copied});"
+    if scope.lanes.dialect == "c++" and isinstance(source, nodes.Place):
         return f"rosetta_jit::detail::copy_few({copied});"
     return f"{scope.calls('copy_bytes')}({copied});"
 

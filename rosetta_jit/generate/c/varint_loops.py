@@ -157,12 +157,13 @@ def replaced(scope: Scope, call: Call) -> list[str]:
 
 
 def sooner(scope: Scope, call: Call) -> tuple[str, str] | None:
-    """Where there is room, a statement that does what the call of a routine does, and may write what is not yet in use behind it."""
+    """Where there is room, a statement that does what the call of a routine does; it may set bytes behind that are not in use."""
     if call.routine != "write_two_bytes":
         return None
     at, value = (bare(expression(scope, each)) for each in call.arguments)
     bytes_, end, found = scope.takes("bytes"), expression(scope, END), scope.locals.identifier(call.results[0].name)
-    return f"{end} - {at} >= 10", f"{found} = {at} + {DETAIL}::write_varint({bytes_} + {at}, {value});"
+    function = "write_varint" if scope.lanes.forward else "write_varint_exactly"
+    return f"{end} - {at} >= 10", f"{found} = {at} + {DETAIL}::{function}({bytes_} + {at}, {value});"
 
 
 def called(kernel: Kernel) -> frozenset[str]:
@@ -180,7 +181,7 @@ def called(kernel: Kernel) -> frozenset[str]:
 
 
 def rounds_done(scope: Scope, rounds: Rounds) -> list[str]:
-    """The statements that do rounds of a loop."""
+    """The statements that do rounds of a loop. `write_varints` sets bytes behind them, which must not be in use."""
     match rounds:
         case Sized(number, count, value, total):
             function = "size_of_varints" if _flag(value) is None else "size_of_flags"
@@ -192,7 +193,8 @@ def rounds_done(scope: Scope, rounds: Rounds) -> list[str]:
                 rows = f"{scope.rows(flag.lane)} + {expression(scope, folded(substituted(flag.row, {number: index(0)})))}"
                 name, end = scope.locals.identifier(number), bare(expression(scope, count))
                 return [f"{place} = {DETAIL}::write_flags({target}, {place}, {name}, {end}, {rows});"]
-            return [f"{place} = {DETAIL}::write_varints({target}, {place}, {_numbered(scope, number, count, value)});"]
+            written = f"{place} = {DETAIL}::write_varints({target}, {place}, {_numbered(scope, number, count, value)});"
+            return [written] if scope.lanes.forward else []
         case Appended():
             return _appending(scope, rounds)
 

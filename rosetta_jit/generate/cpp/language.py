@@ -70,7 +70,8 @@ def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: R
     """The functions of a kernel; those of encoders are given the message's row, and addresses, those of decoders the object."""
     if kind_of(role) in ("encode", "size"):
         views = frozenset(each.direct.lane for each in viewed_in(unit, lanes, manners))
-        kernel, lanes = undamaged_kernel(kernel), replace(lanes, addressed=addressed_in(unit, lanes, manners), viewed=views, row=True)
+        addressed, forward = addressed_in(unit, lanes, manners), not unit.layout.recursive
+        kernel, lanes = undamaged_kernel(kernel), replace(lanes, addressed=addressed, viewed=views, row=True, forward=forward)
     else:
         kernel, lanes = _decoder(unit, manners, kernel, lanes)
     return print_kernel(kernel, lanes, role, unit.origins.get(role, ()))

@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import members_of, path_to
+from rosetta_jit.generate.cpp.always import spans
 from rosetta_jit.generate.cpp.spots import Direct, Spot
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import Unit, kind_of
 from rosetta_jit.kernel.nodes import Advance, Block, Capacity, Copy, Expr, Get, HostCall, Place, Reserve, Stmt, Used
 from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
 from rosetta_jit.model.layout import Number, Row, Slot, Span
-from rosetta_jit.model.types import Array, Bytes, Ref, String, Struct, Type
+from rosetta_jit.model.types import Array, Bytes, String, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -59,8 +60,8 @@ def taken(walk: Walk, at: str) -> list[Listed]:
 
 
 def _lists(walk: Walk, at: str) -> Iterator[Listed]:
-    unit, element = walk.unit, walk.lanes.all[0].element
-    for type_, lane, row, spot in walk.spans(Ref(unit.type), unit.layout.root, element, "row", Spot(at)):
+    unit = walk.unit
+    for type_, lane, row, spot in spans(walk, at):
         if isinstance(type_, Array) and not isinstance(unit.layout.lanes[lane].element, Number) and unit.layout.lanes[lane].links is None:
             yield Listed(Direct(lane, row, Spot(walk.text("direct", spot), spot.owner, spot.field)), type_.element)
 

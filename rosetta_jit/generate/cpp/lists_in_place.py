@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rosetta_jit.generate.c.lanes import Straight
+from rosetta_jit.generate.cpp.always import is_plain
 from rosetta_jit.generate.cpp.lists import taken
 from rosetta_jit.generate.cpp.opened import in_place
 from rosetta_jit.generate.cpp.reading import container_type
@@ -136,7 +137,7 @@ def _opening(walk: Walk, text: str, span: Span, place: _Place) -> Straight:
 def _numbers(walk: Walk, opened: Opened, type_: Array, span: Span, place: _Place) -> bool:
     """The same of numbers that an element of a list has; those of the message itself are lanes as they are."""
     rows = walk.lanes.rows(span.lane)
-    if place.lane == 0 or not walk.is_plain(type_, span.lane) or not (type_.length is None or type_.fixed):
+    if place.lane == 0 or not is_plain(walk, type_, span.lane) or not (type_.length is None or type_.fixed):
         return False
     opened.numbers[span.lane] = f"{walk.lanes.type(span.lane)}, {type_.fixed or 0}"
     opened.fields[place.lane, span.offset] = _opening(walk, "open", span, place)

@@ -14,6 +14,7 @@ from rosetta_jit.generate.c.lanes import Given, Lanes
 from rosetta_jit.generate.c.scope import Scope
 from rosetta_jit.generate.c.statements import Function, print_block
 from rosetta_jit.generate.c.support import function_names
+from rosetta_jit.generate.cpp.always import is_plain, numbers
 from rosetta_jit.generate.cpp.at_once import MOST, PARAMETERS, SHARED, are_many, check, is_shared
 from rosetta_jit.generate.cpp.empty_lists import NOT_EMPTY, of_no_elements
 from rosetta_jit.generate.cpp.lists_in_place import spans_of
@@ -29,7 +30,7 @@ from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_opera
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.layout import Number
-from rosetta_jit.model.types import Array, Bytes, Ref, String
+from rosetta_jit.model.types import Array, Bytes, String
 from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
@@ -69,17 +70,16 @@ def put_at_once(unit: Unit, manners: Manners, lanes: Lanes) -> str:
 
 def _shown(walk: Walk) -> tuple[Lanes, frozenset[int], frozenset[int]]:
     """How an encoder reaches what every message has, and where spans begin in its row: of texts and numbers, and of other lists."""
-    unit, lanes = walk.unit, walk.lanes
-    numbers = walk.numbers(Ref(unit.type), unit.layout.root, lanes.all[0].element, "row", OBJECT)
-    shown = {offset: f"rosetta_jit::detail::got<$type>({spot.at})" for offset, _, spot in numbers}
+    lanes = walk.lanes
+    shown = {offset: f"rosetta_jit::detail::got<$type>({spot.at})" for offset, _, spot in numbers(walk, OBJECT)}
     given, starts, lists = dict[int, Given](), set[int](), set[int]()
     for type_, slot, spot in spans_of(walk, OBJECT):
-        if isinstance(type_, String | Bytes | Array) and walk.is_plain(type_, slot.lane):
+        if isinstance(type_, String | Bytes | Array) and is_plain(walk, type_, slot.lane):
             at = walk.text("direct", spot)
             given[slot.lane] = Given("", f"rosetta_jit::detail::shown_rows<{lanes.type(slot.lane)}>({at})")
             shown[slot.offset + 8] = f"rosetta_jit::detail::count_of({at})"
             starts.add(slot.offset)
-        elif isinstance(type_, Array) and type_.fixed is None and not isinstance(unit.layout.lanes[slot.lane].element, Number):
+        elif isinstance(type_, Array) and type_.fixed is None and not isinstance(walk.unit.layout.lanes[slot.lane].element, Number):
             shown[slot.offset + 8] = f"rosetta_jit::detail::count_of({spot.at})"
             lists.add(slot.offset)
     return replace(lanes, shown=shown, given=given, shared=SHARED, row=True), frozenset(starts), frozenset(lists)

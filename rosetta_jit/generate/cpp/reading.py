@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.source import run
 from rosetta_jit.generate.cleared import offsets_of, slots_of
+from rosetta_jit.generate.cpp.always import directs
 from rosetta_jit.generate.cpp.lists import Listed, row_name, viewed
 from rosetta_jit.generate.cpp.read_in_place import addressed_lanes, is_local
-from rosetta_jit.generate.cpp.spots import Direct, Spot
+from rosetta_jit.generate.cpp.spots import Direct
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.model.layout import Row
-from rosetta_jit.model.types import Ref
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.language import Parts
@@ -25,8 +25,7 @@ HOLDER = "std::declval<const holder &>()"
 
 def directs_of(walk: Walk, at: str) -> list[Direct]:
     """The containers that are lanes; none where rows stay, which are the codec's."""
-    unit, element = walk.unit, walk.lanes.all[0].element
-    found = list[Direct]() if wires_of(unit) else walk.directs(Ref(unit.type), unit.layout.root, element, "row", Spot(at))
+    found = () if wires_of(walk.unit) else directs(walk, at)
     return [each for each in found if each.lane not in walk.opened]
 
 

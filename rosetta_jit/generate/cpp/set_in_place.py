@@ -9,11 +9,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.cleared import clears, settled
+from rosetta_jit.generate.cpp.always import numbers
 from rosetta_jit.generate.unit import wires_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Address, Copy, Fill, Get, HostCall, IsText, Nearest, Place, Stmt
 from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
-from rosetta_jit.model.types import Ref
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.cpp.walk import Walk
@@ -29,8 +29,8 @@ def straight_numbers(walk: Walk) -> dict[int, tuple[str, str]]:
     if walk.direction != "decode" or kernel is None or wires_of(unit):
         return {}
     offsets = _set_offsets(kernel)
-    numbers = walk.numbers(Ref(unit.type), unit.layout.root, walk.lanes.all[0].element, "row", "given_object")
-    return {offset: (row, walk.text("number", spot, row=VALUE)) for offset, row, spot in numbers if offset in offsets}
+    found = numbers(walk, "given_object")
+    return {offset: (row, walk.text("number", spot, row=VALUE)) for offset, row, spot in found if offset in offsets}
 
 
 def _set_offsets(kernel: Kernel) -> frozenset[int]:

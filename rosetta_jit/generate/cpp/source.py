@@ -198,19 +198,22 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
         element = element.members[0].type
         assert isinstance(element, RowStruct)
         row = element.identifier
+    reached = "row"
     if walk.direction == "decode":
         parameters = f"const {unit.name}_holder &from, const unsigned char *bytes, const {row} &row, Target &target"
         function = f"share_{wire_of(role)}" if wire_of(role) else f"fill{name}"
         head = f"template <class Target>\nvoid {function}({parameters})"
         target, unused = "target", ("from", "bytes", "row", "target")
     else:
-        head = f"template <class Source>\nvoid collect{name}(const Source &source, {unit.name}_source &to, {row} &row)"
-        target, unused = "source", ("source", "to", "row")
+        reached = f"to.{parts.lanes.rows(lane)}.rows[at].value" if lane else "row"
+        last = "std::int64_t at" if lane else f"{row} &row"
+        head = f"template <class Source>\nvoid collect{name}(const Source &source, {unit.name}_source &to, {last})"
+        target, unused = "source", ("source", "to", "at" if lane else "row")
     walk.writer.lines, walk.writer.depth, walk.depth, walk.in_rows = [], 1, 0, 1 if lane else 0
     walk.share = unit.shares.get(role, WHOLE)
     for each in unused:
         walk.writer.line(f"static_cast<void>({each});")
-    walk.value(type_, unit.layout.lanes[lane].element, element, "row", Spot(target))
+    walk.value(type_, unit.layout.lanes[lane].element, element, reached, Spot(target))
     if walk.direction == "encode" and is_local(walk, parts.printed["encode"].hidden):
         head = head.replace("\nvoid", "\nROSETTA_JIT_INLINE void")
     return head, walk.writer.text()

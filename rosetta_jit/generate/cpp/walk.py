@@ -12,7 +12,6 @@ characters that a message has once: the lane shows the elements of their contain
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from string import Template
 from typing import TYPE_CHECKING, Literal
 
@@ -23,10 +22,10 @@ from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import members_of
 from rosetta_jit.generate.cpp.classes import names_of
 from rosetta_jit.generate.cpp.names import member_names
-from rosetta_jit.generate.cpp.spots import Direct, Spot
+from rosetta_jit.generate.cpp.spots import Spot
 from rosetta_jit.generate.shares import WHOLE, Ways, within
 from rosetta_jit.model.layout import Member, Number, Row, Span, Variant, map_entry
-from rosetta_jit.model.types import Array, Bytes, Enum, Field, Map, Optional, Ref, String, Struct, Type, Union
+from rosetta_jit.model.types import Array, Bytes, Field, Map, Optional, Ref, String, Struct, Type, Union
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
@@ -205,14 +204,29 @@ class Walk:
         if (texts := self._texts(type_, slot)) and self.direction == "decode":
             self.lines("texts", spot, row=row, lane=lane, texts=texts)
             return
-        self.lines("list", spot, row=row, lane=lane, take="take" if self.unit.layout.recursive else "take_empty")
         self.depth += 1
-        index = self.local("i")
-        count = f"std::min({row}.count, rosetta_jit::detail::count_of({spot.at}))" if self.direction == "decode" else f"{row}.count"
-        with self.writer.indented(f"for (std::int64_t {index} = 0; {index} < {count}; {index}++) {{"):
-            self.row(type_.element, slot.lane, f"{row}.start + {index}", Spot(self.text("element", spot, index=index)))
-        self.writer.line("}")
+        if self.direction == "encode":
+            with self.writer.indented("{"):
+                start, count = self._take(row, lane, spot)
+                self._each(type_.element, slot.lane, start, count, spot)
+            self.writer.line("}")
+        else:
+            self.lines("list", spot, row=row)
+            count = f"std::min({row}.count, rosetta_jit::detail::count_of({spot.at}))"
+            self._each(type_.element, slot.lane, f"{row}.start", count, spot)
         self.depth -= 1
+
+    def _take(self, row: str, lane: str, spot: Spot) -> tuple[str, str]:
+        """Rows for what a container has. They are taken before the span is set: where types contain themselves, its row may move."""
+        start, count = self.local("start"), self.local("count")
+        self.lines("list", spot, row=row, lane=lane, start=start, count=count)
+        return start, count
+
+    def _each(self, type_: Type, lane: int, start: str, count: str, spot: Spot) -> None:
+        index = self.local("i")
+        with self.writer.indented(f"for (std::int64_t {index} = 0; {index} < {count}; {index}++) {{"):
+            self.row(type_, lane, f"{start} + {index}", Spot(self.text("element", spot, index=index)))
+        self.writer.line("}")
 
     def _texts(self, type_: Array, slot: Span) -> str:
         """The lane of the texts or byte strings that a list has, if they are its elements."""
@@ -225,36 +239,33 @@ class Walk:
         rows, inner, element = self.lanes.rows(lane), self.local("row"), self.lanes.all[lane].element
         slot = self.unit.layout.lanes[lane].element
         recursive = self.unit.layout.lanes[lane].links is not None
-        within = f"{inner}.value" if recursive else inner
         if recursive:
             assert isinstance(element, RowStruct)
             element = element.members[0].type
-        target = self.local("element")
+        target, known = self.local("element"), inner
         if self.direction == "decode":
             self.writer.line(f"const auto &{inner} = from.{rows}.rows[{index}];")
             self.writer.line(f"auto &&{target} = {spot.at};")
         else:
-            self._begin_row(lane, inner, index)
+            known = self._begin_row(lane, inner, index)
             self.writer.line(f"const auto &{target} = {spot.at};")
-        if recursive:
-            arguments = f"from, bytes, {within}, {target}" if self.direction == "decode" else f"{target}, to, {within}"
-            self.writer.line(f"{'fill' if self.direction == 'decode' else 'collect'}_{rows}({arguments});")
+        if recursive and self.direction == "decode":
+            self.writer.line(f"fill_{rows}(from, bytes, {inner}.value, {target});")
+        elif recursive:
+            self.writer.line(f"collect_{rows}({target}, to, {self.local('at')});")
         else:
-            self.value(type_, slot, element, within, Spot(target))
-        if self.direction == "encode":
-            self._end_row(lane, inner, index)
+            self.value(type_, slot, element, known, Spot(target))
         self.in_rows -= 1
 
-    def _begin_row(self, lane: int, row: str, index: str) -> None:
-        """A row to be set. Where types contain themselves, what a row contains may move the rows: it is set beside them."""
+    def _begin_row(self, lane: int, row: str, index: str) -> str:
+        """What a row to be set is called. Where types contain themselves, what it contains may move it: it is reached by its number."""
+        rows = f"to.{self.lanes.rows(lane)}.rows"
         if self.unit.layout.recursive:
-            self.writer.line(f"auto {row} = rosetta_jit::detail::cleared<{self.lanes.type(lane)}>();")
-        else:
-            self.writer.line(f"auto &{row} = to.{self.lanes.rows(lane)}.rows[{index}];")
-
-    def _end_row(self, lane: int, row: str, index: str) -> None:
-        if self.unit.layout.recursive:
-            self.writer.line(f"to.{self.lanes.rows(lane)}.rows[{index}] = {row};")
+            at = self.local("at")
+            self.writer.line(f"const std::int64_t {at} = {index};")
+            return f"{rows}[{at}]"
+        self.writer.line(f"auto &{row} = {rows}[{index}];")
+        return row
 
     def link(self, slot: Span, row: str, spot: Spot, present: str = "") -> None:
         """A field of a type that contains itself: no row, or one."""
@@ -276,9 +287,10 @@ class Walk:
         self.depth -= 1
 
     def _take_one(self, type_: Type, lane: int, row: str, spot: Spot) -> None:
-        self.writer.line(f"{row}.count = 1;")
-        self.writer.line(f"{row}.start = rosetta_jit::detail::take(to.{self.lanes.rows(lane)}, 1);")
-        self.row(type_, lane, f"{row}.start", spot)
+        start = self.local("start")
+        self.writer.line(f"const std::int64_t {start} = rosetta_jit::detail::take_one(to.{self.lanes.rows(lane)});")
+        self.writer.line(f"{row} = {{{start}, 1}};")
+        self.row(type_, lane, start, spot)
 
     def map(self, key: Type, value: Type, slot: Span, row: str, spot: Spot) -> None:
         """Entries of a map: later ones of equal keys replace earlier ones."""
@@ -289,8 +301,8 @@ class Walk:
         element, layout = self.lanes.all[slot.lane].element, self.unit.layout.lanes[slot.lane].element
         assert isinstance(element, RowStruct)
         assert isinstance(layout, Row)
-        known, (of_key, of_value) = members_of(element), layout.members
-        parts = ((entry.fields[0].type, of_key, known[0], "key"), (entry.fields[1].type, of_value, known[1], "mapped"))
+        members, (of_key, of_value) = members_of(element), layout.members
+        parts = ((entry.fields[0].type, of_key, members[0], "key"), (entry.fields[1].type, of_value, members[1], "mapped"))
         if self.direction == "decode":
             self.lines("map clear", spot)
             with self.writer.indented(f"for (std::int64_t {index} = 0; {index} < {row}.count; {index}++) {{"):
@@ -301,13 +313,12 @@ class Walk:
                         self.writer.line(f"auto &{self.local('mapped')} = {self.text('map entry', spot, key=self.local('key'))};")
                     self._plain(type_, member, own.type, f"{inner}.{own.identifier}", self.local(what))
         else:
-            self.lines("list", spot, row=row, lane=lane, take="take" if self.unit.layout.recursive else "take_empty")
-            self.writer.line(f"std::int64_t {index} = {row}.start;")
+            start, _ = self._take(row, lane, spot)
+            self.writer.line(f"std::int64_t {index} = {start};")
             with self.writer.indented(f"for (const auto &each_{self.depth} : {spot.at}) {{"):
-                self._begin_row(slot.lane, inner, f"{index}++")
+                known = self._begin_row(slot.lane, inner, f"{index}++")
                 for (type_, member, own, _), at in zip(parts, ("first", "second"), strict=True):
-                    self._plain(type_, member, own.type, f"{inner}.{own.identifier}", f"each_{self.depth}.{at}")
-                self._end_row(slot.lane, inner, f"{index}++")
+                    self._plain(type_, member, own.type, f"{known}.{own.identifier}", f"each_{self.depth}.{at}")
         self.writer.line("}")
         self.in_rows -= 1
         self.depth -= 1
@@ -358,43 +369,3 @@ class Walk:
         if f"case {self.direction}" in self.manners.sections():
             return Spot(self.text("case", spot, **more))
         return self.member_of(spot.owner, more["case"])
-
-    # --- what is direct --------------------------------------------------------------------------------------------------------------
-
-    def directs(self, type_: Type, slot: object, element: object, row: str, spot: Spot) -> Iterator[Direct]:
-        """Containers of numbers and texts that every message has, and how they are reached from it."""
-        for found, lane, at, inner in self.spans(type_, slot, element, row, spot):
-            if isinstance(found, String | Bytes | Array) and self.is_plain(found, lane):
-                yield Direct(lane, at, Spot(self.text("direct", inner), inner.owner, inner.field))
-
-    def spans(self, type_: Type, slot: object, element: object, row: str, spot: Spot) -> Iterator[tuple[Type, int, str, Spot]]:
-        """What has a length and is in every message: its type, its lane, its span in the row, and the field of the class."""
-        resolved = self.unit.schema.resolve(type_)
-        if not isinstance(resolved, Struct) or not isinstance(slot, Row) or not isinstance(element, RowStruct):
-            return
-        for each, name, member, own in zip(resolved.fields, self.names(resolved), slot.members, members_of(element), strict=True):
-            if member.presence is not None:
-                continue
-            found, at, inner = self.unit.schema.resolve(each.type), f"{row}.{own.identifier}", self.member_of(spot.at, name)
-            if isinstance(member.slot, Span):
-                yield found, member.slot.lane, at, inner
-            elif isinstance(found, Struct):
-                yield from self.spans(found, member.slot, own.type, at, Spot(inner.at))
-
-    def numbers(self, type_: Type, slot: object, element: object, row: str, at: str) -> Iterator[tuple[int, str, Spot]]:
-        """The numbers that every message has: where each lies in its row, what it is called there, and the field of the class."""
-        resolved = self.unit.schema.resolve(type_)
-        if not isinstance(resolved, Struct) or not isinstance(slot, Row) or not isinstance(element, RowStruct):
-            return
-        for each, name, member, own in zip(resolved.fields, self.names(resolved), slot.members, members_of(element), strict=True):
-            inner, there = self.member_of(at, name), f"{row}.{own.identifier}"
-            if member.presence is None and isinstance(member.slot, Number):
-                yield member.slot.offset, there, inner
-            elif member.presence is None:
-                yield from self.numbers(each.type, member.slot, own.type, there, inner.at)
-
-    def is_plain(self, type_: String | Bytes | Array, lane: int) -> bool:
-        """Whether a container has the very numbers that the lane has: enums are of another type, and bools may be bits."""
-        element = self.unit.layout.lanes[lane].element
-        is_enum = isinstance(type_, Array) and isinstance(self.unit.schema.resolve(type_.element), Enum)
-        return isinstance(element, Number) and element.scalar != "bool" and not is_enum

@@ -6,6 +6,8 @@ while (at_row < count):                         def _encoded_children(element):
     let begin = get i64 lane 3[listed].56
     ...
     expect ((at - begin) == get i64 lane 3[listed].96)
+
+Where there is one such lane, nothing is switched.
 """
 
 from __future__ import annotations
@@ -46,6 +48,9 @@ def without_work_list(block: Block, layout: Layout) -> tuple[Block, dict[int, Ro
     """A body without the loop that writes the rows below the message; and what that does, by lane."""
     match block:
         case (*own, While(_, inner), Return() as last) if layout.recursive:
+            if len(layout.recursive) == 1:
+                ((lane, _),) = layout.recursive
+                return (*own, last), {lane: _row(inner, layout)}
             switches = [each for each in inner if isinstance(each, Switch)]
             if len(switches) == 1:
                 return (*own, last), {lane: _row(case, layout) for lane, case in switches[0].cases}
@@ -54,16 +59,18 @@ def without_work_list(block: Block, layout: Layout) -> tuple[Block, dict[int, Ro
             return block, {}
 
 
-def _row(case: Block, layout: Layout) -> RowBody:
-    begins = [number for number, each in enumerate(case) if _is_begin(each, layout)]
-    match case[begins[-1] :] if begins else ():
+def _row(block: Block, layout: Layout) -> RowBody:
+    """What writes a row of a lane, from where it begins to where its length is checked."""
+    begins = [number for number, each in enumerate(block) if _is_begin(each, layout)]
+    ends = [number + 1 for number, each in enumerate(block) if _is_end(each)]
+    match block[begins[-1] : ends[-1]] if begins and ends else ():
         case (
             Let(begin, Get(_, Place(_, row))),
             Expect(),
-            *block,
+            *body,
             Expect(Compare("eq", Binary("sub", end, Local(_, name)), Get())),
         ) if name == begin:
-            return RowBody(row, begin, end, tuple(block))
+            return RowBody(row, begin, end, tuple(body))
         case _:
             raise NotInParts
 
@@ -73,5 +80,14 @@ def _is_begin(stmt: object, layout: Layout) -> bool:
     match stmt:
         case Let(_, Get(_, Place(_, Local()) as place)):
             return is_hidden(place, layout)
+        case _:
+            return False
+
+
+def _is_end(stmt: object) -> bool:
+    """Whether a statement compares the length of what was written with that of the row."""
+    match stmt:
+        case Expect(Compare("eq", Binary("sub"), Get())):
+            return True
         case _:
             return False

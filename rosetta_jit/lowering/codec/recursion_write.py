@@ -1,7 +1,8 @@
 """Writing messages of recursive structs, and their sizes, without a stack.
 
-The scratch lane holds, from row 0 on: the number of rows n, where the lengths of the root message start, n pairs of lane and row (parents
-before children), then the lengths. To measure, the list is made and gone through from its end; to write, from its start.
+The scratch lane holds, from row 0 on: the number of rows n, where the lengths of the root message start, the n rows (parents before
+children; each behind its lane, where there are several), then the lengths. To measure, the list is made and gone through from its end; to
+write, from its start.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from rosetta_jit.lowering.codec.varint_write import write_varint
 from rosetta_jit.lowering.codec.work_list import BEGIN_WORD, MORE_WORD, SIZE_WORD, link
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, block
+from rosetta_jit.model.layout import Layout
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Encoding, Entry, Recursion, Tagged
 
@@ -25,9 +27,10 @@ DAMAGED = "the holder changed while it was written"
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """The list of rows: the scratch lane, how many there are, and how many there can be."""
+    """The list of rows: the scratch lane, how many words of it each takes, how many rows there are, and how many there can be."""
 
     scratch: int
+    words: int
     number: nodes.Local
     most: nodes.Expr
 
@@ -74,7 +77,7 @@ def write_child(writer: Writer, fields: HolderFields, cell: Cell, recursion: Rec
 def _measure(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: Writer, scratch: int) -> None:
     rows = _list_rows(encoding, fields, tagged, writer, scratch)
     count = writer.let("count", rows.number)
-    first = writer.let("first_length", add(mul(count, 2), HEADER))
+    first = writer.let("first_length", add(mul(count, rows.words), HEADER))
     writer.emit(nodes.Reserve(scratch, first))
     lengths = Lengths(scratch, writer.var("lengths", first), write_child)
     back = writer.var("back", index(0))
@@ -98,12 +101,12 @@ def _measure(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: W
 
 def _list_rows(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: Writer, scratch: int) -> Rows:
     most = joined("add", [nodes.Used(lane) for lane, _ in fields.layout.recursive])
-    rows = Rows(scratch, writer.var("rows", index(0)), writer.let("most", most))
+    rows = Rows(scratch, _words(fields.layout), writer.var("rows", index(0)), writer.let("most", most))
     _visit(writer, fields, tagged, rows)
     at = writer.var("at_row", index(0))
     with writer.nested() as body:
         cases = [(lane, _visit_row(writer, fields, encoding.recursive[struct], lane, rows, at)) for lane, struct in fields.layout.recursive]
-        writer.emit(nodes.Switch(_listed(writer, scratch, at, 0), tuple(cases), _damaged(writer)))
+        _by_lane(writer, fields.layout, scratch, at, cases)
         _say_again(writer, rows)
         writer.assign(at, add(at, 1))
     goes_on = nodes.Binary("and", nodes.Compare("lt", at, rows.number), nodes.Compare("lt", at, rows.most))
@@ -113,7 +116,7 @@ def _list_rows(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer:
 
 def _visit_row(writer: Writer, fields: HolderFields, tagged: Tagged, lane: int, rows: Rows, at: nodes.Local) -> nodes.Block:
     with writer.nested() as body:
-        row = _row_of(writer, rows.scratch, at, lane)
+        row = _row_of(writer, fields.layout, rows.scratch, at, lane)
         inner = HolderFields(writer, fields.layout, Cell(lane, row, fields.layout.lanes[lane].element))
         _visit(writer, inner, tagged, rows)
     return block(body)
@@ -153,11 +156,11 @@ def _visit_field(writer: Writer, fields: HolderFields, entry: Entry, rows: Rows)
 
 def _append(writer: Writer, rows: Rows, lane: int, row: nodes.Expr) -> None:
     writer.expect(nodes.Compare("lt", rows.number, rows.most), "nesting", Where(), "a message contains itself")
-    place = writer.let("place", add(mul(rows.number, 2), HEADER))
+    place = writer.let("place", add(mul(rows.number, rows.words), HEADER))
+    words = (index(lane), row)[-rows.words :]
     writer.emit(
-        nodes.Reserve(rows.scratch, add(place, 2)),
-        nodes.SetField(nodes.Place(rows.scratch, place), index(lane)),
-        nodes.SetField(nodes.Place(rows.scratch, add(place, 1)), row),
+        nodes.Reserve(rows.scratch, add(place, rows.words)),
+        *(nodes.SetField(nodes.Place(rows.scratch, add(place, number)), word) for number, word in enumerate(words)),
     )
     writer.assign(rows.number, add(rows.number, 1))
 
@@ -191,14 +194,14 @@ def _each_lane(encoding: Encoding, fields: HolderFields, writer: Writer, scratch
     """Measure or write the row at a place of the list, whichever lane it is in."""
     at = writer.let("number", number)
     cases = [(lane, _one_row(writer, fields, encoding.recursive[struct], lane, at, lengths)) for lane, struct in fields.layout.recursive]
-    writer.emit(nodes.Switch(_listed(writer, scratch, at, 0), tuple(cases), _damaged(writer)))
+    _by_lane(writer, fields.layout, scratch, at, cases)
     _expect_lengths(writer, lengths)
 
 
 def _one_row(writer: Writer, fields: HolderFields, tagged: Tagged, lane: int, at: nodes.Expr, lengths: Lengths) -> nodes.Block:
     layout = fields.layout
     with writer.nested() as body:
-        row = _row_of(writer, lengths.lane, at, lane)
+        row = _row_of(writer, layout, lengths.lane, at, lane)
         inner = HolderFields(writer, layout, Cell(lane, row, layout.lanes[lane].element), Where(f".{layout.lanes[lane].name}"))
         more, size = link(layout, lane, row, MORE_WORD), link(layout, lane, row, SIZE_WORD)
         if writer.direction == "size":
@@ -223,17 +226,30 @@ def _one_row(writer: Writer, fields: HolderFields, tagged: Tagged, lane: int, at
 # --- the list --------------------------------------------------------------------------------------------------------------------
 
 
-def _listed(writer: Writer, scratch: int, at: nodes.Expr, word: int) -> nodes.Expr:
-    """The lane (0) or the row (1) at a place of the list, which is checked to be in the scratch lane."""
+def _words(layout: Layout) -> int:
+    """How many words of the scratch lane a row of the list takes: of one lane it needs no number."""
+    return min(len(layout.recursive), 2)
+
+
+def _by_lane(writer: Writer, layout: Layout, scratch: int, at: nodes.Expr, cases: list[tuple[int, nodes.Block]]) -> None:
+    """What the lane of a row of the list says."""
+    if _words(layout) == 1:
+        writer.emit(*cases[0][1])
+        return
+    writer.emit(nodes.Switch(_listed(writer, layout, scratch, at, 0), tuple(cases), _damaged(writer)))
+
+
+def _listed(writer: Writer, layout: Layout, scratch: int, at: nodes.Expr, word: int) -> nodes.Expr:
+    """One of the words at a place of the list, which is checked to be in the scratch lane."""
     inside = nodes.Binary("and", nodes.Compare("ge", at, index(0)), nodes.Compare("lt", at, index(MAX_SIZE)))
     writer.expect(inside, "length", Where(), DAMAGED)
-    place = writer.let("place", add(mul(at, 2), HEADER + word))
+    place = writer.let("place", add(mul(at, _words(layout)), HEADER + word))
     writer.expect(nodes.Compare("lt", place, nodes.Capacity(scratch)), "length", Where(), DAMAGED)
     return writer.let("listed", nodes.Get("i64", nodes.Place(scratch, place)))
 
 
-def _row_of(writer: Writer, scratch: int, at: nodes.Expr, lane: int) -> nodes.Expr:
-    row = _listed(writer, scratch, at, 1)
+def _row_of(writer: Writer, layout: Layout, scratch: int, at: nodes.Expr, lane: int) -> nodes.Expr:
+    row = _listed(writer, layout, scratch, at, _words(layout) - 1)
     writer.expect(
         nodes.Binary("and", nodes.Compare("ge", row, index(0)), nodes.Compare("lt", row, nodes.Used(lane))), "length", Where(), DAMAGED
     )

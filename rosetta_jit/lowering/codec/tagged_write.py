@@ -197,11 +197,12 @@ def _delimited(writer: Writer, where: Where, lengths: Lengths, write: object) ->
     if writer.direction == "size":
         writer.emit(nodes.Reserve(lengths.lane, add(number, 1)))
         writer.assign(lengths.next, add(number, 1))
-        before = writer.position = writer.let("before", writer.position)
+        before, writer.position = writer.position, index(0)
         write()
-        size = writer.let("size", nodes.Binary("sub", writer.position, before))
+        size = writer.let("size", writer.position)
         writer.emit(nodes.SetField(nodes.Place(lengths.lane, number), size))
-        write_varint(writer, nodes.Convert("u64", size), where)
+        writer.position = before
+        writer.advance(add(size_of_varint(writer, nodes.Convert("u64", size), where), size))
         return
     known = nodes.Compare("lt", number, nodes.Capacity(lengths.lane))
     writer.expect(known, "length", where, "the holder changed while it was written")

@@ -386,12 +386,7 @@ void fill(const torso_state_holder &from, const unsigned char *bytes, const tors
     static_cast<void>(bytes);
     static_cast<void>(row);
     static_cast<void>(target);
-    if (rosetta_jit::detail::has_unknown_fields(target)) {
-        rosetta_jit::detail::mutable_unknown_fields(target).Clear();
-    }
-    if (row.unknown.count > 0) {
-        rosetta_jit::detail::mutable_unknown_fields(target).ParseFromArray(from.unknown.rows + row.unknown.start, static_cast<int>(row.unknown.count));
-    }
+    rosetta_jit::detail::keep_unknown(target, from.unknown, row.unknown);
 }
 
 template <class Source>
@@ -400,11 +395,7 @@ void collect(const Source &source, torso_state_source &to, torso_state_JointAngl
     static_cast<void>(source);
     static_cast<void>(to);
     static_cast<void>(row);
-    if (rosetta_jit::detail::has_unknown_fields(source)) {
-        std::string unknown;
-        rosetta_jit::detail::unknown_fields(source).SerializeToString(&unknown);
-        rosetta_jit::detail::take_span(to.unknown, row.unknown, unknown);
-    }
+    rosetta_jit::detail::take_unknown(to.unknown, row.unknown, source);
 }
 
 /* As an offset; no object is larger than this. */

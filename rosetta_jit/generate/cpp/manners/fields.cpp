@@ -31,8 +31,9 @@ rosetta_jit::detail::assign_texts($at, from.$lane, $row, from.$texts, bytes);
 rosetta_jit::detail::resize_to($at, $row.count);
 
 /* == list encode == */
-$row.count = rosetta_jit::detail::count_of($at);
-$row.start = rosetta_jit::detail::$take(to.$lane, $row.count);
+const std::int64_t $count = rosetta_jit::detail::count_of($at);
+const std::int64_t $start = rosetta_jit::detail::take_empty(to.$lane, $count);
+$row = {$start, $count};
 
 /* == numbers == */
 rosetta_jit::detail::rows_of<$row, $count>($at)

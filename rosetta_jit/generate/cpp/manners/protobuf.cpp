@@ -51,16 +51,7 @@ $at.clear();
 $at[$key]
 
 /* == unknown decode == */
-if (rosetta_jit::detail::has_unknown_fields($object)) {
-    rosetta_jit::detail::mutable_unknown_fields($object).Clear();
-}
-if ($row.count > 0) {
-    rosetta_jit::detail::mutable_unknown_fields($object).ParseFromArray(from.$lane.rows + $row.start, static_cast<int>($row.count));
-}
+rosetta_jit::detail::keep_unknown($object, from.$lane, $row);
 
 /* == unknown encode == */
-if (rosetta_jit::detail::has_unknown_fields($object)) {
-    std::string unknown;
-    rosetta_jit::detail::unknown_fields($object).SerializeToString(&unknown);
-    rosetta_jit::detail::take_span(to.$lane, $row, unknown);
-}
+rosetta_jit::detail::take_unknown(to.$lane, $row, $object);

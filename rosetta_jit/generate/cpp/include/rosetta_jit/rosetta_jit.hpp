@@ -406,10 +406,11 @@ template <class Row> struct lane {
     }
 };
 
-/* Bytes for the functions themselves. */
+/* Bytes for the functions themselves, or words of eight. */
 struct scratch {
     unsigned char *bytes = nullptr;
     std::int64_t size = 0;
+    std::int64_t words = 0;
     std::unique_ptr<std::int64_t[]> memory;
 
     ROSETTA_JIT_COLD bool grow(std::int64_t missing, std::int64_t most)
@@ -417,13 +418,14 @@ struct scratch {
         if (missing > 4096 * (most / 64) - size) {
             return false;
         }
-        const std::int64_t words = (std::max(size + missing, size * 2) + 7) / 8;
-        std::unique_ptr<std::int64_t[]> more(new std::int64_t[static_cast<std::size_t>(words)]);
+        const std::int64_t wanted = (std::max(size + missing, size * 2) + 7) / 8;
+        std::unique_ptr<std::int64_t[]> more(new std::int64_t[static_cast<std::size_t>(wanted)]);
         if (size > 0) {
             std::memcpy(more.get(), bytes, static_cast<std::size_t>(size));
         }
         memory = std::move(more);
         bytes = reinterpret_cast<unsigned char *>(memory.get());
+        words = wanted;
         size = words * 8;
         return true;
     }
@@ -485,19 +487,44 @@ inline void copy_few(void *target, std::int64_t to, const void *source, std::int
     }
 }
 
-/* Copies bytes whose number compilers know: of more than these some take an instruction that starts slowly, and is slow where addresses are odd. */
-template <std::int64_t Size> ROSETTA_JIT_INLINE void copy_known(void *target, std::int64_t to, const void *source, std::int64_t from) noexcept
+/* Copies an array of numbers, of which there may be few, too, as of a joint or a pose: a call takes longer than to copy them. */
+inline void copy_numbers(void *target, std::int64_t to, const void *source, std::int64_t from, std::int64_t size) noexcept
 {
-    constexpr std::int64_t AT_ONCE = 64, FEW = 256, MANY = 4096;
     unsigned char *const at = static_cast<unsigned char *>(target) + to;
     const unsigned char *const begin = static_cast<const unsigned char *>(source) + from;
-    if constexpr (Size <= FEW || Size > MANY) {
+    if (size > 64) {
+        std::memcpy(at, begin, static_cast<std::size_t>(size));
+    } else if (size > 32) { /* the first ones and the last ones, some of which may be the same */
+        unsigned char first[16], second[16], third[16], last[16];
+        std::memcpy(first, begin, 16);
+        std::memcpy(second, begin + 16, 16);
+        std::memcpy(third, begin + size - 32, 16);
+        std::memcpy(last, begin + size - 16, 16);
+        std::memcpy(at, first, 16);
+        std::memcpy(at + 16, second, 16);
+        std::memcpy(at + size - 32, third, 16);
+        std::memcpy(at + size - 16, last, 16);
+    } else {
+        copy_few(target, to, source, from, size);
+    }
+}
+
+/* Copies bytes by the function of the C library. */
+ROSETTA_JIT_APART inline void copy_apart(unsigned char *target, const unsigned char *source, std::size_t size) noexcept
+{
+    std::memcpy(target, source, size);
+}
+
+/* Copies bytes whose number compilers know: of some hundred they make an instruction that starts slowly, and is slow where addresses are odd. */
+template <std::int64_t Size> ROSETTA_JIT_INLINE void copy_known(void *target, std::int64_t to, const void *source, std::int64_t from) noexcept
+{
+    constexpr std::int64_t FEW = 256;
+    unsigned char *const at = static_cast<unsigned char *>(target) + to;
+    const unsigned char *const begin = static_cast<const unsigned char *>(source) + from;
+    if constexpr (Size <= FEW) {
         std::memcpy(at, begin, static_cast<std::size_t>(Size));
     } else {
-        for (std::int64_t done = 0; done < Size - AT_ONCE; done += AT_ONCE) {
-            std::memcpy(at + done, begin + done, AT_ONCE);
-        }
-        std::memcpy(at + Size - AT_ONCE, begin + Size - AT_ONCE, AT_ONCE); /* some of them again, if there are fewer */
+        copy_apart(at, begin, static_cast<std::size_t>(Size));
     }
 }
 
@@ -514,15 +541,6 @@ template <std::int64_t Size> ROSETTA_JIT_INLINE void fill_known(void *target, st
         }
         std::memset(at + Size - AT_ONCE, byte, AT_ONCE); /* some of them again, if there are fewer */
     }
-}
-
-/* A row of which nothing is set yet. */
-template <class Row> ROSETTA_JIT_INLINE Row cleared() noexcept
-{
-    static_assert(std::is_trivially_copyable_v<Row>);
-    Row row;
-    fill_known<static_cast<std::int64_t>(sizeof row)>(&row, 0, 0);
-    return row;
 }
 
 /* --- protobuf's integers, of which each byte has seven bits and says whether another one follows --- */
@@ -637,7 +655,7 @@ inline std::uint64_t bits_apart(std::uint64_t number) noexcept
 inline constexpr std::uint64_t VARINT_MORE[9] = {
     0, 0, 0x80, 0x8080, 0x808080, 0x80808080, 0x8080808080, 0x808080808080, 0x80808080808080};
 
-/* Writes a number where there is room for ten bytes, and says how many it has taken. */
+/* Writes a number where there is room for ten bytes, and says how many it has taken. Those behind it may be set, too. */
 inline std::int64_t write_varint(unsigned char *target, std::uint64_t number) noexcept
 {
     if (number < std::uint64_t{1} << 56) {
@@ -652,6 +670,17 @@ inline std::int64_t write_varint(unsigned char *target, std::uint64_t number) no
     target[8] = static_cast<unsigned char>(high);
     target[9] = static_cast<unsigned char>(last);
     return 9 + static_cast<std::int64_t>(last);
+}
+
+/* The same where other parts of the message are behind it already. */
+inline std::int64_t write_varint_exactly(unsigned char *target, std::uint64_t number) noexcept
+{
+    unsigned char *at = target;
+    for (; number >= 128u; number >>= 7) {
+        *at++ = static_cast<unsigned char>(number | 128u);
+    }
+    *at++ = static_cast<unsigned char>(number);
+    return at - target;
 }
 
 /* The same of a number below 1 << 28, where there is room for four bytes. */
@@ -743,16 +772,50 @@ ROSETTA_JIT_INLINE std::int64_t write_varints(unsigned char *bytes, std::int64_t
     return at;
 }
 
-/* Bytes as bools: 1 for all but 0. */
+/* Eight bytes as bools: 1 for all but 0. And sixteen. */
+inline void copy_eight_flags(unsigned char *target, const unsigned char *rows) noexcept
+{
+    const std::uint64_t eight = word_at(rows);
+    const std::uint64_t set = (((eight & ~GOES_ON) + ~GOES_ON) | eight) >> 7 & 0x0101010101010101u;
+    std::memcpy(target, &set, sizeof set);
+}
+
+inline void copy_sixteen_flags(unsigned char *target, const unsigned char *rows) noexcept
+{
+#if defined(__SSE2__) || defined(__ARM_NEON)
+    typedef std::uint8_t sixteen __attribute__((vector_size(16)));
+    constexpr sixteen NONE = {}, ONES = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    sixteen bytes;
+    std::memcpy(&bytes, rows, sizeof bytes);
+    bytes = reinterpret_cast<sixteen>(bytes != NONE) & ONES;
+    std::memcpy(target, &bytes, sizeof bytes);
+#else
+    copy_eight_flags(target, rows);
+    copy_eight_flags(target + 8, rows + 8);
+#endif
+}
+
+/* Bytes as bools. Of many the last ones may be set twice. */
 inline void copy_flags(void *target, const void *rows, std::int64_t count) noexcept
 {
     unsigned char *const to = static_cast<unsigned char *>(target);
     const unsigned char *const from = static_cast<const unsigned char *>(rows);
     std::int64_t done = 0;
-    for (; count - done >= 8; done += 8) {
-        const std::uint64_t eight = word_at(from + done);
-        const std::uint64_t set = (((eight & ~GOES_ON) + ~GOES_ON) | eight) >> 7 & 0x0101010101010101u;
-        std::memcpy(to + done, &set, sizeof set);
+    if (count >= 16) {
+        for (; count - done > 32; done += 32) {
+            copy_sixteen_flags(to + done, from + done);
+            copy_sixteen_flags(to + done + 16, from + done + 16);
+        }
+        if (count - done > 16) {
+            copy_sixteen_flags(to + done, from + done);
+        }
+        copy_sixteen_flags(to + count - 16, from + count - 16);
+        return;
+    }
+    if (count >= 8) {
+        copy_eight_flags(to, from);
+        copy_eight_flags(to + count - 8, from + count - 8);
+        return;
     }
     for (; done < count; done++) {
         to[done] = from[done] != 0 ? 1 : 0;
@@ -1200,7 +1263,7 @@ void assign_texts(Container &target, const Rows &rows, const Span &span, const L
 }
 
 /* Takes rows for `count` elements, and says which is the first. */
-template <class Lane> std::int64_t take(Lane &to, std::int64_t count)
+template <class Lane> ROSETTA_JIT_INLINE std::int64_t take(Lane &to, std::int64_t count)
 {
     if (count > to.capacity - to.used && !to.grow(count - (to.capacity - to.used), std::int64_t{1} << 48)) {
         ROSETTA_JIT_THROW(std::bad_alloc());
@@ -1210,7 +1273,7 @@ template <class Lane> std::int64_t take(Lane &to, std::int64_t count)
 }
 
 /* The same, all of them empty. One call for all: to set each takes a compiler an instruction that starts slowly. */
-template <class Lane> std::int64_t take_empty(Lane &to, std::int64_t count)
+template <class Lane> ROSETTA_JIT_INLINE std::int64_t take_empty(Lane &to, std::int64_t count)
 {
     using Row = std::remove_reference_t<decltype(*to.rows)>;
     static_assert(std::is_trivially_copyable_v<Row>);
@@ -1218,6 +1281,16 @@ template <class Lane> std::int64_t take_empty(Lane &to, std::int64_t count)
     if (count > 0) {
         std::memset(static_cast<void *>(to.rows + start), 0, static_cast<std::size_t>(count) * sizeof(Row));
     }
+    return start;
+}
+
+/* The same of one row. */
+template <class Lane> ROSETTA_JIT_INLINE std::int64_t take_one(Lane &to)
+{
+    using Row = std::remove_reference_t<decltype(*to.rows)>;
+    static_assert(std::is_trivially_copyable_v<Row>);
+    const std::int64_t start = take(to, 1);
+    fill_known<static_cast<std::int64_t>(sizeof(Row))>(to.rows + start, 0, 0);
     return start;
 }
 
@@ -1575,6 +1648,38 @@ template <class Message> auto &mutable_unknown_fields(Message &message)
         return *message.mutable_unknown_fields();
     } else {
         return *reflection_of(message).MutableUnknownFields(&message);
+    }
+}
+
+/* Gives a message the unknown fields that a decoder has found in place of its own. */
+template <class Message, class Lane, class Span> ROSETTA_JIT_COLD void keep_unknown_fields(Message &message, const Lane &from, const Span &span)
+{
+    mutable_unknown_fields(message).Clear();
+    if (span.count > 0) {
+        mutable_unknown_fields(message).ParseFromArray(from.rows + span.start, static_cast<int>(span.count));
+    }
+}
+
+/* The same where nearly always there are none. */
+template <class Message, class Lane, class Span> ROSETTA_JIT_INLINE void keep_unknown(Message &message, const Lane &from, const Span &span)
+{
+    if (span.count > 0 || has_unknown_fields(message)) {
+        keep_unknown_fields(message, from, span);
+    }
+}
+
+/* Takes the bytes of the unknown fields that a message has. */
+template <class Lane, class Span, class Message> ROSETTA_JIT_COLD void take_unknown_fields(Lane &to, Span &span, const Message &message)
+{
+    std::string unknown;
+    unknown_fields(message).SerializeToString(&unknown);
+    take_span(to, span, unknown);
+}
+
+template <class Lane, class Span, class Message> ROSETTA_JIT_INLINE void take_unknown(Lane &to, Span &span, const Message &message)
+{
+    if (has_unknown_fields(message)) {
+        take_unknown_fields(to, span, message);
     }
 }
 

@@ -1,0 +1,100 @@
+"""Types that contain themselves in generated C++: messages of many rows, and fields behind those whose messages are written later."""
+
+from __future__ import annotations
+
+import random
+import subprocess
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.api.options import type_request
+from rosetta_jit.generate.build import Wishes, generated
+from tests.generate import cpp, native
+from tests.generate.driver import answers, harmed
+from tests.generate.test_cpp import BOTH, QUICK, same
+
+ONE = """syntax = "proto3"; package t;
+message M {
+  repeated M kids = 1; int32 value = 2; string name = 3; repeated int64 many = 4; M last = 5; sint64 behind = 6; repeated bool flags = 7;
+}
+"""
+SEVERAL = """syntax = "proto3"; package t;
+message Pair { M first = 1; M second = 2; uint32 value = 3; }
+message M {
+  repeated M kids = 1; int32 value = 2; repeated Pair pairs = 3; repeated int64 many = 4; map<string, M> named = 5;
+  oneof kind { string text = 6; M only = 7; } sint64 behind = 8;
+}
+"""
+UNKNOWN = b"\xa0\x06\xac\x02"
+
+
+def varint(value: int) -> bytes:
+    return bytes([value]) if value < 128 else bytes([value & 127 | 128]) + varint(value >> 7)
+
+
+def field(number: int, value: bytes | int) -> bytes:
+    """A field, of bytes behind their length or of an integer."""
+    tag = varint(number << 3 | (2 if isinstance(value, bytes) else 0))
+    return tag + (varint(len(value)) + value if isinstance(value, bytes) else varint(value))
+
+
+def integer(chance: random.Random) -> int:
+    """One of one to nine bytes."""
+    return chance.randrange(1, 1 << 7 * chance.choice((1, 1, 2, 2, 3, 5, 9)))
+
+
+def one(chance: random.Random, depth: int) -> bytes:
+    """A message of the first schema, in the order of its fields."""
+    kids = b"".join(field(1, one(chance, depth - 1)) for _ in range(chance.randrange(4) if depth else 0))
+    last = field(5, one(chance, depth - 1)) if depth and chance.random() < 0.5 else b""
+    many = b"".join(varint(integer(chance)) for _ in range(chance.randrange(9)))
+    own = field(2, chance.randrange(1, 1 << 31)) + field(3, b"x" * chance.randrange(1, 40)) + (field(4, many) if many else b"")
+    flags = field(7, bytes([1, 0] * 20)[: chance.randrange(1, 40)]) if chance.random() < 0.5 else b""
+    return kids + own + last + field(6, integer(chance)) + flags + (UNKNOWN if chance.random() < 0.2 else b"")
+
+
+def several(chance: random.Random, depth: int) -> bytes:
+    """One of the second."""
+    inner = [several(chance, depth - 1) for _ in range(chance.randrange(5) if depth else 0)]
+    pairs = (field(3, field(1, each) + field(2, each) + field(3, integer(chance) % (1 << 32) or 1)) for each in inner[:1])
+    named = (field(5, field(1, b"key") + field(2, each)) for each in inner[1:2])
+    kind = field(7, inner[2]) if len(inner) > 2 else field(6, b"text")
+    parts = [*(field(1, each) for each in inner), field(2, chance.randrange(1, 1 << 31)), *pairs, *named, kind, field(8, integer(chance))]
+    return b"".join(parts)
+
+
+SCHEMAS = {"one": (ONE, one), "several": (SEVERAL, several)}
+
+
+def given(name: str) -> list[bytes]:
+    """Messages of few rows, of many, and of few again; and harmed ones."""
+    chance = random.Random(name)
+    good = [SCHEMAS[name][1](chance, depth) for depth in (0, 1, 2, 5, 4, 1, 0, 3)]
+    small = [each for each in good if len(each) < 2000]
+    return [*good, *harmed(small, 20, name), *good]
+
+
+@cpp.needs_cpp
+@pytest.mark.parametrize("name", SCHEMAS)
+def test_classes_of_our_own(name, tmp_path):
+    compare(tmp_path, name, Wishes())
+
+
+@cpp.needs_cpp
+@pytest.mark.parametrize("name", SCHEMAS)
+def test_classes_of_protoc(name, tmp_path):
+    native.needs_protoc()
+    (tmp_path / "t.proto").write_text(SCHEMAS[name][0])
+    subprocess.run(["protoc", "--cpp_out=.", "t.proto"], cwd=tmp_path, check=True)
+    subprocess.run(["g++", "-std=c++17", "-w", "-O0", "-c", "t.pb.cc"], cwd=tmp_path, check=True)
+    compare(tmp_path, name, Wishes(holder="protobuf", include="t.pb.h"), "t.pb.o", "-lprotobuf")
+
+
+def compare(folder, name, wishes, *sources):
+    """What the program says of messages is what the library says."""
+    options = {"encoding": "protobuf", "schema": {"t.proto": SCHEMAS[name][0]}}
+    unit = cpp.write(folder, generated(type_request("decode", "t.M", options), "cpp", BOTH, "unit", wishes))
+    messages = given(name)
+    found = answers(cpp.program(folder, unit, *sources, options=(*QUICK, f"-isystem{folder}")), messages)
+    same(found, rj.Decoder.of("t.M", **options), rj.Encoder.of("t.M", **options), messages)
