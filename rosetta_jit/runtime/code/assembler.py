@@ -99,8 +99,7 @@ def object_of(texts: Iterable[str], exported: Sequence[str], *, thorough: bool =
 
 
 def shortened(text: str, exported: Sequence[str]) -> str:
-    """A module that a person wrote, of which a few passes have left what is exported, as text."""
+    """A module that a person wrote, with all private but what is exported, after a few passes as text."""
     machine, module = target_machine(), linked([part_of(text, exported)])
-    make_private(module, exported)
     run_few_passes(module, machine)
     return str(module)
