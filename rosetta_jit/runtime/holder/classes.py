@@ -13,7 +13,8 @@ from rosetta_jit.model.layout import Layout
 from rosetta_jit.runtime.attributes.code import functions
 from rosetta_jit.runtime.attributes.makers import call_as_any, class_of_holder_classes, let_call
 from rosetta_jit.runtime.attributes.names import take_names
-from rosetta_jit.runtime.holder.message import Access, Family, Message, View, begin_in_python, in_row, place
+from rosetta_jit.runtime.holder.first_holders import begin_in_python
+from rosetta_jit.runtime.holder.message import Access, Family, Message, View, in_row, place
 from rosetta_jit.runtime.holder.record import Blob, Entry, Items, Numbers, Record, Text
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.memory_plan import Plan

@@ -10,7 +10,7 @@ The attributes that a class needs for itself end with an underscore, so that the
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from rosetta_jit.errors import EncodeError, InvalidHolder
@@ -18,14 +18,14 @@ from rosetta_jit.kernel.state import ADDRESS, VALID, lane_word
 from rosetta_jit.model.types import Schema, Struct
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.field_table import PLACE_BYTES, FieldTable, KeptFields, OfSequences
-from rosetta_jit.runtime.callable import ALWAYS, NEVER, STATE, bind_state, message_base
+from rosetta_jit.runtime.callable import ALWAYS, NEVER, bind_state, message_base
 from rosetta_jit.runtime.holder.record import Child, Entry, Items, Pairs, Record
 from rosetta_jit.runtime.holder.tree import Tree
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_DEPTH, MAX_ENDED, MAX_ENDED_BYTES
 from rosetta_jit.runtime.memory import ALIGNMENT
 from rosetta_jit.runtime.memory_plan import Plan
-from rosetta_jit.runtime.type_specs import put_reference, slot_offset, write_words
+from rosetta_jit.runtime.type_specs import slot_offset
 from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ else:
     Base = message_base()
 
 _Message = TypeVar("_Message", bound="Message")
-_FIRST_LANE = 8 * lane_word(0, ADDRESS)
+FIRST_LANE = 8 * lane_word(0, ADDRESS)
 
 
 Getter = Callable[[Any], Any]
@@ -146,16 +146,6 @@ class Access:
         self._sameness = 0
         self._kin: Any = None
 
-    def members(self) -> Iterator[tuple[Record, int]]:
-        """The records that messages show from the start, and where in them the views of these are kept."""
-        kept = self.family.kept_of(self.record.struct)
-        if kept is None:
-            return
-        for name in kept.members:
-            node = self.record.entries[name].node
-            assert isinstance(node, Record), "members are messages"
-            yield node, kept.offsets[name]
-
     @property
     def sameness(self) -> int:
         """Address of the program that compares messages of the record."""
@@ -231,30 +221,15 @@ def write_field(name: str) -> Setter:
 def in_row(message: Message, lanes: Lanes, access: Access, row: int) -> bool:
     """Make a new message show a row of lane 0; False if it shows something already."""
     if access.bind is not None:
-        return access.bind(message, lanes, access, None, None, lanes.address, row, ALWAYS, _FIRST_LANE, access.table, row, 0)
-    if _shows_something(message):
+        return access.bind(message, lanes, access, None, None, lanes.address, row, ALWAYS, FIRST_LANE, access.table, row, 0)
+    if shows_something(message):
         return False
     message.lanes_, message.access_, message.parent_, message.index_ = lanes, access, None, row
     bind_state(message, lanes.address)
     return True
 
 
-def begin_in_python(message: Message, lanes: Lanes, access: Access) -> bool:
-    """What `in_row` does with the first row where it is done a few times alone, for which nothing has to be compiled."""
-    if _shows_something(message):
-        return False
-    for name, value in (("lanes_", lanes), ("access_", access), ("parent_", None), ("entry_", None)):
-        vars(Message)[name].__set__(message, value)  # at once: a class may have compiled code for what is assigned
-    write_words(id(message) + STATE, lanes.address, 0, ALWAYS, _FIRST_LANE, access.table, 0, 0)
-    for record, offset in access.members():
-        view_class = access.family.view_class(record.struct)
-        view = view_class.__new__(view_class)
-        begin_in_python(view, lanes, access.family.access(record))
-        put_reference(message, offset, view)
-    return True
-
-
-def _shows_something(message: Message) -> bool:
+def shows_something(message: Message) -> bool:
     """Whether a message has lanes. A user's class may give any attribute that is missing (`__getattr__`), so the slot itself is read."""
     try:
         _LANES_SLOT.__get__(message)
@@ -270,7 +245,7 @@ def recipe(plan: Plan, array_type: type, access: Access, first: Plan | None = No
     """
     begins = first or plan
     slots = (slot_offset(vars(Lanes)[name]) for name in ("arena", "plan", "array_type", "address", "is_filled", "rows", "spares"))
-    words = struct.pack("=11q", plan.size_bytes + ALIGNMENT, plan.rows, _FIRST_LANE, access.table, *slots)
+    words = struct.pack("=11q", plan.size_bytes + ALIGNMENT, plan.rows, FIRST_LANE, access.table, *slots)
     spares = [None] * MAX_ENDED if plan.fresh and plan.size_bytes <= MAX_ENDED_BYTES else None
     return Lanes, plan, array_type, access, begins.begin, plan.places, words, begins.fresh, spares
 
