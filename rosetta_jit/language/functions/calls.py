@@ -17,7 +17,7 @@ from rosetta_jit.catalogue import functions as function_words
 from rosetta_jit.catalogue import groups, layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language import conversions
-from rosetta_jit.language.arrays.layouts import ARGUMENTS
+from rosetta_jit.language.arrays.array_functions import ARGUMENTS
 from rosetta_jit.language.arrays.orders import is_of_image, is_order, takes_orders, type_order
 from rosetta_jit.language.conversions import as_int64, as_single, convert, describe, in_single, is_single, is_textual, same, wrap
 from rosetta_jit.language.function import Function, Numbers, Texts
