@@ -11,7 +11,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.errors import Kind
 from rosetta_jit.explain.content import explanation
-from rosetta_jit.language.arrays import layouts
+from rosetta_jit.language.arrays.array_functions import ARGUMENTS
 from rosetta_jit.language.functions import calls
 from rosetta_jit.language.groups import group_functions
 from rosetta_jit.language.installed import names, shipped
@@ -122,7 +122,7 @@ def test_what_is_not_turned_round(value):
 
 
 def test_every_function_is_told():
-    functions = {*names(), *group_functions(), *layouts.ARGUMENTS, *calls.INTEGERS, *calls.FLOATS}
+    functions = {*names(), *group_functions(), *ARGUMENTS, *calls.INTEGERS, *calls.FLOATS}
     told = PAGE.replace("`int8_at(b, i)` … `uint64_at(b, i)`", " ".join(f"`{name}(" for name in names() if re.search(r"int\d+_at", name)))
     assert {name for name in {*functions, "has", "bool"} if f"`{name}(" not in told} == set()
 

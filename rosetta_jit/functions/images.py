@@ -17,9 +17,8 @@ from rosetta_jit.functions.forms import loses, undone_by
 from rosetta_jit.kernel.nodes import Advance, Binary, Compare, Expr, Extent, HostCall, Local, Place, Reserve, Used, Wire
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
-from rosetta_jit.language.conversions import as_int64, describe
+from rosetta_jit.language.conversions import as_int64, describe, is_bytes
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
-from rosetta_jit.language.functions.texts import is_bytes
 from rosetta_jit.language.image_orders import COLOURS, ORDERED
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import INT64

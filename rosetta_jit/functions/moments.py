@@ -13,9 +13,9 @@ from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expr, Loca
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.affine_steps import Error, LostError, Value
-from rosetta_jit.language.conversions import FLOAT64, bare
+from rosetta_jit.language.conversions import FLOAT64, bare, is_textual
 from rosetta_jit.language.function import SEVERAL, ByType, Function, Texts, Whole
-from rosetta_jit.language.functions.texts import TEXT, is_textual, type_texts
+from rosetta_jit.language.functions.texts import TEXT, type_texts
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.lowering.evaluation import Evaluation

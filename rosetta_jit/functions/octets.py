@@ -8,10 +8,9 @@ from rosetta_jit.catalogue import number_bytes as words
 from rosetta_jit.kernel.nodes import WIDTH, Binary, Bits, Compare, Const, Convert, Expr, Scalar, Select, Wire
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
-from rosetta_jit.language.conversions import as_int64, describe
+from rosetta_jit.language.conversions import as_int64, describe, is_bytes
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
 from rosetta_jit.language.functions.decisions import is_condition
-from rosetta_jit.language.functions.texts import is_bytes
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.lowering.codec.fields import scalar_name
 from rosetta_jit.lowering.evaluation import Evaluation

@@ -12,9 +12,8 @@ from rosetta_jit.catalogue import signals as words
 from rosetta_jit.kernel.nodes import WIDTH, Binary, Compare, Const, Convert, Expr, Load, Local, Scalar, Wire
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
-from rosetta_jit.language.conversions import as_int64, bare, describe
+from rosetta_jit.language.conversions import as_int64, bare, describe, is_bytes
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
-from rosetta_jit.language.functions.texts import is_bytes
 from rosetta_jit.language.limits import MAX_SIGNAL_BYTES
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.signal_bits import MOST_BITS, Signal, signal_of

@@ -9,9 +9,9 @@ from rosetta_jit.functions.forms import if_same_constants, loses, of_texts, row,
 from rosetta_jit.kernel.nodes import Binary, Compare, Const, Expr, Unary
 from rosetta_jit.language import typed
 from rosetta_jit.language.affine_steps import Value
-from rosetta_jit.language.conversions import FLOAT64, describe
+from rosetta_jit.language.conversions import FLOAT64, describe, is_textual
 from rosetta_jit.language.function import ByType, Texts
-from rosetta_jit.language.functions.texts import BYTES, NAMED, TEXT, argument, is_textual, name_of
+from rosetta_jit.language.functions.texts import BYTES, NAMED, TEXT, argument, name_of
 from rosetta_jit.language.limits import MAX_DECIMALS
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import INT64

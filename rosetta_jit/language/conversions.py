@@ -77,6 +77,22 @@ def widens(source: Type, target: Type) -> bool:
             return False
 
 
+def is_textual(type_: Type) -> bool:
+    """Whether a value is bytes that lie one after another."""
+    match type_:
+        case String(encoding=encoding):
+            return encoding != "utf-16"
+        case Bytes() | Array(element=Int(8)):
+            return True
+        case _:
+            return False
+
+
+def is_bytes(type_: Type) -> bool:
+    """Whether a value is bytes, or an array of them."""
+    return isinstance(type_, Bytes) or (isinstance(type_, Array) and isinstance(type_.element, Int) and type_.element.bits == 8)
+
+
 def is_single(type_: Type) -> bool:
     """Whether a type is float32, however its IDL calls it."""
     return isinstance(type_, Float) and type_.bits == 32

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
-from functools import cache
 
 import numpy as np
 
-from rosetta_jit.runtime.attributes.code import functions, library
+from rosetta_jit.runtime.attributes.code import functions, is_compiled
 from rosetta_jit.runtime.memory import ALIGNMENT
 
 
+def begun(arena: bytearray, begin: bytes, places: bytes) -> int:
+    """Copy how the first memory of lanes begins to where it is aligned, and write where each lane lies; where the state does.
+
+    Compiled code does it if there is some.
+    """
+    return functions()["begin"](arena, begin, places) if is_compiled("begin") else _begun_in_python(arena, begin, places)
+
+
 def _begun_in_python(arena: bytearray, begin: bytes, places: bytes) -> int:
-    """Copy how the first memory of lanes begins to where it is aligned, and write where each lane lies; where the state does."""
     address = address_of_bytes(arena)
     shift = -address % ALIGNMENT
     arena[shift : shift + len(begin)] = begin
@@ -22,12 +27,6 @@ def _begun_in_python(arena: bytearray, begin: bytes, places: bytes) -> int:
     for word, offset in zip(pairs[:, 0].tolist(), pairs[:, 1].tolist(), strict=True):
         words[word] = address + shift + offset
     return address + shift
-
-
-@cache
-def begin() -> Callable[[bytearray, bytes, bytes], int]:
-    """The function that copies a beginning: compiled, where code can be."""
-    return _begun_in_python if library() is None else functions()["begin"]
 
 
 def address_of_bytes(arena: bytearray) -> int:

@@ -37,7 +37,7 @@ from rosetta_jit.model.initial_values import FirstCase, FixedArray, InitialValue
 from rosetta_jit.model.layout import Layout
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.cells import Array, Arrays, Cells, Memory
-from rosetta_jit.runtime.first_memory import address_of_bytes, begin
+from rosetta_jit.runtime.first_memory import address_of_bytes, begun
 from rosetta_jit.runtime.limits import MAX_READINGS
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.memory import ALIGNMENT, Hidden, address_of, aligned, aligned_bytes
@@ -119,7 +119,7 @@ class Lanes:
         self.arena = arena = bytearray(plan.size_bytes + ALIGNMENT)
         self.plan = plan
         self.array_type = array_type
-        self.address = begin()(arena, plan.begin, plan.places)
+        self.address = begun(arena, plan.begin, plan.places)
         self.is_filled = True
         self.rows = plan.rows
 

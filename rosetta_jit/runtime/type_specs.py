@@ -179,6 +179,18 @@ def read_word(address: int) -> int:
     return ctypes.c_uint64.from_address(address).value
 
 
+def put_reference(owner: object, offset: int, value: object) -> None:
+    """Let an object keep another one where it keeps nothing yet."""
+    ctypes.pythonapi.Py_IncRef(ctypes.py_object(value))
+    write_word(id(owner) + offset, id(value))
+
+
 def write_word(address: int, value: int) -> None:
     """Change eight bytes of memory."""
     ctypes.c_uint64.from_address(address).value = value
+
+
+def write_words(address: int, *values: int) -> None:
+    """Change memory from an address on, eight bytes a value."""
+    for number, value in enumerate(values):
+        write_word(address + 8 * number, value)

@@ -70,7 +70,7 @@ def _made(plain: type[Any], options: Mapping[str, bool]) -> type[Any]:
         return _standard(plain, options)
     if not plain.__doc__:
         plain.__doc__ = plain.__name__  # else the standard library writes the signature there, for which it imports and asks `inspect`
-    fields = {name: _field(own.get(name, MISSING)) for name, each in said.items() if not str(each).startswith("ClassVar")}
+    fields = {name: _field(own[name]) if name in own else _PLAIN for name, each in said.items() if not str(each).startswith("ClassVar")}
     names: dict[str, Any] = {}
     given = {name: each for name, each in own.items() if name not in fields and name not in _OF_EACH_CLASS}
     given["__slots__"] = (*fields, "__weakref__") if options.get("weakref_slot") else (*fields,)
@@ -91,7 +91,7 @@ def _is_special(plain: type[Any]) -> bool:
     """Whether a class inherits fields, or brings what is to be made, or values of which no field is made."""
     if plain.__bases__ != (object,) and any(hasattr(base, _FIELDS) for base in plain.__bases__):
         return True
-    return not _OWN.isdisjoint(vars(plain)) or any("InitVar" in str(each) for each in plain.__annotations__.values())
+    return not _OWN.isdisjoint(vars(plain)) or "InitVar" in "".join(map(str, plain.__annotations__.values()))
 
 
 def _add_methods(given: dict[str, Any], fields: Mapping[str, Field], options: Mapping[str, bool]) -> None:
@@ -113,9 +113,7 @@ def _add_methods(given: dict[str, Any], fields: Mapping[str, Field], options: Ma
 
 
 def _field(default: Any) -> Field:
-    """What a field's declaration says of it."""
-    if default is MISSING:
-        return _PLAIN
+    """What the declaration of a field with a value says of it."""
     if type(default).__module__ == "dataclasses":
         raise TypeError("`field` is to be imported from where `dataclass` is")
     return default if isinstance(default, Field) else Field({"default": default})
@@ -172,6 +170,8 @@ _OF_EACH_CLASS = ("__dict__", "__weakref__")
 
 def _init(fields: Mapping[str, Field], names: dict[str, Any], *, has_post_init: bool) -> Callable[..., None]:
     """Objects are made often, and generic code would be slow at it: each class has its own, with ``names`` of its own for what it needs."""
+    if 0 < len(fields) <= len(STORES) and not has_post_init and all(each is _PLAIN for each in fields.values()):
+        return _named(STORES[len(fields) - 1], ("self", *fields), names, ())
     kinds: list[tuple[bool, bool]] = []
     defaults: list[Any] = []
     for number, (name, field) in enumerate(fields.items()):
@@ -186,8 +186,12 @@ def _init(fields: Mapping[str, Field], names: dict[str, Any], *, has_post_init: 
             raise TypeError(f"non-default argument {name!r} follows default argument")
     code = _stores(tuple(kinds), has_post_init=has_post_init)
     parameters = ("self", *(name for name, each in fields.items() if each.init))
+    return _named(code, parameters, names, tuple(defaults))
+
+
+def _named(code: CodeType, parameters: tuple[str, ...], names: dict[str, Any], defaults: tuple[Any, ...]) -> Callable[..., None]:
     named = code.replace(co_name="__init__", co_qualname="__init__", co_varnames=parameters)
-    return FunctionType(named, names, "__init__", tuple(defaults))
+    return FunctionType(named, names, "__init__", defaults)
 
 
 def _made_anew(store: Callable[[object, object], None], make: Callable[[], object]) -> Callable[[object, object], None]:

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 from functools import cache
 
-from rosetta_jit.language.arrays.layouts import ARGUMENTS as ORDERS
+from rosetta_jit.language.arrays.array_functions import ARGUMENTS as ORDERS
 from rosetta_jit.language.installed import OURS, shipped
 from rosetta_jit.language.parse import mapping as parsing
 from rosetta_jit.language.parse.templates import GRAMMAR, grammar

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from rosetta_jit.language.arrays.layouts import ARGUMENTS as ORDERS
+from rosetta_jit.language.arrays.array_functions import ARGUMENTS as ORDERS
 from rosetta_jit.language.installed import OURS
 from rosetta_jit.language.parse import mapping as parsing
 from rosetta_jit.language.parse.templates import grammar

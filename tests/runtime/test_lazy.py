@@ -10,11 +10,12 @@ import pytest
 
 from rosetta_jit.runtime.attributes import code
 from rosetta_jit.runtime.attributes.code import FILES, SYMBOLS, Accessors, text, whole
-from rosetta_jit.runtime.attributes.groups import GROUPS, part_of
+from rosetta_jit.runtime.attributes.groups import GROUPS
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.assembler import assembled
 from rosetta_jit.runtime.code.lazy import Stubs, is_supported, stubs_text
+from rosetta_jit.runtime.code.parts import part_of
 
 pytestmark = pytest.mark.skipif(not is_supported() or not is_native(), reason="no stubs for this machine, or no accessors for this Python")
 
@@ -101,7 +102,7 @@ def make(accessors, group, real=code.Accessors.make):
 code.Accessors.make = make
 type_ = "geometry_msgs/msg/PoseStamped"
 decode, encode = (each.of(type_, encoding="cdr") for each in (rj.Decoder, rj.Encoder))
-assert made == ["first holders"], made
+assert made == [], made
 first = decode.holder_type
 assert decode(encode(decode.new())) is not None
 del made[:]
@@ -135,9 +136,59 @@ assert made == [], made
 """
 
 
+def surroundings():
+    return {"PATH": "", "ROSETTA_JIT_CACHE": "off", "PYTHONPATH": ":".join(sys.path)}
+
+
 def test_a_process_without_a_cache_compiles_what_it_calls():
-    surroundings = {"PATH": "", "ROSETTA_JIT_CACHE": "off", "PYTHONPATH": ":".join(sys.path)}
-    subprocess.run([sys.executable, "-c", PROCESS], check=True, env=surroundings)
+    subprocess.run([sys.executable, "-c", PROCESS], check=True, env=surroundings())
+
+
+FEW = """
+import weakref
+import rosetta_jit as rj
+from rosetta_jit.runtime.attributes.code import is_compiled
+decode, encode = (each.of("geometry_msgs/msg/PoseStamped", encoding="cdr") for each in (rj.Decoder, rj.Encoder))
+holder_type = decode.holder_type
+def made():
+    return type.__call__(holder_type)
+first = [made() for _ in range(4)]
+def are_gone(seen):
+    return [each() for each in seen] == [None] * len(seen)
+assert are_gone([weakref.ref(made().lanes_)])
+assert not is_compiled("equip") and not is_compiled("end_holder")
+position = made().pose.position
+assert position.x == 0.0 and first[0].pose is first[0].pose
+others = [holder_type() for _ in range(4)]
+assert is_compiled("equip") and is_compiled("end_holder")
+for number, (one, other) in enumerate(zip(first, others)):
+    assert one == other and one.to_dict() == other.to_dict()
+    one.pose.position.x = other.pose.position.x = number + 0.5
+    one.header.frame_id = other.header.frame_id = "f" * number
+    assert encode(one) == encode(other) and decode(encode(one)) == other
+ended = [weakref.ref(each) for each in first]
+del first, one
+assert are_gone(ended) and position.x == 0.0
+again = [holder_type() for _ in range(4)]
+assert all(each == again[0] and each.pose.position.x == 0.0 for each in again)
+"""
+
+MANY = """
+import rosetta_jit as rj
+from rosetta_jit.runtime.attributes.code import is_compiled
+from rosetta_jit.runtime.limits import FEW_HOLDERS
+decode = rj.Decoder.of("geometry_msgs/msg/Twist", encoding="cdr")
+holders = []
+while not is_compiled("equip"):
+    holders.append(type.__call__(decode.holder_type))
+assert len(holders) == FEW_HOLDERS, len(holders)
+assert all(each == holders[-1] for each in holders)
+"""
+
+
+@pytest.mark.parametrize("program", [FEW, MANY])
+def test_a_few_holders_are_made_and_ended_without_compiled_code(program):
+    subprocess.run([sys.executable, "-c", program], check=True, env=surroundings())
 
 
 def test_the_cache_is_asked_for_a_group_when_an_address_of_it_is(monkeypatch):

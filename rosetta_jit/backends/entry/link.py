@@ -33,6 +33,7 @@ from rosetta_jit.kernel.state import ERROR_SITE, USED, lane_word, state_words
 from rosetta_jit.kernel.traits import has_loops_for_vectors, is_moderate, leaves_something, our_functions
 from rosetta_jit.runtime.cache.texts import kept
 from rosetta_jit.runtime.code.assembler import linked, make_private, object_of, run_few_passes, run_passes, shortened, target_machine
+from rosetta_jit.runtime.code.parts import part_of
 from rosetta_jit.runtime.code.prelink import is_prelinking, prelinked
 from rosetta_jit.startup.dataclass import replace
 from rosetta_jit.startup.late import late
@@ -238,7 +239,8 @@ def _wanted(declared: Iterable[str]) -> set[str]:
 
 @cache
 def _entries(*texts: str) -> bytes:
-    return kept("entries", "\n".join(texts), lambda: object_of(texts, (*SYMBOLS["encode"], *REST_SYMBOLS), thorough=False))
+    exported = (*SYMBOLS["encode"], *REST_SYMBOLS)
+    return kept("entries", "\n".join(texts), lambda: object_of([part_of(text, exported) for text in texts], exported, thorough=False))
 
 
 @lru_cache(maxsize=MAX_SHARED)

@@ -1,8 +1,4 @@
-"""Kernel statements as LLVM blocks.
-
-A failing edge leads through a cold block of its own, where the offset and the indices are computed, to the one block of the body that
-takes failures; so the hot path holds compares and branches alone.
-"""
+"""Kernel statements as LLVM blocks."""
 
 from __future__ import annotations
 
@@ -24,9 +20,9 @@ from rosetta_jit.backends.llvm.expr import (
     store,
     wire_pointer,
 )
-from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Frame, StoredExit, Variable, constant, forgotten
+from rosetta_jit.backends.llvm.failing import check, cold, fail, require
+from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Frame, Variable, constant, forgotten
 from rosetta_jit.backends.llvm.growth import reserve
-from rosetta_jit.backends.llvm.sites import site_of
 from rosetta_jit.kernel import ir as kernel
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
@@ -42,8 +38,6 @@ else:
     host, series, rounds_of_switch = late("rosetta_jit.backends.llvm", "host", "series", "rounds")
 
 MANY_CASES = 64
-ANY_SITE = -1
-"""Stands for the site where only the indices of failures count."""
 GOLDEN = 0x9E3779B1
 """2**32 over the golden ratio: its multiples leave the numbers below 2**32 in an order without a pattern."""
 
@@ -72,9 +66,9 @@ def print_part(frame: Frame, part: nodes.Stmt | Series) -> None:
 def _statement(frame: Frame, statement: nodes.Stmt) -> None:
     match statement:
         case nodes.Require(at, size, failure):
-            _require(frame, at, size, failure)
+            require(frame, at, size, failure)
         case nodes.Expect(condition, failure):
-            _check(frame, expression(frame, condition), failure)
+            check(frame, expression(frame, condition), failure)
         case nodes.Let(name, value):
             frame.locals[name] = _value(frame, name, value)
         case nodes.Var(name, value):
@@ -150,85 +144,6 @@ def _nested(frame: Frame, statement: nodes.For | nodes.While | nodes.If | nodes.
             _switch(frame, statement)
 
 
-def _require(frame: Frame, at: nodes.Expr, size: nodes.Expr, failure: nodes.Failure) -> None:
-    """Check ``at >= 0``, ``size >= 0`` and ``size <= end - at``: a difference that cannot wrap where the first holds.
-
-    Of a size that is known that is one comparison without signs.
-    """
-    builder = frame.builder
-    start = expression(frame, at)
-    if isinstance(size, nodes.Const) and not _is_behind_begin(at):
-        _check(frame, builder.icmp_unsigned("<", start, frame.limit(int(size.value))), failure)
-        return
-    length = expression(frame, size)
-    holds = builder.icmp_signed("<=", length, builder.sub(frame.parameters.end, start))
-    for value, is_positive in ((start, _is_behind_begin(at)), (length, isinstance(size, nodes.Const))):
-        if not is_positive:
-            holds = builder.and_(holds, builder.icmp_signed(">=", value, constant(0)))
-    _check(frame, holds, failure)
-
-
-def _is_behind_begin(at: nodes.Expr) -> bool:
-    match at:
-        case nodes.Binary("add", base, nodes.Const(_, offset)):
-            return base == BEGIN and offset >= 0
-        case _:
-            return at == BEGIN or isinstance(at, nodes.Const)
-
-
-def _check(frame: Frame, holds: ir.Value, failure: nodes.Failure) -> None:
-    """Go on where the condition holds. In a body of very many checks, those that report the same lead to one block."""
-    shared = frame.failed.shared if isinstance(frame.failed, StoredExit) else {}
-    told = _told(frame, failure.site, failure.at, *failure.indices) if isinstance(frame.failed, StoredExit) else None
-    broken = None if told is None else shared.get(told)
-    good = _cold(frame, holds, broken)
-    if broken is None:
-        if told is not None:
-            shared[told] = frame.builder.block
-        _fail(frame, (failure.site,), constant(1), expression(frame, failure.at), failure.indices)
-    frame.builder.position_at_end(good)
-
-
-def _cold(frame: Frame, holds: ir.Value, known: ir.Block | None = None) -> ir.Block:
-    """Where to go on if the condition holds; the frame prints what to do else, unless a block is known that does it."""
-    good = frame.block("good")
-    cold = frame.block("broken") if known is None else known
-    frame.builder.cbranch(holds, good, cold).set_weights(COLD)
-    frame.builder.position_at_end(cold)
-    return good
-
-
-def _told(frame: Frame, site: int, *numbers: nodes.Expr) -> tuple[object, ...] | None:
-    """What a failure reports, and what that is computed from; None where it is another site or another index for each caller or stretch."""
-    if frame.caller is not None or frame.stretch is not None:
-        return None
-    names = sorted(set[str]().union(*map(locals_in, numbers)))
-    return (site, numbers, *(frame.locals[each] for each in names))
-
-
-def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Value, indices: tuple[nodes.Expr, ...]) -> None:
-    """Leave the body at the site of a number, counted from 1; what a routine's sites and indices are, its caller says."""
-    while frame.caller is not None:
-        frame, call = frame.caller
-        sites, indices = tuple(call.sites[each - 1] for each in sites), call.indices
-    found = [site_of(frame, number, sites), offset]
-    if indices and isinstance(frame.failed, StoredExit) and (told := _told(frame, ANY_SITE, *indices)) is not None:
-        frame.failed.enter(frame.builder, found, _stores_indices(frame, frame.failed, indices, told))
-    else:
-        frame.failed.enter(frame.builder, [*found, *(expression(frame, each) for each in indices)])
-
-
-def _stores_indices(frame: Frame, failed: StoredExit, indices: tuple[nodes.Expr, ...], told: tuple[object, ...]) -> ir.Block:
-    """The block that stores indices on the way out: one for all failures in a round of a loop, whose indices are the same."""
-    if told not in failed.shared:
-        here, shared = frame.builder.block, frame.block("indices")
-        failed.shared[told] = shared
-        frame.builder.position_at_end(shared)
-        failed.enter_with_indices(frame.builder, [expression(frame, each) for each in indices])
-        frame.builder.position_at_end(here)
-    return failed.shared[told]
-
-
 def _call(frame: Frame, call: nodes.Call) -> None:
     routine = frame.routines[call.routine]
     if isinstance(routine, kernel.Routine):
@@ -239,8 +154,8 @@ def _call(frame: Frame, call: nodes.Call) -> None:
     outcome = builder.call(routine, [parameters.buffer, parameters.begin, parameters.end, parameters.state, *arguments])
     if call.sites:
         number, first = builder.extract_value(outcome, 0), builder.extract_value(outcome, 1)
-        good = _cold(frame, builder.icmp_signed("==", number, constant(0)))
-        _fail(frame, call.sites, number, first, call.indices)
+        good = cold(frame, builder.icmp_signed("==", number, constant(0)))
+        fail(frame, call.sites, number, first, call.indices)
         builder.position_at_end(good)
     for position, result in enumerate(call.results, 1):
         frame.locals[result.name] = builder.extract_value(outcome, position)
@@ -258,8 +173,8 @@ def _inline(frame: Frame, call: nodes.Call, routine: kernel.Routine) -> None:
 
 def _host_call(frame: Frame, call: nodes.HostCall) -> None:
     status, result = host.host_called(frame, call)
-    good = _cold(frame, frame.builder.icmp_signed("==", status, ir.Constant(status.type, 0)))
-    _fail(frame, (call.failure.site,), constant(1), expression(frame, call.failure.at), call.failure.indices)
+    good = cold(frame, frame.builder.icmp_signed("==", status, ir.Constant(status.type, 0)))
+    fail(frame, (call.failure.site,), constant(1), expression(frame, call.failure.at), call.failure.indices)
     frame.builder.position_at_end(good)
     frame.locals[call.result.name] = load(frame, result, call.result.type, alignment=1)
 

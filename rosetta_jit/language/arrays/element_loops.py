@@ -7,8 +7,9 @@ from functools import reduce
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
+from rosetta_jit.language.arrays.array_functions import PADDED
 from rosetta_jit.language.arrays.counts import ONE, ZERO, LayoutError, minus, over, plus, times
-from rosetta_jit.language.arrays.layouts import PADDED, SIZES, Axis, NumberType, View
+from rosetta_jit.language.arrays.layouts import SIZES, Axis, NumberType, View
 from rosetta_jit.language.arrays.parts import substituted
 from rosetta_jit.model.expr import Binary, Call, Choice, Expr, Index, Literal, Name, Path
 from rosetta_jit.model.mapping import Assign, Assignment, For, Rule

@@ -11,41 +11,26 @@ from collections.abc import Iterator
 from itertools import count
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import fields
 from rosetta_jit.catalogue import layouts as words
-from rosetta_jit.catalogue import texts as text_words
-from rosetta_jit.diagnostics import Diagnostic
-from rosetta_jit.language.arrays.counts import ONE, LayoutError, times
-from rosetta_jit.language.arrays.layouts import ARGUMENTS, NUMBER_BYTES, PADDED, NumberType, View, number_type, view_of
+from rosetta_jit.language.arrays.counts import LayoutError
 from rosetta_jit.language.arrays.orders import is_of_image
-from rosetta_jit.language.arrays.parts import has_each, is_many, open_parts, sources_in, substituted
+from rosetta_jit.language.arrays.parts import has_each, is_many, open_parts
 from rosetta_jit.language.conversions import is_single, same, widens
-from rosetta_jit.language.installed import functions
-from rosetta_jit.language.limits import MAX_MADE
 from rosetta_jit.language.scope import Scope, element_type, members_of
 from rosetta_jit.language.typed import INT64, Const, FieldStep, IndexStep, Local, Place, Step
 from rosetta_jit.language.units.unit_at import unit_at
-from rosetta_jit.model.expr import Binary, Call, Choice, Each, Expr, Index, Len, Literal, Member, Name, Path
+from rosetta_jit.model.expr import Choice, Each, Expr, Index, Literal, Member, Name, Path
 from rosetta_jit.model.mapping import Arranged, Assign, Assignment, For, Reject, Rule, SetLength, Via, When
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Type, Union
-from rosetta_jit.model.walk import every_rule, parts
-from rosetta_jit.source import Span
+from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, Struct, Type, Union
+from rosetta_jit.model.walk import every_rule
 from rosetta_jit.startup.dataclass import dataclass, replace
-from rosetta_jit.startup.late import Late, late
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
-    from rosetta_jit.language.arrays import element_loops, filters
-    from rosetta_jit.language.arrays.element_loops import Padding
-    from rosetta_jit.model import printer
+    from rosetta_jit.language.arrays import array_rules, filters
+    from rosetta_jit.language.arrays.array_rules import Lengths
 else:
-    filters, element_loops = late("rosetta_jit.language.arrays", "filters", "element_loops")
-    printer = Late("rosetta_jit.model.printer")
-
-SINGLE = (Bool, Enum, Float, Int, Struct)
-"""Types of one value."""
-
-Lengths = dict[Path, "Expr"]
-"""What is known of the lengths of the target's arrays."""
+    array_rules, filters = late("rosetta_jit.language.arrays", "array_rules", "filters")
 
 
 def elementwise(rules: tuple[Rule, ...], scope: Scope, broken: list[tuple[str, ...]]) -> tuple[Rule, ...]:
@@ -56,7 +41,9 @@ def elementwise(rules: tuple[Rule, ...], scope: Scope, broken: list[tuple[str, .
 
 @dataclass(frozen=True, slots=True)
 class _Expansion:
-    """Expands one block. ``names`` are the mapping's own, ``made`` counts rules; ``level`` is how many loops of ours are around."""
+    """Expands one block; `array_rules` has what rules about many elements become. ``names`` are the mapping's own, ``made`` counts rules;
+    ``level`` is how many loops of ours are around.
+    """
 
     scope: Scope
     broken: list[tuple[str, ...]]
@@ -83,7 +70,7 @@ class _Expansion:
             case For(body=body):
                 return (replace(rule, body=self.block(body, lengths, level)),)
             case When(condition, (Reject() as refusal,), ()) if any(map(has_each, open_parts(condition))):
-                return self.refused(rule, refusal, level)
+                return array_rules.refused(self, rule, refusal, level)
             case When(then=then, otherwise=otherwise):
                 return (replace(rule, then=self.block(then, lengths, level), otherwise=self.block(otherwise, lengths, level)),)
             case _:
@@ -105,28 +92,12 @@ class _Expansion:
         try:
             if isinstance(rule.value, Choice) and not is_each:
                 return self.chosen(rule, rule.value, lengths, level)
-            return self.loops(rule, lengths, level, whole=not is_each)
+            return array_rules.loops(self, rule, lengths, level, whole=not is_each)
         except LayoutError as error:
             self.scope.problems.append(error.problem)
             around = (step.field.name for step in self.scope.base(rule.place.side).steps if isinstance(step, FieldStep))
             self.broken.append((*around, *(step.name for step in rule.place.steps if isinstance(step, Member))))
             return ()
-
-    def refused(self, rule: When[Rule, Expr], refusal: Reject[Expr], level: int) -> tuple[Rule, ...]:
-        """A rejection for what some element has, as a loop."""
-        try:
-            views = {source: view_of(source) for source in dict.fromkeys(sources_in(rule.condition))}
-            name = self.variable(level)
-            elements: dict[Expr, Expr] = {source: element_loops.element_of(view, Name(name)) for source, view in views.items()}
-            first, *others = (view.total for view in views.values())
-        except LayoutError as error:
-            self.scope.problems.append(error.problem)
-            return ()
-        pieces = tuple(substituted(piece, elements, Name(name)) for piece in refusal.pieces)
-        refusing = replace(rule, condition=substituted(rule.condition, elements, Name(name)), then=(replace(refusal, pieces=pieces),))
-        wrong = [When(condition, (Reject(why, rule.span),), (), rule.span) for view in views.values() for condition, why in view.refused]
-        same_lengths = [check for total in others for check in _unless_equal(total, first, rule.span)]
-        return (*wrong, *same_lengths, For(name, Literal(0), first, self.block((refusing,), {}, level + 1), rule.span))
 
     def chosen(self, rule: Assignment, choice: Choice, lengths: Lengths, level: int) -> tuple[Rule, ...]:
         """A choice among arrays, as one rule a case."""
@@ -138,95 +109,6 @@ class _Expansion:
         for condition, value in reversed(choice.cases):
             rest = (When(condition, assigned(value), rest, rule.span),)
         return rest
-
-    def loops(self, rule: Assignment, lengths: Lengths, level: int, *, whole: bool) -> tuple[Rule, ...]:
-        if rule.where is not None:
-            return self.filtered(rule, lengths, level)
-        if not has_each(rule.place) and (texts := _joined_elements(rule.value)) is not None:
-            raise LayoutError(text_words.joined_elements(texts.span))
-        value, padding = _padded(rule.value)
-        value, packed = _packed(value)
-        is_whole = isinstance(value, Path) if packed else whole or padding
-        sources = [_whole(value)] if is_whole else list(dict.fromkeys(sources_in(value)))
-        views = {source: view_of(source) for source in sources}
-        place = rule.place if has_each(rule.place) else replace(rule.place, steps=(*rule.place.steps, Each(rule.place.span)))
-        target = view_of(place)
-        if isinstance(self.type_of(target.array), SINGLE):
-            raise LayoutError(_many(rule))
-        for array in (target.array, *(view.array for view in views.values())):
-            if isinstance(self.type_of(array), String) and (array != target.array or has_each(rule.place)):
-                raise LayoutError(fields.not_indexable(array.span, "text", printer.show_expr(array)))
-        width = ONE if packed is None else packed.size
-        counts = [times(padding[0], padding[2])] if padding else [times(view.total, width) for view in views.values()]
-        refused = [each for view in views.values() for each in view.refused]
-        before: list[Rule] = [When(condition, (Reject(reason, rule.span),), (), rule.span) for condition, reason in refused]
-        number, counted = self.counted(rule, target, counts, lengths)
-        before += counted
-        if padding:
-            before += _unless_equal(times(next(iter(views.values())).total, width), times(padding[0], padding[1]), rule.span)
-
-        def expanded(element: Assignment, level: int) -> tuple[Rule, ...]:
-            if next(self.made) > MAX_MADE:
-                raise LayoutError(words.too_many_rules(rule.span, MAX_MADE))
-            return self.block((element,), lengths, level)
-
-        moves = element_loops.Moves(replace(rule, value=value), target, views, number, padding, level, self.variable, expanded, packed)
-        return (*before, *moves.rules())
-
-    def filtered(self, rule: Assignment, lengths: Lengths, level: int) -> tuple[Rule, ...]:
-        """A rule with `where`, as a loop of which some rounds are kept."""
-        opened = [part for side in (rule.place, rule.value, rule.where) if side is not None for part in open_parts(side)]
-        is_one = isinstance(rule.value, Path) and not isinstance(self.type_of(rule.value), Array | Bytes | Map | None)
-        if not any(map(is_many, opened)) and is_one:
-            raise LayoutError(words.filter_without_elements(rule.span))
-        found = filters.filter_of(rule, self.variable(level), self.variable(level, "kept"))
-        array = found.target.array
-        if isinstance(self.type_of(array), SINGLE):
-            raise LayoutError(_many(rule))
-        known = lengths.get(array)
-        if self.fixed_length(array) is not None or not (known is None or filters.is_filtered(known)):
-            raise LayoutError(words.filter_length(rule.place.span))
-        if known not in (None, found.length):
-            raise LayoutError(words.other_filter(rule.place.span))
-        lengths[array] = found.length
-        refused = [each for view in found.views for each in view.refused]
-        before: list[Rule] = [When(condition, (Reject(reason, rule.span),), (), rule.span) for condition, reason in refused]
-        before += [check for view in found.views for check in _unless_equal(view.total, found.loop.stop, rule.span)]
-        return (*before, replace(found.loop, body=self.block((found.element,), lengths, level + 1)))
-
-    def counted(self, rule: Assignment, target: View, counts: list[Expr], lengths: Lengths) -> tuple[Expr, list[Rule]]:
-        """How many elements a rule sets, and what checks or sets that."""
-        known = self.known_count(target, lengths)
-        if filters.is_filtered(known):
-            raise LayoutError(words.other_filter(rule.place.span))
-        is_open = _is_open(target)
-        if known is not None:
-            return known, [check for total in counts for check in _unless_equal(total, known, rule.span)]
-        if not counts:
-            no_count = words.no_count(rule.place.span, printer.show_expr(target.array), self.whole_array(rule), rule.span)
-            raise LayoutError(words.open_end(rule.place.span) if is_open else no_count)
-        checks = [check for total in counts[1:] for check in _unless_equal(total, counts[0], rule.span)]
-        if is_open:
-            return counts[0], checks
-        lengths[target.array] = counts[0]
-        return counts[0], [SetLength(target.array, counts[0], rule.span), *checks]
-
-    def whole_array(self, rule: Assignment) -> str:
-        """An array that a rule for each element reads as a whole; empty where it reads none."""
-        paths = (each for each in parts(rule.value) if isinstance(each, Path))
-        return next((printer.show_expr(each) for each in paths if isinstance(self.type_of(each), Array)), "")
-
-    def known_count(self, target: View, lengths: Lengths) -> Expr | None:
-        """What a slice, another rule or the type says of the number of elements that are set."""
-        (axis,) = target.axes
-        if axis.count != Len(target.array):
-            return None if _is_open(target) else axis.count
-        fixed = self.fixed_length(target.array)
-        return lengths.get(target.array) if fixed is None else Literal(fixed)
-
-    def fixed_length(self, path: Path) -> int | None:
-        type_ = self.type_of(path)
-        return type_.fixed if isinstance(type_, Array) else None
 
     def are_unlike_maps(self, one: Path, other: Path) -> bool:
         """Whether two places are maps of different types, which are copied entry by entry."""
@@ -301,17 +183,6 @@ def _entries(rule: Assignment, value: Path) -> list[Assignment]:
     ]
 
 
-def _unless_equal(total: Expr, count: Expr, span: Span | None) -> list[Rule]:
-    if total == count:
-        return []
-    return [When(Binary("!=", total, count, span), (Reject(words.OTHER_COUNT, span),), (), span)]
-
-
-def _is_open(target: View) -> bool:
-    """Whether a slice goes to the end of the array that is being filled."""
-    return target.axes[0].count != Len(target.array) and any(part == Len(target.array) for part in parts(target.axes[0].count))
-
-
 def _add(made: list[Rule], rule: Rule, variable: str) -> None:
     """One more rule; a loop of ours over the elements of an array joins the one that is there, behind the checks between them."""
     if isinstance(rule, For) and rule.kept is not None:
@@ -334,42 +205,3 @@ def _rounds(loop: For[Rule, Expr]) -> object:
     steps = loop.body[0].place.steps if loop.body and isinstance(loop.body[0], Assign) else ()
     number = next((number for number, step in enumerate(steps) if step == Index(Name(loop.variable))), None)
     return loop if number is None else (loop.start, loop.stop, steps[:number])
-
-
-def _packed(value: Expr) -> tuple[Expr, NumberType | None]:
-    """The numbers of which a value is the bytes, and their type."""
-    if not isinstance(value, Call) or value.function != NUMBER_BYTES:
-        return value, None
-    if not 2 <= len(value.arguments) <= 3:
-        raise LayoutError(words.arguments(value.span, NUMBER_BYTES, *ARGUMENTS[NUMBER_BYTES], len(value.arguments)))
-    return value.arguments[0], number_type(value)
-
-
-def _padded(value: Expr) -> tuple[Expr, Padding | None]:
-    match value:
-        case Call(function, (array, count, size, stride)) if function == PADDED:
-            return array, (count, size, stride)
-        case Call(function) if function == PADDED:
-            raise LayoutError(words.arguments(value.span, PADDED, *ARGUMENTS[PADDED], len(value.arguments)))
-        case _:
-            return value, None
-
-
-def _whole(value: Expr) -> Path | Call:
-    if isinstance(value, Path | Call):
-        return value
-    raise LayoutError(words.scalar_needs_each(value.span) if isinstance(value, Literal) else words.not_an_array(value.span))
-
-
-def _joined_elements(value: Expr) -> Expr | None:
-    """The texts of elements that an expression joins."""
-    calls = (part for part in parts(value) if isinstance(part, Call) and part.function == "join")
-    return next((call.arguments[0] for call in calls if call.arguments and has_each(call.arguments[0])), None)
-
-
-def _many(rule: Assignment) -> Diagnostic:
-    """Why the elements that a rule names cannot be assigned to one value: perhaps what makes one of them is misspelt."""
-    called = rule.value.function if isinstance(rule.value, Call) and rule.value.function not in functions() else ""
-    reductions = [name for name, each in functions().items() if each.reduction is not None]
-    arrays = [printer.show_expr(part).partition("[]")[0] for part in parts(rule.value) if isinstance(part, Path) and has_each(part)]
-    return words.one_value(rule.place.span, called, reductions, arrays[0] if arrays else "")

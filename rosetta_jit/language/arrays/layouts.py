@@ -28,6 +28,7 @@ from functools import reduce
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
+from rosetta_jit.language.arrays.array_functions import ARGUMENTS, NUMBER_BYTES, NUMBERS, PADDED
 from rosetta_jit.language.arrays.counts import ONE, ZERO, LayoutError, folded, minus, over, plus, times
 from rosetta_jit.language.limits import MAX_LISTED
 from rosetta_jit.model.expr import Binary, Call, Each, Expr, Len, List, Literal, Name, Path, Pick, Slice, Step
@@ -39,22 +40,6 @@ if TYPE_CHECKING:
 else:
     folding = Late("rosetta_jit.language.folding")
 
-PADDED = "padded_rows"
-NUMBERS, NUMBER_BYTES = "numbers", "number_bytes"
-ARGUMENTS: dict[str, tuple[int, int]] = {
-    "reversed": (1, 2),
-    "permuted": (2, 2),
-    "transposed": (3, 4),
-    "planar": (2, 3),
-    "interleaved": (2, 3),
-    "rows": (4, 4),
-    PADDED: (4, 4),
-    NUMBERS: (2, 3),
-    NUMBER_BYTES: (2, 3),
-    "upper_triangle": (2, 2),
-    "symmetric": (2, 2),
-}
-"""The functions of arrays, and how many arguments each takes, the array included."""
 
 OPPOSITE = {
     "planar": "interleaved",
@@ -66,8 +51,6 @@ OPPOSITE = {
     "upper_triangle": "symmetric",
     "symmetric": "upper_triangle",
 }
-KEEP_LENGTH = frozenset(("reversed", "permuted", "transposed", "planar", "interleaved"))
-"""Functions that give an array as long as theirs."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeGuard
 
 from rosetta_jit.catalogue import layouts as words
+from rosetta_jit.language.arrays.array_functions import ARGUMENTS, NUMBER_BYTES, NUMBERS, PADDED
 from rosetta_jit.language.arrays.counts import LayoutError
-from rosetta_jit.language.arrays.layouts import ARGUMENTS, NUMBER_BYTES, NUMBERS, PADDED, view_of
 from rosetta_jit.language.conversions import as_int64
 from rosetta_jit.language.image_orders import COLOURS, COUNT, ORDERED
 from rosetta_jit.language.installed import written
@@ -17,9 +17,14 @@ from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Bool, Bytes, String
 from rosetta_jit.model.walk import rebuilt
 from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
+    from rosetta_jit.language.arrays import layouts
+
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
+else:
+    layouts = Late("rosetta_jit.language.arrays.layouts")
 
 BYTES = model.Path("wire", (model.Member(COUNT),))
 """The bytes, where layouts are made of them."""
@@ -60,7 +65,7 @@ def type_order(call: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | No
         inner, *sizes = call.arguments
         padding = tuple(sizes)
     try:
-        view = view_of(_with_bytes(inner))
+        view = layouts.view_of(_with_bytes(inner))
     except LayoutError as error:
         scope.problems.append(error.problem)
         return None

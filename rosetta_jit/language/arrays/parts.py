@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rosetta_jit.language.arrays.layouts import ARGUMENTS
+from rosetta_jit.language.arrays.array_functions import ARGUMENTS
 from rosetta_jit.language.installed import written
 from rosetta_jit.model.expr import Call, Coerced, Each, Expr, Index, Len, Path, Pick, Slice
 from rosetta_jit.model.walk import parts, rebuilt

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rosetta_jit.language.arrays.layouts import ARGUMENTS, KEEP_LENGTH
+from rosetta_jit.language.arrays.array_functions import ARGUMENTS, KEEP_LENGTH
 from rosetta_jit.language.both_ways.inverse import fields_in
 from rosetta_jit.model.expr import Call, Coerced, Each, Expr, Index, Len, List, Member, Path
 from rosetta_jit.model.walk import Field, path_of, rebuilt

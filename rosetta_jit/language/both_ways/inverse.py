@@ -16,7 +16,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.arrays.layouts import ARGUMENTS, put_back, rounded_bytes
+from rosetta_jit.language.arrays.array_functions import ARGUMENTS
+from rosetta_jit.language.arrays.layouts import put_back, rounded_bytes
 from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.function import SEVERAL, Affine, ByType, Function
 from rosetta_jit.language.groups import GroupFunction, arguments_of, component, function_of

@@ -17,11 +17,10 @@ from rosetta_jit.catalogue import functions as function_words
 from rosetta_jit.catalogue import groups, layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language import conversions
-from rosetta_jit.language.arrays.layouts import ARGUMENTS
+from rosetta_jit.language.arrays.array_functions import ARGUMENTS
 from rosetta_jit.language.arrays.orders import is_of_image, is_order, takes_orders, type_order
-from rosetta_jit.language.conversions import as_int64, as_single, convert, describe, in_single, is_single, same, wrap
+from rosetta_jit.language.conversions import as_int64, as_single, convert, describe, in_single, is_single, is_textual, same, wrap
 from rosetta_jit.language.function import Function, Numbers, Texts
-from rosetta_jit.language.functions.texts import constant_named, is_textual, type_texts
 from rosetta_jit.language.groups import function_of, group_functions
 from rosetta_jit.language.installed import names, written
 from rosetta_jit.language.scope import Scope
@@ -31,9 +30,14 @@ from rosetta_jit.model import expr as model
 from rosetta_jit.model.expr import Name
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Type
 from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
+    from rosetta_jit.language.functions import texts
+
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
+else:
+    texts = Late("rosetta_jit.language.functions.texts")
 
 NO_ENUMS: Mapping[str, Enum] = MappingProxyType({})
 INTEGERS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64")
@@ -79,7 +83,7 @@ def type_function(function: Function, expr: model.Call, arguments: list[Expr], s
         case Numbers() as signature:
             return type_numbers(function, signature, expr, arguments, scope)
         case Texts() as signature:
-            return type_texts(expr, arguments, scope, signature)
+            return texts.type_texts(expr, arguments, scope, signature)
         case own:
             return own(expr, arguments, scope)
 
@@ -119,7 +123,7 @@ def _named(value: Expr, target: Enum, expr: model.Call, scope: Scope) -> Expr | 
     if len(expr.arguments) > 1:
         scope.problems.append(words.arguments(expr.span, expr.function, "a text alone", len(expr.arguments)))
         return None
-    return constant_named(value, target, expr.span, scope)
+    return texts.constant_named(value, target, expr.span, scope)
 
 
 def rules_between(source: Type, target: Type) -> tuple[ConversionRule, ...]:

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
-from rosetta_jit.language.conversions import FLOAT64, as_int64, convert, describe, same
-from rosetta_jit.language.functions.texts import comparison, is_textual, type_pieces
+from rosetta_jit.language.conversions import FLOAT64, as_int64, convert, describe, is_textual, same
+from rosetta_jit.language.functions.texts import comparison, type_pieces
 from rosetta_jit.language.limits import MAX_CASES, MAX_COMPARED
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Choice, Const, Expr, IsText, Unary

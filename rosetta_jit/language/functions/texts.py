@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import texts as words
 from rosetta_jit.diagnostics import Diagnostic
-from rosetta_jit.language.conversions import FLOAT64, as_int64, convert, describe
+from rosetta_jit.language.conversions import FLOAT64, as_int64, convert, describe, is_textual
 from rosetta_jit.language.function import Texts
 from rosetta_jit.language.limits import MAX_COMPARED, MAX_PADDED, MAX_PATTERN, MAX_WRITTEN
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Call, Const, Convert, Expr, Given
 from rosetta_jit.model import expr as model
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Type
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import replace
 
@@ -34,22 +34,6 @@ SPELT = frozenset("0123456789+-.einfa")
 def separates(text: str) -> bool:
     """Whether a text can stand between numbers."""
     return bool(text) and not SPELT & set(text)
-
-
-def is_textual(type_: Type) -> bool:
-    """Whether a value is bytes that lie one after another."""
-    match type_:
-        case String(encoding=encoding):
-            return encoding != "utf-16"
-        case Bytes() | Array(element=Int(8)):
-            return True
-        case _:
-            return False
-
-
-def is_bytes(type_: Type) -> bool:
-    """Whether a value is bytes, or an array of them."""
-    return isinstance(type_, Bytes) or (isinstance(type_, Array) and isinstance(type_.element, Int) and type_.element.bits == 8)
 
 
 NAMED = "Enum(s)"

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.conversions import convert
+from rosetta_jit.language.conversions import convert, is_textual
 from rosetta_jit.language.functions.calls import rules_between
-from rosetta_jit.language.functions.texts import is_textual, name_of
+from rosetta_jit.language.functions.texts import name_of
 from rosetta_jit.language.scope import Broken, Scope, Sought, resolve_path
 from rosetta_jit.language.typed import Binary, Convert, Expr, Local, Nearest
 from rosetta_jit.language.units.conversion import in_unit

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rosetta_jit.language.functions.texts import is_textual
+from rosetta_jit.language.conversions import is_textual
 from rosetta_jit.language.limits import MAX_DEFAULT_DEPTH, MAX_DEFAULTS
 from rosetta_jit.language.scope import Message
 from rosetta_jit.language.typed import INT64, Access, Assign, Call, Choice, Const, Default, Expr, FieldStep, Has, LenOf, Place, Rule

@@ -15,9 +15,8 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.arrays.parts import is_reduction
 from rosetta_jit.language.constants import constant_of
-from rosetta_jit.language.conversions import FLOAT64, as_int64, as_single, convert, describe, in_single, is_single
+from rosetta_jit.language.conversions import FLOAT64, as_int64, as_single, convert, describe, in_single, is_single, is_textual
 from rosetta_jit.language.functions.calls import type_call
-from rosetta_jit.language.functions.texts import concatenation, is_textual
 from rosetta_jit.language.functions.user_functions import type_host_call
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.installed import written
@@ -33,12 +32,13 @@ from rosetta_jit.startup.dataclass import replace
 from rosetta_jit.startup.late import Late, late
 
 if TYPE_CHECKING:
-    from rosetta_jit.language.functions import decisions
+    from rosetta_jit.language.functions import decisions, texts
     from rosetta_jit.language.resolve import coerced_values, groups, key_search, list_items, reductions
 else:
     decisions = Late("rosetta_jit.language.functions.decisions")
     coerced_values, groups = late("rosetta_jit.language.resolve", "coerced_values", "groups")
     key_search, list_items, reductions = late("rosetta_jit.language.resolve", "key_search", "list_items", "reductions")
+    texts = Late("rosetta_jit.language.functions.texts")
 
 CONSTANTS = {"pi": math.pi}
 SUMS = frozenset("+-%")
@@ -204,7 +204,7 @@ def _binary(expr: model.Binary, scope: Scope) -> Expr | None:
     if left is None or right is None:
         return None
     if expr.operator == "+" and (is_textual(left.type) or is_textual(right.type)):
-        return concatenation(left, right, expr.span, scope)
+        return texts.concatenation(left, right, expr.span, scope)
     if isinstance(right, Const) and isinstance(right.type, Int | Float) and right.value == 0 and expr.operator in {"/", "%"}:
         scope.problems.append(words.zero_division(right.span))
         return None

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.catalogue import texts
 from rosetta_jit.diagnostics import Diagnostic
-from rosetta_jit.language.conversions import convert, describe, other_way, same, widens, word_for
-from rosetta_jit.language.functions.texts import is_bytes, is_textual
+from rosetta_jit.language.conversions import convert, describe, is_bytes, is_textual, other_way, same, widens, word_for
 from rosetta_jit.language.installed import functions
 from rosetta_jit.language.limits import MAX_TEXT_CASES
 from rosetta_jit.language.scope import Scope

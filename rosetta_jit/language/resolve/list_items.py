@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bind as words
 from rosetta_jit.catalogue import resolve as names
-from rosetta_jit.language.conversions import as_int64, convert, describe
+from rosetta_jit.language.conversions import as_int64, convert, describe, is_textual
 from rosetta_jit.language.functions.decisions import unified
-from rosetta_jit.language.functions.texts import is_textual
 from rosetta_jit.language.limits import MAX_ITEMS
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import BOOL, Access, Const, Expr, Given, IsText, Listed, Unary

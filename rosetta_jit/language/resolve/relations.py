@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import wires as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.arrays.counts import LayoutError
-from rosetta_jit.language.arrays.layouts import view_of
 from rosetta_jit.language.arrays.parts import sources_in, substituted
 from rosetta_jit.language.both_ways.directions import in_each_direction
 from rosetta_jit.language.resolve.expressions import type_expr
@@ -26,9 +25,10 @@ from rosetta_jit.startup.dataclass import replace
 from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
-    from rosetta_jit.language.arrays import element_loops
+    from rosetta_jit.language.arrays import element_loops, layouts
 else:
     element_loops = Late("rosetta_jit.language.arrays.element_loops")
+    layouts = Late("rosetta_jit.language.arrays.layouts")
 
 FIRST = Literal(0)
 
@@ -85,7 +85,7 @@ def _scope(mapping: Mapping, schema: Schema, usable: UsableMappings) -> Scope | 
 def _of_first(expr: Expr) -> Expr:
     """An expression of the elements of arrays, for the first one of each."""
     try:
-        views = {source: view_of(source) for source in sources_in(expr)}
+        views = {source: layouts.view_of(source) for source in sources_in(expr)}
     except LayoutError:
         return expr
     first: dict[Expr, Expr] = {source: element_loops.element_at(view, [FIRST] * len(view.axes)) for source, view in views.items()}

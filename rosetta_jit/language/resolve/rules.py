@@ -18,7 +18,6 @@ from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language import typed
 from rosetta_jit.language.arrays.elementwise import elementwise
 from rosetta_jit.language.conversions import FLOAT64, describe, is_single, same
-from rosetta_jit.language.functions.texts import type_pieces
 from rosetta_jit.language.groups import Group, group_of
 from rosetta_jit.language.limits import MAX_DEFAULTS, MAX_PROBLEMS
 from rosetta_jit.language.places import field_names, places_in
@@ -43,7 +42,7 @@ from rosetta_jit.startup.dataclass import dataclass, field, replace
 from rosetta_jit.startup.late import Late, late
 
 if TYPE_CHECKING:
-    from rosetta_jit.language.functions import decisions
+    from rosetta_jit.language.functions import decisions, texts
     from rosetta_jit.language.resolve import coerced_values, groups, nested, overriding, same_names
     from rosetta_jit.language.resolve import rest as rest_rules
 else:
@@ -51,6 +50,7 @@ else:
     coerced_values, groups = late("rosetta_jit.language.resolve", "coerced_values", "groups")
     overriding, rest_rules, same_names = late("rosetta_jit.language.resolve", "overriding", "rest", "same_names")
     nested = Late("rosetta_jit.language.resolve.nested")
+    texts = Late("rosetta_jit.language.functions.texts")
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,7 +196,7 @@ class _Block:
             case model.When():
                 return self.when(rule, scope)
             case model.Reject(text, span, pieces, written):
-                return typed.Reject(text, span, type_pieces(pieces, scope, type_expr), written=written)
+                return typed.Reject(text, span, texts.type_pieces(pieces, scope, type_expr), written=written)
             case model.Default() if is_of_elements(rule):
                 scope.problems.append(about_rest.elements_in_block(rule.span))
                 return None

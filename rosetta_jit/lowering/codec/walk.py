@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.kernel.nodes import Assign, Binary, Block, Compare, Const, Convert, Expect, Expr, For, If, Let, Local, Switch, While
 from rosetta_jit.kernel.rewrite import names_read
 from rosetta_jit.kernel.terms import add, index, mul
-from rosetta_jit.lowering.codec import counts, leaves
+from rosetta_jit.lowering.codec import leaves
 from rosetta_jit.lowering.codec.ending import refuse_other_length, refuse_tried
 from rosetta_jit.lowering.codec.fields import Elements, Fields, scalar_name
 from rosetta_jit.lowering.limits import MAX_SIZE
@@ -21,9 +21,10 @@ from rosetta_jit.wire import codec as wire
 from rosetta_jit.wire.size import fixed_size, minimum_size
 
 if TYPE_CHECKING:
-    from rosetta_jit.lowering.codec import wire_fields, xcdr1_members, xcdr2_members
+    from rosetta_jit.lowering.codec import counts, wire_fields, xcdr1_members, xcdr2_members
 else:
-    wire_fields, xcdr1_members, xcdr2_members = late("rosetta_jit.lowering.codec", "wire_fields", "xcdr1_members", "xcdr2_members")
+    counts, wire_fields = late("rosetta_jit.lowering.codec", "counts", "wire_fields")
+    xcdr1_members, xcdr2_members = late("rosetta_jit.lowering.codec", "xcdr1_members", "xcdr2_members")
 
 EMPTY_ELEMENTS = 1 << 16
 """How many elements that take no bytes a message may have, whatever its own size."""

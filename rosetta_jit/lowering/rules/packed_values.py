@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from rosetta_jit.kernel.nodes import Compare, Const, Expr, If, Local, Place
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
-from rosetta_jit.language.functions.texts import is_textual
+from rosetta_jit.language.conversions import is_textual
 from rosetta_jit.language.walk import expressions_of, operands
 from rosetta_jit.lowering.rules.holder_side import HolderSide
 from rosetta_jit.lowering.rules.scalars import constant, scalar_type

@@ -9,7 +9,7 @@ from functools import cache, partial
 from typing import Any, cast
 
 from rosetta_jit.errors import warn
-from rosetta_jit.runtime.attributes.groups import END, GROUPS, Group, group_of, part_of, symbols
+from rosetta_jit.runtime.attributes.groups import END, GROUPS, Group, group_of, symbols
 from rosetta_jit.runtime.cache.texts import kept, known
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.cells import SCALARS
@@ -81,6 +81,8 @@ class Accessors:
 
     def __init__(self) -> None:
         self._loaded: list[Library] = []
+        self._coded = set[str]()
+        self._awaited: dict[str, Callable[[int], None]] = {}
         self._looked_for = set[Group]()
         self._direct: dict[str, int] = {}
         self._first_end = 0
@@ -95,6 +97,19 @@ class Accessors:
             self.make(group_of(symbol))
         return self._direct.get(symbol) or (self._first_end if symbol == END else self._stubs[symbol])
 
+    def has(self, symbol: str) -> bool:
+        """Whether there is code for an accessor, here or in the cache."""
+        if symbol not in self._coded:
+            self._look_for(symbol)
+        return symbol in self._coded
+
+    def when_there(self, symbol: str, do: Callable[[int], None]) -> None:
+        """Give the address of an accessor's code to a function as soon as there is some; the last one that was asked for is called."""
+        if self.has(symbol):
+            do(self[symbol])
+        else:
+            self._awaited[symbol] = do
+
     def _look_for(self, symbol: str) -> None:
         """Take the groups that have a symbol from the cache, which is asked once for each."""
         for group in GROUPS:
@@ -108,13 +123,14 @@ class Accessors:
         """Compile a group. Threads may do so at once: the code of each of them is as good, and stays."""
 
         def compiled() -> bytes:
-            return assembled(part_of(text(), group.symbols), group.symbols, hurried=group.hurried)
+            return assembled(text(), group.symbols, hurried=group.hurried)
 
         self._take(group, kept("accessors", _name(group), compiled))
 
     def _take(self, group: Group, image: bytes) -> None:
         library = native.load(image, group.symbols)
         self._loaded.append(library)
+        self._coded.update(group.symbols)
         for symbol in group.symbols:
             if symbol == END:
                 self._first_end = self._first_end or library[symbol]
@@ -122,6 +138,8 @@ class Accessors:
                 self._stubs.bind(symbol, library[symbol])
             if not group.hurried:
                 self._direct[symbol] = library[symbol]
+        for symbol in self._awaited.keys() & set(group.symbols):
+            self._awaited.pop(symbol)(self[symbol])
 
 
 def _name(group: Group) -> str:
@@ -145,6 +163,22 @@ def library() -> Accessors | Library | None:
         return None
     ctypes.pythonapi.Py_IncRef(ctypes.py_object(code))  # objects that end when Python does still call the code
     return code
+
+
+def is_compiled(symbol: str) -> bool:
+    """Whether an accessor has code; where not, what is done a few times takes less time in Python than to compile it."""
+    code = library()
+    return code is not None and (isinstance(code, Library) or code.has(symbol))
+
+
+def when_there(symbol: str, do: Callable[[int], None]) -> None:
+    """Give the address of an accessor's code to a function: now, or when it is compiled."""
+    code = library()
+    assert code is not None, "there are accessors"
+    if isinstance(code, Library):
+        do(code[symbol])
+    else:
+        code.when_there(symbol, do)
 
 
 def make_ready() -> None:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Sequence
-from functools import cache
+from collections.abc import Iterator
 
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.startup.dataclass import dataclass
@@ -49,30 +47,6 @@ GROUPS = (
 def group_of(symbol: str) -> Group:
     """The first group that has a symbol."""
     return next(group for group in GROUPS if symbol in group.symbols)
-
-
-def part_of(text: str, symbols: Sequence[str]) -> str:
-    """Of an LLVM module the functions that some symbols need, and all that is no function."""
-    bodies, declarations = _functions(text)
-    needed, pending = dict[str, None](), list(symbols)
-    while pending:
-        name = pending.pop()
-        if name in bodies and name not in needed:
-            needed[name] = None
-            pending += re.findall(r"@([\w.]+)", bodies[name])
-    return "\n".join([declarations, *(bodies[name] for name in bodies if name in needed)])
-
-
-@cache
-def _functions(text: str) -> tuple[dict[str, str], str]:
-    """The functions of a module by their names, and all else."""
-    declarations, *definitions = text.split("\ndefine ")
-    bodies = dict[str, str]()
-    for each in definitions:
-        body, end, behind = each.partition("\n}\n")
-        bodies[body[body.index("@") + 1 : body.index("(")]] = f"define {body}{end}"
-        declarations += f"\n{behind}"
-    return bodies, declarations
 
 
 def symbols() -> Iterator[str]:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import ctypes
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
+from weakref import WeakSet
 
 from rosetta_jit.runtime import type_specs
-from rosetta_jit.runtime.attributes.code import HEAP_TYPE_BYTES, functions, library
+from rosetta_jit.runtime.attributes.code import HEAP_TYPE_BYTES, functions, library, when_there
+from rosetta_jit.runtime.attributes.groups import END
 from rosetta_jit.runtime.callable import is_native, putting
 
 if TYPE_CHECKING:
@@ -87,8 +89,18 @@ def make_quickly(holder_type: type) -> None:
     code = library()
     assert code is not None, "there is code for it"
     if not holder_type.__dictoffset__:  # whose base, which is not ours, has forgotten its slots: CPython lets go of the dict
-        type_specs.write_word(id(holder_type) + DEALLOC, code["end_holder"])
+        _ENDED_BY_PYTHON.add(holder_type)
+        when_there(END, _let_end)
     type_specs.write_word(id(holder_type) + CLASS_CALL, code["call_class"])
+
+
+_ENDED_BY_PYTHON = WeakSet[type]()
+"""Holder classes whose objects CPython ends until there is code for it."""
+
+
+def _let_end(code: int) -> None:
+    while _ENDED_BY_PYTHON:
+        type_specs.write_word(id(_ENDED_BY_PYTHON.pop()) + DEALLOC, code)
 
 
 def set_recipe(holder_type: type, recipe: tuple[Any, ...] | None) -> None:

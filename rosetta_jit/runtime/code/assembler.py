@@ -8,6 +8,7 @@ from functools import cache
 from llvmlite import binding
 from llvmlite.binding.newpassmanagers import NewPassManager
 
+from rosetta_jit.runtime.code.parts import part_of
 from rosetta_jit.runtime.code.prelink import prelinked
 
 
@@ -73,9 +74,11 @@ def run_few_passes(module: binding.ModuleRef, machine: binding.TargetMachine, *,
 def assembled(text: str, exported: Sequence[str], *, hurried: bool = False) -> bytes:
     """Code of a module that a person wrote, for `runtime.code.native`: it says itself what is inlined, and needs few passes.
 
+    Of the module it has what is ``exported``, and what that needs.
+
     ``hurried`` is for what is called once or twice: nothing is inlined.
     """
-    machine, module = target_machine(hurried=hurried), linked([text])
+    machine, module = target_machine(hurried=hurried), linked([part_of(text, exported)])
     make_private(module, exported)
     if not hurried:
         run_few_passes(module, machine)
@@ -96,8 +99,7 @@ def object_of(texts: Iterable[str], exported: Sequence[str], *, thorough: bool =
 
 
 def shortened(text: str, exported: Sequence[str]) -> str:
-    """A module of which a few passes have left what is exported, as text."""
-    machine, module = target_machine(), linked([text])
-    make_private(module, exported)
+    """A module that a person wrote, with all private but what is exported, after a few passes as text."""
+    machine, module = target_machine(), linked([part_of(text, exported)])
     run_few_passes(module, machine)
     return str(module)

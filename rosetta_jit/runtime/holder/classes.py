@@ -13,6 +13,7 @@ from rosetta_jit.model.layout import Layout
 from rosetta_jit.runtime.attributes.code import functions
 from rosetta_jit.runtime.attributes.makers import call_as_any, class_of_holder_classes, let_call
 from rosetta_jit.runtime.attributes.names import take_names
+from rosetta_jit.runtime.holder.first_holders import begin_in_python
 from rosetta_jit.runtime.holder.message import Access, Family, Message, View, in_row, place
 from rosetta_jit.runtime.holder.record import Blob, Entry, Items, Numbers, Record, Text
 from rosetta_jit.runtime.lanes import Lanes
@@ -85,6 +86,7 @@ class HolderFamily(Family, Protocol):
     @property
     def givers(self) -> Any: ...
     def shown(self, record: Record) -> frozenset[str]: ...
+    def is_worth_compiling(self) -> bool: ...
     def recipe(self, plan: Plan) -> tuple[Any, ...] | None: ...
     def plan_of(self, rows: int) -> Plan: ...
     def offer(self) -> None: ...
@@ -118,6 +120,8 @@ class Holder(Message, metaclass=HolderClass):
     def lay_out_(self, plan: Plan) -> bool:
         """Give the holder lanes, unless it has some."""
         family = self.family_
+        if not family.is_worth_compiling():
+            return begin_in_python(self, Lanes(plan, family.array_type), family.root)
         recipe = family.recipe(plan)
         if recipe is not None:
             equip = functions()["equip"]

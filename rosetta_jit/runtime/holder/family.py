@@ -16,7 +16,7 @@ from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import Plain, from_plain, to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct, Type
 from rosetta_jit.runtime.attributes import descriptors
-from rosetta_jit.runtime.attributes.code import functions, library
+from rosetta_jit.runtime.attributes.code import functions, is_compiled, library
 from rosetta_jit.runtime.attributes.field_table import KeptFields, OfSequences
 from rosetta_jit.runtime.attributes.makers import make_quickly, set_recipe
 from rosetta_jit.runtime.attributes.methods import put
@@ -27,7 +27,7 @@ from rosetta_jit.runtime.holder.record import Entry, Record
 from rosetta_jit.runtime.holder.serialising import building_method, serialising_methods
 from rosetta_jit.runtime.holder.tree import Tree, written_within
 from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes
-from rosetta_jit.runtime.limits import MAX_RECIPES
+from rosetta_jit.runtime.limits import FEW_HOLDERS, MAX_RECIPES
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.looks.described import Constructor, Described
 from rosetta_jit.runtime.memory_plan import Plan, plan
@@ -68,6 +68,7 @@ class Family:
         self._views: dict[str, type[View]] = {}
         self._of_structs: dict[str, type[Holder]] = {}
         self._shown_of: dict[int, frozenset[str]] = {}
+        self._made_in_python = 0
         self._recipes: dict[int, tuple[Any, ...]] = {}
         self.latest: tuple[Any, Any, Any] = None, None, None
         self._of_rows = self.plan
@@ -246,6 +247,13 @@ class Family:
         if found is None:
             found = self._shown_of[id(record)] = frozenset(_shown(record, self.manners.base))
         return found
+
+    def is_worth_compiling(self) -> bool:
+        """Whether code for what makes holders is to be compiled, if there is none: the first few are made sooner in Python."""
+        if library() is None or is_compiled("equip"):
+            return True
+        self._made_in_python += 1
+        return self._made_in_python > FEW_HOLDERS
 
     def recipe(self, plan: Plan) -> tuple[Any, ...] | None:
         """What compiled code needs to make a holder of a plan; None where there is no such code."""

@@ -40,7 +40,7 @@ else:
     Base = message_base()
 
 _Message = TypeVar("_Message", bound="Message")
-_FIRST_LANE = 8 * lane_word(0, ADDRESS)
+FIRST_LANE = 8 * lane_word(0, ADDRESS)
 
 
 Getter = Callable[[Any], Any]
@@ -221,15 +221,15 @@ def write_field(name: str) -> Setter:
 def in_row(message: Message, lanes: Lanes, access: Access, row: int) -> bool:
     """Make a new message show a row of lane 0; False if it shows something already."""
     if access.bind is not None:
-        return access.bind(message, lanes, access, None, None, lanes.address, row, ALWAYS, _FIRST_LANE, access.table, row, 0)
-    if _shows_something(message):
+        return access.bind(message, lanes, access, None, None, lanes.address, row, ALWAYS, FIRST_LANE, access.table, row, 0)
+    if shows_something(message):
         return False
     message.lanes_, message.access_, message.parent_, message.index_ = lanes, access, None, row
     bind_state(message, lanes.address)
     return True
 
 
-def _shows_something(message: Message) -> bool:
+def shows_something(message: Message) -> bool:
     """Whether a message has lanes. A user's class may give any attribute that is missing (`__getattr__`), so the slot itself is read."""
     try:
         _LANES_SLOT.__get__(message)
@@ -245,7 +245,7 @@ def recipe(plan: Plan, array_type: type, access: Access, first: Plan | None = No
     """
     begins = first or plan
     slots = (slot_offset(vars(Lanes)[name]) for name in ("arena", "plan", "array_type", "address", "is_filled", "rows", "spares"))
-    words = struct.pack("=11q", plan.size_bytes + ALIGNMENT, plan.rows, _FIRST_LANE, access.table, *slots)
+    words = struct.pack("=11q", plan.size_bytes + ALIGNMENT, plan.rows, FIRST_LANE, access.table, *slots)
     spares = [None] * MAX_ENDED if plan.fresh and plan.size_bytes <= MAX_ENDED_BYTES else None
     return Lanes, plan, array_type, access, begins.begin, plan.places, words, begins.fresh, spares
 
