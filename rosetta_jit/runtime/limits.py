@@ -26,7 +26,7 @@ MAX_CLASSES = 64
 """classes of objects of which it is remembered how they are read: a program that makes classes all the time does not keep them alive"""
 
 FEW_HOLDERS = 32
-"""How many holders of a type are made in Python before code for that is compiled, which takes as long as to make some hundred."""
+"""holders of a type that are made in Python before code for that is compiled, which takes as long as to make some hundred"""
 
 MAX_RECIPES = 4
 """layouts of which a class keeps what makes holders"""
