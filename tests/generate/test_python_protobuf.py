@@ -38,7 +38,8 @@ def test_bools_behind_tags_are_one_of_two_texts():
         assert unit.encode(unit.M(**values)) == bytes(encode(encode.holder_type.from_dict(values)))
 
 
-def test_messages_that_contain_their_own_type_are_written_by_functions():
+@pytest.mark.parametrize("type_", [pytest.param("M", marks=pytest.mark.campaign), "Root"])
+def test_messages_that_contain_their_own_type_are_written_by_functions(type_):
     """As one, as a list, in a oneof, in a map, in a message between, in a group of their own, and with fields of other lengths."""
     schema = """
         message M { string name = 1; sint32 n = 2; repeated M many = 3; M one = 4; oneof which { M first = 5; bool second = 6; }
@@ -52,14 +53,14 @@ def test_messages_that_contain_their_own_type_are_written_by_functions():
     other = {"others": [{"flags": [True, False]}, {"back": {"n": 7}}], "back": leaf}
     tree = {"many": [leaf, {"one": leaf}, {"many": [leaf] * 9}], "one": {"one": {}}, "first": leaf, "between": between}
     values = [{**tree, "other": other, "named": {"a": leaf, "b": {"second": True}}}, leaf, {}]
-    for type_, cases in (("M", values), ("Root", [{"tree": each, "other": other, "n": 4} for each in values])):
-        request = type_request("decode", f"t.{type_}", protobuf(schema))
-        text = generated(request, "python", BOTH, "unit")["unit.py"]
-        assert "_encoded_" in text
-        assert "_size_1" not in text
-        programs = rj.Decoder.of(f"t.{type_}", **protobuf(schema)), rj.Encoder.of(f"t.{type_}", **protobuf(schema))
-        messages = [bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in cases]
-        answers_as_the_library(module(request), programs, harmed(messages, 12, type_))
+    cases = values if type_ == "M" else [{"tree": each, "other": other, "n": 4} for each in values]
+    request = type_request("decode", f"t.{type_}", protobuf(schema))
+    text = generated(request, "python", BOTH, "unit")["unit.py"]
+    assert "_encoded_" in text
+    assert "_size_1" not in text
+    programs = rj.Decoder.of(f"t.{type_}", **protobuf(schema)), rj.Encoder.of(f"t.{type_}", **protobuf(schema))
+    messages = [bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in cases]
+    answers_as_the_library(module(request), programs, harmed(messages, 12, type_))
 
 
 @pytest.mark.parametrize("type_", ["sint32", "sint64", "int32", "int64", "uint64"])

@@ -76,13 +76,13 @@ def given(name: str) -> list[bytes]:
 
 
 @cpp.needs_cpp
-@pytest.mark.parametrize("name", SCHEMAS)
+@pytest.mark.parametrize("name", ["one", pytest.param("several", marks=pytest.mark.campaign)])
 def test_classes_of_our_own(name, tmp_path):
     compare(tmp_path, name, Wishes())
 
 
 @cpp.needs_cpp
-@pytest.mark.parametrize("name", SCHEMAS)
+@pytest.mark.parametrize("name", [pytest.param("one", marks=pytest.mark.campaign), "several"])
 def test_classes_of_protoc(name, tmp_path):
     native.needs_protoc()
     (tmp_path / "t.proto").write_text(SCHEMAS[name][0])
