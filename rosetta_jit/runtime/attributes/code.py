@@ -81,7 +81,6 @@ class Accessors:
 
     def __init__(self) -> None:
         self._loaded: list[Library] = []
-        self._coded = set[str]()
         self._awaited: dict[str, Callable[[int], None]] = {}
         self._looked_for = set[Group]()
         self._direct: dict[str, int] = {}
@@ -99,16 +98,25 @@ class Accessors:
 
     def has(self, symbol: str) -> bool:
         """Whether there is code for an accessor, here or in the cache."""
-        if symbol not in self._coded:
+        if not self._is_loaded(symbol):
             self._look_for(symbol)
-        return symbol in self._coded
+        return self._is_loaded(symbol)
+
+    def _is_loaded(self, symbol: str) -> bool:
+        return any(symbol in library.addresses for library in tuple(self._loaded))
 
     def when_there(self, symbol: str, do: Callable[[int], None]) -> None:
-        """Give the address of an accessor's code to a function as soon as there is some; the last one that was asked for is called."""
+        """Give the address of an accessor's code to a function as soon as there is some, perhaps more than once; of several functions for
+        one accessor, to the last.
+        """
+        self._awaited[symbol] = do  # before it is asked: another thread may be compiling it
         if self.has(symbol):
+            self._tell(symbol)
+
+    def _tell(self, symbol: str) -> None:
+        do = self._awaited.pop(symbol, None)
+        if do is not None:
             do(self[symbol])
-        else:
-            self._awaited[symbol] = do
 
     def _look_for(self, symbol: str) -> None:
         """Take the groups that have a symbol from the cache, which is asked once for each."""
@@ -130,7 +138,6 @@ class Accessors:
     def _take(self, group: Group, image: bytes) -> None:
         library = native.load(image, group.symbols)
         self._loaded.append(library)
-        self._coded.update(group.symbols)
         for symbol in group.symbols:
             if symbol == END:
                 self._first_end = self._first_end or library[symbol]
@@ -138,8 +145,8 @@ class Accessors:
                 self._stubs.bind(symbol, library[symbol])
             if not group.hurried:
                 self._direct[symbol] = library[symbol]
-        for symbol in self._awaited.keys() & set(group.symbols):
-            self._awaited.pop(symbol)(self[symbol])
+        for symbol in group.symbols:
+            self._tell(symbol)
 
 
 def _name(group: Group) -> str:

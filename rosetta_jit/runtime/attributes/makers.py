@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from contextlib import suppress
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakSet
@@ -99,8 +100,9 @@ _ENDED_BY_PYTHON = WeakSet[type]()
 
 
 def _let_end(code: int) -> None:
-    while _ENDED_BY_PYTHON:
-        type_specs.write_word(id(_ENDED_BY_PYTHON.pop()) + DEALLOC, code)
+    with suppress(KeyError):  # none is left: other threads take some, too, and classes end
+        while True:
+            type_specs.write_word(id(_ENDED_BY_PYTHON.pop()) + DEALLOC, code)
 
 
 def set_recipe(holder_type: type, recipe: tuple[Any, ...] | None) -> None:
