@@ -113,7 +113,7 @@ MAY_IMPORT = {
     | {"model", "parsing"}
     | {f"frameworks.protobuf.{module}" for module in ("diagnostics", "edition_diagnostics", "file_diagnostics", "json_names", "limits")},
     "frameworks.yarp": HOLDS | {"runtime.looks"},
-    "runtime": HOLDERS | RUNTIME - {"runtime.functions"},
+    "runtime": HOLDERS | {"kernel.entries"} | RUNTIME - {"runtime.functions"},
     "runtime.holder": HOLDERS
     | {"runtime.holder.objects", "runtime.attributes", "runtime.looks", "runtime.limits"}
     | {

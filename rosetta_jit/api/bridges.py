@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypedDict, Unpack, cast
 
 from rosetta_jit.api.loading import answer, interpreted_kernel, library, sites_of
 from rosetta_jit.api.options import Options, request_of, type_request
-from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import from_plain
 from rosetta_jit.pipeline.request import BridgeRequest, Request, ends
@@ -190,7 +189,7 @@ def _build(request: BridgeRequest) -> BridgeBuild | TranscodingBuild:
 
 def _linked(header: Mapping[str, Any], image: bytes) -> LoadedBridge:
     """A bridge from its object code."""
-    code = library(image, SYMBOLS["bridge"], header["host"])
+    code = library(image, header)
     kernels = run.native_run(code["kernel"]), run.native_run(code["size"]), run.native_run(code["write"])
     return _loaded(header, kernels, code)
 

@@ -8,13 +8,15 @@ from functools import lru_cache, partial
 from typing import Any
 
 from rosetta_jit.errors import CacheWarning, warn
-from rosetta_jit.kernel.entries import HOST, ON_DEMAND
+from rosetta_jit.kernel.entries import HOST, ON_DEMAND, REST, SYMBOLS
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.cache.kernels import Cache
 from rosetta_jit.runtime.cache.names import entry_name, request_name
+from rosetta_jit.runtime.cache.texts import known
 from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.allowed import ForeignCodeError
-from rosetta_jit.startup.garbage import seldom_collected
+from rosetta_jit.runtime.rest import Rest
+from rosetta_jit.startup.garbage import imported, seldom_collected
 
 RECENT = 8
 """How many programs of the cache are kept loaded though nobody uses them, for who makes the same one again and again."""
@@ -117,15 +119,46 @@ def _shared(name: str, cache: Cache, link: Callable[[Mapping[str, Any], bytes], 
         raise KeyError(name) from error
 
 
-def library(image: bytes, symbols: Sequence[str], called: Sequence[str], *, leaves_rare_of: str = "") -> native.Library:
-    """The code, with the functions of ours that it calls, and the place for another program if the one so named leaves it rare messages."""
-    wanted = (*symbols, HOST) if called else symbols
+def library(image: bytes, header: Mapping[str, Any]) -> native.Library:
+    """The code of a program, with the functions of ours that it calls, and with the places for what is made when it is needed.
+
+    Those are the rest of its calls, and the program to which it leaves rare messages.
+    """
+    called, wanted, rest = header["host"], SYMBOLS[header["entry"]], header.get("rest")
+    later = None
+    if rest is not None and native.is_prelinked(image):
+        wanted = (*(each for each in wanted if each not in rest["symbols"]), REST)
+        later = partial(_rest, rest)
     prepare = partial(_host_functions, called) if called else len
-    if not leaves_rare_of:
-        return native.load(image, wanted, prepare)
+    wanted = (*wanted, HOST) if called else wanted
+    if not header.get("rare"):
+        return native.load(image, wanted, prepare, later=later)
     from rosetta_jit.runtime.on_demand import Place
 
-    return native.load(image, (*wanted, ON_DEMAND), lambda addresses: Place(addresses[ON_DEMAND], prepare(addresses)), leaves_rare_of)
+    def prepared(addresses: Mapping[str, int]) -> Place:
+        return Place(addresses[ON_DEMAND], prepare(addresses))
+
+    return native.load(image, (*wanted, ON_DEMAND), prepared, header["name"], later=later)
+
+
+def _rest(rest: Mapping[str, Any], addresses: Mapping[str, int]) -> Callable[[], native.Library]:
+    """What makes the rest of a program's calls."""
+    return Rest(addresses, tuple(rest["symbols"]), partial(_compiled_rest, rest)).made
+
+
+def _compiled_rest(rest: Mapping[str, Any]) -> bytes:
+    """The code of the rest of a program's calls: the cache may have it."""
+    from rosetta_jit.backends.entry.texts import EntryText
+
+    text = EntryText.of_plain(rest).alone
+    code = known(text)
+    if code is not None:
+        return code
+    with seldom_collected():
+        imported("rosetta_jit.backends.entry.link")
+        from rosetta_jit.backends.entry.link import compile_rest
+
+        return compile_rest(text)
 
 
 def _host_functions(called: Sequence[str], addresses: Mapping[str, int]) -> object:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Self, Unpack
 from rosetta_jit.api.loading import answer, interpreted_kernel, is_as_before, library, sites_of
 from rosetta_jit.api.options import Options, request_of, type_request
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref
 from rosetta_jit.pipeline.request import Request
@@ -210,7 +209,7 @@ def _loaded(request: Request) -> Loaded:
 def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
     """A program from its object code."""
     holder_type = _holder_type(header)
-    code = library(image, SYMBOLS[header["entry"]], header["host"], leaves_rare_of=header["name"] if header["rare"] else "")
+    code = library(image, header)
     size = run.native_run(code["size"]) if header["entry"] == "encode" else None
     return Loaded(
         holder_type=holder_type,

@@ -17,6 +17,7 @@ from rosetta_jit.errors import ReportError
 from rosetta_jit.pipeline.request import Direction, Request, plain_parameters
 from rosetta_jit.runtime.attributes.code import make_ready
 from rosetta_jit.runtime.decoder import complete
+from rosetta_jit.runtime.program import make_rest
 from rosetta_jit.startup.dataclass import dataclass, replace
 
 SUFFIX = ".mapping"
@@ -113,6 +114,7 @@ def _made(request: Request, *, usual: bool) -> tuple[Warmed, ...]:
     started = time.perf_counter()
     try:
         program = program_of(request)
+        make_rest(program)
         if request.direction == "decode" and not usual:
             complete(program)
     except ReportError as error:

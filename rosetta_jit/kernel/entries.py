@@ -14,5 +14,12 @@ SYMBOLS: dict[EntryName, tuple[str, ...]] = {
 }
 """By entry, what the object code defines for others; everything else in it is private."""
 
-HOST, ON_DEMAND = "host", "on_demand"
-"""What it defines besides, where it has that: the table of the host's functions, and the place for a kernel that is made on demand."""
+HOST, ON_DEMAND, REST = "host", "on_demand", "rest"
+"""What it defines besides, where it has that: the table of the host's functions, and the places for a kernel that is made on demand, and
+for the rest of the calls."""
+
+ANY_CALL = "any_call"
+"""The first function of the rest, which may be code of its own (`backends.entry.texts`): what the usual call leaves to it."""
+
+LATER = ("many", "sizes")
+"""What the rest has besides."""

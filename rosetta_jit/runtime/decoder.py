@@ -273,6 +273,8 @@ class DecoderBase(Program):
         message: Any = arguments[0]
         if len(arguments) == 2 and is_foreign(arguments[1]):
             return self._into_foreign(message, arguments[1])
+        if len(arguments) == 2 or type(message) is not bytes:
+            self._need_rest()
         if len(arguments) == 1 and self._context[1][THREAD] != get_ident():
             return self(message) if self._becomes_mine() else self(message, self._holder_of_thread())
         holder = self._holder if len(arguments) == 1 else self._checked(arguments[1])

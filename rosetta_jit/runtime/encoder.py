@@ -228,6 +228,8 @@ class EncoderBase(Program):
         if self._is_to_be_taken(arguments[0]):
             return self._call_with_foreign(*arguments)
         holder, target = self._checked(arguments[0]), _target(*arguments[1:])
+        if target is not None:
+            self._need_rest()
         with holder.lanes_ as lanes, self._numbered(lanes):
             self._make_usable(holder)
             return self._written_row(lanes, 0, target)
@@ -264,6 +266,7 @@ class EncoderBase(Program):
         if len(self._handed) < MAX_CLASSES:
             from rosetta_jit.runtime.attributes.handing import caller_of
 
+            self._need_rest()
             words = np.array([id(object_type), id(quick), caller_of(quick)], np.int64)
             self._handed.append((words, object_type, quick))  # for good: another thread may be just about to use them
             self._context[1][OTHERS] = words.ctypes.data

@@ -288,6 +288,12 @@ class Program(ProgramBase):
         """The compiled `many`, which takes addresses; None where there is no code."""
         return None if self._loaded.library is None else MANY(self._loaded.library["many"])
 
+    def _need_rest(self) -> None:
+        """Have the rest of the program's calls compiled, if they are not, for calls that will come again."""
+        library = self._loaded.library
+        if library is not None and library.later is not None:
+            library.later()
+
     def _is_plain(self, encodings: frozenset[str | None]) -> bool:  # noqa: ARG002  whatever they are
         """Whether its bytes are those of its holders in one of some encodings, with nothing mapped. Who makes programs knows that."""
         return False
@@ -344,3 +350,8 @@ def wires_of(program: Program) -> tuple[str, ...]:
 def shared_of(program: Program) -> tuple[Registers | None, Holder, dict[str, Any]]:
     """What programs for several wires have together: registers, the own holder, and which threads have which holder."""
     return program._shared()  # noqa: SLF001 # pyright: ignore[reportPrivateUsage]
+
+
+def make_rest(program: Program) -> None:
+    """Have the rest of a program's calls compiled now."""
+    program._need_rest()  # noqa: SLF001 # pyright: ignore[reportPrivateUsage]

@@ -94,6 +94,7 @@ class Values:
 decode, encode = of(rj.Decoder), of(rj.Encoder)
 encode(Values())
 encode(Values())
+decode(message(3), decode.new())  # from now on, the compiled call takes holders
 programs, calls = [decode, encode], [decode.builtin, encode.builtin, decode.into]
 for program in programs:
     if sys.argv[1] == "replaced":

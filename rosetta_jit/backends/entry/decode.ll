@@ -5,8 +5,6 @@
 ; one thread, and the slow path has one for each other thread. What a borrowing decoder does besides is `retain`. Where the kernel's first body
 ; alone is part of this function, the message that it leaves to the next one is `call_of_next`'s (`next_body.ll`): a function that calls nothing
 ; but at its very end needs no stack.
-declare ptr @any_call(ptr, ptr, i64, ptr)
-
 define ptr @call(ptr %self, ptr %args, i64 %nargsf, ptr %names) {
   %alone = call i1 @is_alone(i64 %nargsf, ptr %names)
   br i1 %alone, label %look, label %other, !prof !1

@@ -1,7 +1,5 @@
 ; encode(holder) -> bytes, of a holder that is of exactly the program's type and valid. The size kernel gives the exact size; an encoder that ends
 ; elsewhere has failed. Whatever else is called is in `any_encode.ll`.
-declare ptr @any_call(ptr, ptr, i64, ptr)
-
 define ptr @call(ptr %self, ptr %args, i64 %nargsf, ptr %names) {
   %alone = call i1 @is_alone(i64 %nargsf, ptr %names)
   br i1 %alone, label %holder, label %other, !prof !1

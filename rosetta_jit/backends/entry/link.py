@@ -7,30 +7,30 @@ The object exports, beside each kernel as `kernel` (and `size`, of an encoder, a
     bridge            call many
 
 A program is made of two modules. *Its own* has the kernels, and, where the first of them is short, the usual call, so that LLVM puts the
-kernel into it; a bridge's has all. *The surroundings* have the rest, which is the same for many programs: compiled once a machine, it is
-kept in the cache. So are functions that kernels share: those of `llvm.support`, and common routines (`llvm.routines`).
+kernel into it; a bridge's has all. *The surroundings* have the other calls (`entry.texts`), which are the same for many programs: compiled
+once a machine, they are kept in the cache. So are functions that kernels share: those of `llvm.support`, and common routines
+(`llvm.routines`). The rest of the calls may be left out, and compiled by itself when it is asked for.
 """
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache, lru_cache
-from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING, Unpack
 
 from llvmlite import binding, ir
 
 from rosetta_jit.backends.entry.program import NEXT_CALL, Options, Program
+from rosetta_jit.backends.entry.texts import next_text, rest_text, template, usual_text
 from rosetta_jit.backends.llvm import definitions, support
 from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.backends.llvm.routines import common_routine
-from rosetta_jit.kernel.entries import SYMBOLS, EntryName
+from rosetta_jit.kernel.entries import ANY_CALL, LATER, REST, SYMBOLS, EntryName
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.state import ERROR_SITE, USED, lane_word, state_words
-from rosetta_jit.kernel.traits import has_loops_for_vectors, is_moderate, leaves_something, our_functions
+from rosetta_jit.kernel.traits import has_loops_for_vectors, is_moderate, our_functions
 from rosetta_jit.runtime.cache.texts import kept
 from rosetta_jit.runtime.code.assembler import linked, make_private, object_of, run_few_passes, run_passes, shortened, target_machine
 from rosetta_jit.runtime.code.parts import part_of
@@ -43,42 +43,11 @@ if TYPE_CHECKING:
 else:
     host_table, references = late("rosetta_jit.backends.entry", "host_table", "references")
 
-NEW_BYTES = "new_bytes.ll"
-"""What an entry that writes messages has besides."""
-
-USUAL: dict[EntryName, tuple[str, ...]] = {
-    "decode": ("owning.ll", "finish.ll", "decode.ll"),
-    "borrow": ("borrowing.ll", "finish.ll", "decode.ll"),
-    "encode": ("usable.ll", "measured.ll", NEW_BYTES, "encode.ll"),
-    "bridge": (NEW_BYTES, "bridge.ll"),
-}
-"""The usual call."""
-
-REST: dict[EntryName, tuple[str, ...]] = {
-    "decode": ("any_decode.ll", "unmeasured.ll", "many.ll"),
-    "borrow": ("borrowing.ll", "any_borrow.ll", "unmeasured.ll", "many.ll"),
-    "encode": ("usable.ll", "measured.ll", "unmeasured.ll", "any_encode.ll", "many.ll", "sizes.ll"),
-    "bridge": (),
-}
-"""Whatever else is called."""
-
-NEXT: dict[EntryName, tuple[str, ...]] = {
-    "decode": ("owning.ll", "finish.ll", "arguments.ll", "next_body.ll"),
-    "borrow": ("finish.ll", "arguments.ll", "next_body.ll"),
-}
-"""What goes on with a message that the kernel's first body has left, where that alone is a part of the usual call."""
-
-ALONE = ("any_decode.ll",)
-"""What is left to call of a decoder whose loop over many messages stands beside its kernel."""
-
 FUNCTIONS = ("kernel", "size", "write")
 """The names of a program's kernels: what decodes or encodes; to encode, what measures; of a bridge, what encodes what was decoded."""
 
 MAX_SHARED = 128
 """Object files of shared functions that a process remembers."""
-
-REST_SYMBOLS = ("any_call", NEXT_CALL)
-"""What the usual call leaves to others."""
 
 
 def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:
@@ -86,32 +55,54 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpa
 
     ``kernels`` are verified: one, or to encode the encoder and its size kernel; of a bridge, the decoder, the size kernel and the encoder.
     """
-    if not is_prelinking():
-        return object_file(kernels, entry, **options)
-    program = Program(kernels, entry, options)
-    machine = target_machine(hurried=program.is_vast)
-    module = _own(program, machine)
-    images = machine.emit_object(module), *_surroundings(module, program)
-    return prelinked(*images, gives=program.exported) or object_file(kernels, entry, **options)
+    return code_of(Program(kernels, entry, options))
+
+
+def code_of(program: Program) -> bytes:
+    """The same of a program."""
+    if is_prelinking():
+        machine = target_machine(hurried=program.is_vast)
+        module = _own(program, machine)
+        code = prelinked(machine.emit_object(module), *_surroundings(module, program), gives=program.exported)
+        if code is not None:
+            return code
+    return object_file(program.kernels, program.entry, **program.options)
 
 
 def object_file(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:
-    """The same as one object file, which only a linker can load."""
-    program = Program(kernels, entry, options)
+    """The same as one object file, which only a linker can load; it has the rest."""
+    program = _whole(kernels, entry, options)
     machine = target_machine(hurried=program.is_vast)
     return machine.emit_object(_optimised(program, machine))
 
 
 def llvm_text(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> str:
     """The optimised LLVM module as text."""
-    return str(_optimised(Program(kernels, entry, options), target_machine()))
+    return str(_optimised(_whole(kernels, entry, options), target_machine()))
 
 
 def assembly(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> str:
     """The machine code as assembler text."""
-    program = Program(kernels, entry, options)
+    program = _whole(kernels, entry, options)
     machine = target_machine(hurried=program.is_vast)
     return machine.emit_assembly(_optimised(program, machine))
+
+
+def compile_rest(text: str) -> bytes:
+    """Code of the rest of programs, from its text: prelinked, it wants their kernels."""
+    exported = (ANY_CALL, *LATER)
+
+    def compiled() -> bytes:
+        image = prelinked(object_of([part_of(text, exported)], exported, thorough=False))
+        assert image is not None, "a program leaves it only where code is prelinked"
+        return image
+
+    return kept("rest", text, compiled)
+
+
+def _whole(kernels: Sequence[Kernel], entry: EntryName, options: Options) -> Program:
+    """A program in one piece."""
+    return Program(kernels, entry, {**options, "leaves_rest": False})
 
 
 def _optimised(program: Program, machine: binding.TargetMachine) -> binding.ModuleRef:
@@ -173,21 +164,16 @@ def _own_parts(program: Program, *, whole: bool) -> Iterator[str]:
     if program.entry == "bridge":
         yield references.references_text(options.get("references", ()))
     if program.is_inside:
-        usual = (*USUAL[program.entry], "arguments.ll", "first_body.ll" if program.has_usual else "all_bodies.ll")
-        yield _usual(_entry_text(usual, program), SYMBOLS[program.entry])
+        yield _usual(usual_text(program).text, program.symbols)
     if program.has_own_many:
         yield from _own_many(program.first, whole=whole)
 
 
 def _surrounding_texts(program: Program) -> tuple[str, ...]:
     """The modules that a program's surroundings are linked from."""
-    rest = ALONE if program.has_own_many else REST[program.entry]
-    if program.entry == "encode" and leaves_something(program.kernels[1]):
-        rest = tuple("leaving.ll" if each == "unmeasured.ll" else each for each in rest)
-    if program.has_usual:
-        rest = (*rest, *NEXT[program.entry])
-    around = (rest,) if program.is_inside else ((*USUAL[program.entry], "arguments_left.ll", "all_bodies.ll"), rest)
-    return tuple(_entry_text(templates, program) for templates in around if templates)
+    usual = None if program.is_inside else usual_text(program)
+    rest = None if program.leaves_rest else rest_text(program)
+    return tuple(each.text for each in (usual, next_text(program), rest) if each is not None)
 
 
 def _own_many(kernel: Kernel, *, whole: bool) -> Iterator[str]:
@@ -198,7 +184,7 @@ def _own_many(kernel: Kernel, *, whole: bool) -> Iterator[str]:
     words, count = state_words(kernel.lanes), kernel.registers
     used = [_copied_word(lane_word(lane, USED)) for lane in range(kernel.lanes)]
     sizes = {"words": words, "count": count, "state_bytes": 8 * words, "register_bytes": 8 * count}
-    yield Template(_template("many_kept.ll")).substitute(sizes, used="\n".join(used))
+    yield Template(template("many_kept.ll")).substitute(sizes, used="\n".join(used))
 
 
 def _copied_word(word: int) -> str:
@@ -239,7 +225,7 @@ def _wanted(declared: Iterable[str]) -> set[str]:
 
 @cache
 def _entries(*texts: str) -> bytes:
-    exported = (*SYMBOLS["encode"], *REST_SYMBOLS)
+    exported = (*SYMBOLS["encode"], ANY_CALL, NEXT_CALL, REST)
     return kept("entries", "\n".join(texts), lambda: object_of([part_of(text, exported) for text in texts], exported, thorough=False))
 
 
@@ -273,7 +259,7 @@ def _going_on(kernel: Kernel, opening: bytes) -> str:
     """What a kernel calls where it has failed and another program may not."""
     name = f"{FUNCTIONS[0]}.inside" if kernel.hidden else FUNCTIONS[0]
     words = {"name": f"{name}.next", "size": len(opening), "bits": 8 * len(opening), "opening": int.from_bytes(opening, sys.byteorder)}
-    return Template(_template("on_demand.ll")).substitute(words, site=ERROR_SITE, sites=len(kernel.sites))
+    return Template(template("on_demand.ll")).substitute(words, site=ERROR_SITE, sites=len(kernel.sites))
 
 
 def _typed(kernel: Kernel) -> tuple[str, str]:
@@ -281,35 +267,4 @@ def _typed(kernel: Kernel) -> tuple[str, str]:
     from rosetta_jit.backends.numba.function import library, typed
 
     text, name = library(typed(kernel))
-    return text, _template("numba.ll").replace("@typed", f'@"{name}"')
-
-
-def _entry_text(templates: Sequence[str], program: Program) -> str:
-    """A module of an entry's functions. `#0` to `#2` are the attributes of the calls of kernels that are to be quick."""
-    kernels = program.kernels
-    stamps = "time_and_number.ll" if program.asks_host else "no_time_or_number.ll"
-    hosted = "hosted.ll" if program.calls_host else "unhosted.ll"
-    count = max(kernel.registers for kernel in kernels)
-    kept = _template("registers.ll").replace("COUNT", str(count)) if count else _template("no_registers.ll")
-    joined = "joined.ll" if any(kernel.kept for kernel in kernels) else "alone.ll"
-    shared = ("shared.ll", stamps, hosted, joined, _thread_template(), "thread_check.ll")
-    large = (_large_template(),) if NEW_BYTES in templates else ()
-    texts = (*map(_template, (*shared, *large)), kept, *map(_template, templates))
-    inline = ("alwaysinline" if is_short else "" for is_short in program.are_short)
-    attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline))
-    return "\n".join((*texts, *attributes))
-
-
-def _thread_template() -> str:
-    """What says which thread calls: what the system's own function would do, where that is known."""
-    return "thread_linux_x86_64.ll" if sys.platform == "linux" and os.uname().machine == "x86_64" else "thread.ll"
-
-
-def _large_template() -> str:
-    """How memory for large messages is asked for."""
-    return "large_linux.ll" if sys.platform == "linux" else "large.ll"
-
-
-@cache
-def _template(file: str) -> str:
-    return Path(__file__).with_name(file).read_text("utf-8")
+    return text, template("numba.ll").replace("@typed", f'@"{name}"')

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NotRequired, TypedDict
 
 from rosetta_jit.kernel import traits
-from rosetta_jit.kernel.entries import HOST, ON_DEMAND, SYMBOLS, EntryName
+from rosetta_jit.kernel.entries import ANY_CALL, HOST, LATER, ON_DEMAND, REST, SYMBOLS, EntryName
 from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.runtime.code.prelink import is_prelinking
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ class Options(TypedDict):
     that become the message when it is decoded. ``thorough`` takes the time for LLVM's slow passes, whatever the kernels look like.
     ``opening`` is what messages begin with that are left to another program, which is made on demand (`rosetta_jit.runtime.on_demand`).
     ``host`` is what the kernels have to do with their host, where that is known.
+    ``leaves_rest`` says whether only the usual call is compiled now, where code is prelinked, and the rest when it is asked for.
     """
 
     with_numba: bool
@@ -33,6 +35,7 @@ class Options(TypedDict):
     thorough: NotRequired[bool]
     opening: NotRequired[bytes | None]
     host: NotRequired[traits.HostUse]
+    leaves_rest: NotRequired[bool]
 
 
 class Program:
@@ -59,7 +62,29 @@ class Program:
     @property
     def exported(self) -> tuple[str, ...]:
         """The symbols that others may ask for: its users, and the parts of which it is made."""
-        return (*SYMBOLS[self.entry], HOST, ON_DEMAND, *((NEXT_KERNEL, NEXT_CALL) if self.has_usual else ()))
+        return (*self.symbols, HOST, ON_DEMAND, *((NEXT_KERNEL, NEXT_CALL) if self.has_usual else ()))
+
+    @cached_property
+    def symbols(self) -> tuple[str, ...]:
+        """What it defines for its users."""
+        every = SYMBOLS[self.entry]
+        return (*(each for each in every if each not in self.rest_symbols), REST) if self.leaves_rest else every
+
+    @cached_property
+    def rest_symbols(self) -> tuple[str, ...]:
+        """What the rest defines."""
+        later = (each for each in LATER if each in SYMBOLS[self.entry] and not (each == "many" and self.has_own_many))
+        return () if self.entry == "bridge" else (ANY_CALL, *later)
+
+    @cached_property
+    def leaves_rest(self) -> bool:
+        """Whether the rest is compiled when it is asked for."""
+        return self.options.get("leaves_rest", False) and is_prelinking() and bool(self.rest_symbols)
+
+    @cached_property
+    def leaves_something(self) -> bool:
+        """Whether an encoder's messages are measured before they are written, for what that leaves in the holder."""
+        return self.entry == "encode" and traits.leaves_something(self.kernels[1])
 
     @cached_property
     def is_vast(self) -> bool:

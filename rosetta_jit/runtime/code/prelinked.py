@@ -16,6 +16,7 @@ import os
 import struct
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
+from types import MappingProxyType
 from typing import cast
 
 from rosetta_jit.runtime.code.allowed import ForeignCodeError, check_wanted
@@ -76,8 +77,12 @@ def data_offset(code: bytes | bytearray) -> int:
     return -(-len(code) // PAGE) * PAGE
 
 
-def place(image: bytes, symbols: Sequence[str]) -> tuple[dict[str, int], Callable[[], object]]:
+def place(
+    image: bytes, symbols: Sequence[str], given: Mapping[str, int] = MappingProxyType({})
+) -> tuple[dict[str, int], Callable[[], object]]:
     """The addresses of the code's symbols, and the function that frees its memory.
+
+    What it wants it finds in the process, or where it is ``given``.
 
     Raises
     ------
@@ -85,13 +90,14 @@ def place(image: bytes, symbols: Sequence[str]) -> tuple[dict[str, int], Callabl
         If it is damaged, wants what is not allowed or what the process has not, or lacks one of ``symbols``.
     """
     prelinked = from_bytes(image)
-    check_wanted(prelinked.wants)
+    check_wanted(each for each in prelinked.wants if each not in given)
     missing = [symbol for symbol in symbols if symbol not in prelinked.gives]
     if missing:
         raise ForeignCodeError(f"the code has no {', '.join(missing)}")
     begin = data_offset(prelinked.code)
     code = bytearray(prelinked.code.ljust(begin, b"\0"))
-    struct.pack_into(f"<{len(prelinked.wants)}Q", code, prelinked.slots, *map(_address_of, prelinked.wants))
+    addresses = (given.get(name) or _address_of(name) for name in prelinked.wants)
+    struct.pack_into(f"<{len(prelinked.wants)}Q", code, prelinked.slots, *addresses)
     size = begin + len(prelinked.data)
     base = _writable(size)
     ctypes.memmove(base, bytes(code) + prelinked.data, size)

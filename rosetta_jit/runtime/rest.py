@@ -1,0 +1,44 @@
+"""The rest of a program's calls, compiled when it is first asked for: most programs of a process are called in the usual way alone.
+
+The usual call looks for it where it has something else to do (`backends/entry/rest_later.ll`). Until it is there, the slow path does that,
+and has it made for the next time; so does who asks for one of its symbols.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Mapping
+
+from rosetta_jit.kernel.entries import ANY_CALL, REST
+from rosetta_jit.runtime.code import native
+
+KERNELS = ("kernel", "size")
+"""What it calls of the program."""
+
+
+class Rest:
+    """The rest of loaded code. It must live as long as that.
+
+    Parameters
+    ----------
+    addresses
+        Those of the code.
+    symbols
+        What the rest defines.
+    compiled
+        Gives its code.
+    """
+
+    def __init__(self, addresses: Mapping[str, int], symbols: tuple[str, ...], compiled: Callable[[], bytes]) -> None:
+        self._place = ctypes.c_int64.from_address(addresses[REST])
+        self._kernels = {name: addresses[name] for name in KERNELS if name in addresses}
+        self._symbols, self._compiled = symbols, compiled
+        self._library: native.Library | None = None
+
+    def made(self) -> native.Library:
+        """The code, which the usual call finds from now on. Threads may come here at once: they share what they make."""
+        library = self._library
+        if library is None:
+            library = self._library = native.load(self._compiled(), self._symbols, given=self._kernels)
+            self._place.value = library[ANY_CALL]
+        return library
