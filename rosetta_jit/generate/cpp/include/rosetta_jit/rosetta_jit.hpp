@@ -578,12 +578,16 @@ inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) 
     const unsigned char *const text = static_cast<const unsigned char *>(memory) + start;
     if (size >= 16) {
         pair any = pair_at(text) | pair_at(text + size - 16);
-        std::int64_t at = 16;
-        for (; size - at > 32; at += 32) {
-            any = any | (pair_at(text + at) | pair_at(text + at + 16));
-        }
-        for (; size - at > 16; at += 16) {
-            any = any | pair_at(text + at);
+        if (size > 32) {
+            const unsigned char *const last = text + size - 32;
+            const unsigned char *at = text + 32;
+            any = any | (pair_at(text + 16) | pair_at(last));
+            for (; last - at > 32; at += 64) {
+                any = any | ((pair_at(at) | pair_at(at + 16)) | (pair_at(at + 32) | pair_at(at + 48)));
+            }
+            if (at < last) {
+                any = any | (pair_at(at) | pair_at(at + 16));
+            }
         }
         return ((any[0] | any[1]) & GOES_ON) == 0;
     }
