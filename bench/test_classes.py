@@ -1,4 +1,4 @@
-"""Generated C++ that fills the classes of roscpp, rclcpp and protoc, against the code of roscpp and protoc that does."""
+"""Generated C++ that fills the classes of roscpp, rclcpp and protoc, against the code of roscpp, Fast CDR and protoc that does."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rosetta_jit.api.options import type_request
 
 CHAPTER = "Generated C++ in frameworks' classes"
 OURS = "rosetta_jit, generated C++"
-PEERS = {"ros1": "roscpp", "ros2": "roscpp", "protobuf": "protobuf"}
+PEERS = {"ros1": "roscpp", "ros2": "Fast CDR" if peers.has_fast_cdr() else "roscpp", "protobuf": "protobuf"}
 JOBS = {
     "decode": ("decoded", "an object, used again", 1),
     "anew": ("decoded into a new object", "an object, made anew", None),
@@ -71,10 +71,14 @@ def test_structs_of_roscpp(name, against):
 @pytest.mark.skipif(not peers.installed("ros2"), reason="rosidl, which makes the structs of rclcpp, is not installed, or roscpp is not")
 @pytest.mark.parametrize("name", ROS)
 def test_structs_of_rclcpp(name, against):
-    """ROS 2's own reader is part of its middleware: roscpp, which reads the same data as ROS 1 has them, stands for it."""
+    """ROS 2's own reader is Fast CDR. Where that is not installed, roscpp stands for it, which reads the same data as ROS 1 has them.
+
+    Both read the encapsulation first, as rmw_fastrtps does.
+    """
     older, newer = SUBJECTS[name], ROS_2[f"{name}, ROS 2"]
     request = type_request("decode", newer.type, {"encoding": "cdr"})
-    against(f"{name}, CDR", request, "ros2", Messages(newer.message, older.message), peer=older.type)
+    theirs = newer.message if peers.has_fast_cdr() else peers.ENCAPSULATION + older.message
+    against(f"{name}, CDR", request, "ros2", Messages(newer.message, theirs), peer=older.type)
 
 
 @pytest.mark.skipif(not peers.installed("protobuf"), reason="protoc and its library are not installed")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import shutil
 import subprocess
 from dataclasses import dataclass
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 ROSCPP = ("-lroscpp_serialization", "-lrostime", "-lcpp_common")
 LIBRARIES = {"ros1": ROSCPP, "ros2": ROSCPP, "protobuf": ("-lprotobuf",)}
+FAST_CDR = "fastcdr/Cdr.h"
 HEADERS = {"ros1": "sensor_msgs/JointState.h", "ros2": "sensor_msgs/JointState.h", "protobuf": "google/protobuf/message.h"}
 GENERATORS = {"protobuf": "protoc", "ros2": "rosidl"}
 ROSIDL = tuple(f"-I/usr/include/rosidl_runtime_{each}" for each in ("c", "cpp"))
@@ -32,12 +34,28 @@ RCLCPP = {
 """The structs of rclcpp that are made."""
 
 
+ENCAPSULATION = bytes((0, 1, 0, 0))
+"""What little-endian CDR begins with in ROS 2."""
+
+
 def installed(holder: str) -> bool:
     """Whether the framework's generator, headers and compiler are."""
-    if any(shutil.which(each) is None for each in ("g++", GENERATORS.get(holder, "g++"))):
-        return False
-    command = ["g++", "-std=c++17", "-E", "-x", "c++", "-"]
-    return subprocess.run(command, input=f"#include <{HEADERS[holder]}>\n", capture_output=True, text=True, check=False).returncode == 0
+    return all(shutil.which(each) is not None for each in ("g++", GENERATORS.get(holder, "g++"))) and _is_found(HEADERS[holder])
+
+
+def has_fast_cdr() -> bool:
+    """Whether Fast CDR is installed, with which ROS 2's default middleware reads and writes."""
+    return _is_found(FAST_CDR)
+
+
+def _is_found(header: str) -> bool:
+    command = ["g++", "-std=c++17", *_flags("CPPFLAGS"), "-E", "-x", "c++", "-"]
+    return subprocess.run(command, input=f"#include <{header}>\n", capture_output=True, text=True, check=False).returncode == 0
+
+
+def _flags(name: str) -> list[str]:
+    """Where headers and libraries lie that no compiler looks for by itself."""
+    return shlex.split(os.environ.get(name, ""))
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +67,10 @@ class Messages:
 
 
 def program(request: Request, holder: str, folder: Path, *, proto: str = "", peer: str = "") -> Path:
-    """A program that measures both; protoc makes the class from ``proto``, roscpp's struct ``peer`` stands beside one of rclcpp's."""
+    """A program that measures both; protoc makes the class from ``proto``.
+
+    Of ROS 2 the other one is Fast CDR, if it is installed; else roscpp, which fills its struct ``peer`` of the same data.
+    """
     include = proto.replace(".proto", ".pb.h")
     for name, text in generated(request, "cpp", ("decode", "encode"), "unit", Wishes(holder=holder, include=include)).items():
         (folder / name).parent.mkdir(exist_ok=True)
@@ -61,10 +82,14 @@ def program(request: Request, holder: str, folder: Path, *, proto: str = "", pee
     if peer:
         _structs_of_rclcpp(folder)
     words = ['-DHEADER="unit.hpp"', "-DUNIT=unit", f"-D{holder.upper()}"]
-    words += [f'-DPEER_HEADER="{peer}.h"', f"-DPEER={peer.replace('/', '::')}", *ROSIDL] if peer else []
-    options = ["-std=c++17", "-O2", f"-I{folder}", f"-I{SOURCES}", *words]
+    libraries = LIBRARIES[holder]
+    if peer and has_fast_cdr():
+        words, libraries = [*words, "-DFASTCDR", *ROSIDL], ("-lfastcdr",)
+    elif peer:
+        words += [f'-DPEER_HEADER="{peer}.h"', f"-DPEER={peer.replace('/', '::')}", *ROSIDL]
+    options = ["-std=c++17", "-O2", f"-I{folder}", f"-I{SOURCES}", *_flags("CPPFLAGS"), *words]
     made = folder / "classes"
-    subprocess.run(["g++", *options, *sources, *LIBRARIES[holder], "-o", made], cwd=folder, check=True)
+    subprocess.run(["g++", *options, *sources, *_flags("LDFLAGS"), *libraries, "-o", made], cwd=folder, check=True)
     return made
 
 

@@ -57,9 +57,10 @@ class LowByteFirst(AheadOfTime):
 
 
 class IntoObjects(LowByteFirst):
-    """The same for code that fills objects at once: their texts are copied from the message."""
+    """The same for code that fills objects at once: texts are copied from the message. Rows that it writes are made of an object."""
 
     TEXTS_STAY = True
+    ROWS_IN_ORDER = True
 
 
 @dataclass(frozen=True, slots=True)

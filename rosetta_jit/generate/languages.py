@@ -36,7 +36,8 @@ class Language:
     low_byte_first
         What it prints need not run on machines whose numbers have their high byte first.
     fills_objects
-        What it prints is such, and the code around its decoders takes texts from the message, too.
+        What it prints is such, and the code around its decoders takes texts from the message, too. The code around its encoders makes rows
+        of objects, those of what an object contains after its own.
     numpy
         Its arrays of numbers can be numpy's.
     wires

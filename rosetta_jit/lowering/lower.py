@@ -43,6 +43,7 @@ def lower(
     borrow: bool = False,
     references: References | None = None,
     texts_stay: bool = False,
+    rows_in_order: bool = False,
 ) -> Kernel:
     """The kernel that reads or writes messages of an encoding, or computes their size.
 
@@ -56,9 +57,11 @@ def lower(
         How they refer to it: see `rosetta_jit.lowering.writer.References`. By the sign of their spans if None.
     texts_stay
         Texts of tagged messages do so, too.
+    rows_in_order
+        Rows of recursive structs that are written belong to one message each, whose own row, if it has one, lies before them.
     """
     registers, kept = (0, ()) if mapped is None else (mapped.registers, rules.kept_lanes(mapped, layout))
-    lowering = _Lowering(encoding, layout, direction, borrow, references, registers, kept, texts_stay)
+    lowering = _Lowering(encoding, layout, direction, borrow, references, registers, kept, texts_stay, rows_in_order)
     if mapped is None:
         return lowering.kernel(name, lambda fields, attempt: lower_own(encoding, attempt, fields))
     return lowering.kernel(name, rules.relation(mapped, encoding, lowering.attempts, direction))
@@ -76,6 +79,7 @@ class _Lowering:
     registers: int = 0
     kept: tuple[int, ...] = ()
     texts_stay: bool = False
+    rows_in_order: bool = False
 
     @property
     def attempts(self) -> tuple[Codec, ...]:
@@ -86,6 +90,7 @@ class _Lowering:
     def kernel(self, name: str, relate: Relate) -> Kernel:
         lanes = [*(lane.stride for lane in self.layout.lanes), SCRATCH_STRIDE]
         writer = Writer(self.direction, lanes, references=self.references, texts_stay=self.texts_stay)
+        writer.rows_in_order = self.rows_in_order
         own = len(writer.strides)
         bodies = [self.body(writer, attempt, relate) for attempt in self.attempts]
         expected = self.encoding.expected if self.direction == "decode" else 0

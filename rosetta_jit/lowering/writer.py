@@ -91,7 +91,7 @@ class Writer:
     ``strides`` are those of the holder's lanes, and then of the ``hidden`` ones, which are known by a name. ``registers`` are
     variables with what registers hold from the next message on. ``certain`` are conditions that hold since the bounds of a loop say so,
     which are not asked, and checks that cannot fail for the same reason. ``texts_stay``: a decoder that borrows leaves the texts of tagged
-    messages where they are, too, as it does with all others.
+    messages where they are, too, as it does with all others. ``rows_in_order``: see `rosetta_jit.lowering.lower`.
     """
 
     direction: nodes.Direction
@@ -109,6 +109,7 @@ class Writer:
     tally: Tally = field(default_factory=Tally)
     references: References | None = None
     texts_stay: bool = False
+    rows_in_order: bool = False
     registers: dict[int, nodes.Local] = field(default_factory=dict[int, nodes.Local])
     certain: set[nodes.Expr | nodes.Stmt] = field(default_factory=set["nodes.Expr | nodes.Stmt"])
 

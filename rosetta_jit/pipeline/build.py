@@ -60,10 +60,12 @@ class Build:
     """A program in the making. Each stage is made when it is first asked for.
 
     Its kernels handle all messages of the encoding. If it ``leaves_rare`` ones and becomes machine code, they are another program's.
-    A class whose ``TEXTS_STAY`` has decoders that borrow leave texts of tagged messages where they are, too.
+    A class whose ``TEXTS_STAY`` has decoders that borrow leave texts of tagged messages where they are, too. Where ``ROWS_IN_ORDER``, who
+    calls an encoder has put rows of recursive structs together as `rosetta_jit.lowering.lower` says.
     """
 
     TEXTS_STAY: ClassVar[bool] = False
+    ROWS_IN_ORDER: ClassVar[bool] = False
 
     def __init__(self, request: Request, references: References | None = None, *, leaves_rare: bool = False) -> None:
         self.request = request
@@ -163,6 +165,7 @@ class Build:
                 borrow=borrow,
                 references=self.references,
                 texts_stay=self.TEXTS_STAY,
+                rows_in_order=self.ROWS_IN_ORDER,
             )
         except TooManyStatementsError as error:
             raise report(self.request, words.too_many_statements(self._span, str(error))) from error

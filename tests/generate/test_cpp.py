@@ -196,6 +196,15 @@ int main() {
             if (flags[at] != (!is_within ? 255 : expected != 0 ? 1 : 0)) { return 2; }
         }
     }
+    for (int size = 0; size < 300; size++) {
+        std::vector<unsigned char> text(static_cast<std::size_t>(size), 'a'); /* of which no byte may be read that it does not have */
+        if (!is_ascii(text.data(), 0, size)) { return 3; }
+        for (unsigned char &each : text) {
+            each = 200;
+            if (is_ascii(text.data(), 0, size)) { return 4; }
+            each = 'a';
+        }
+    }
 }
 """
 

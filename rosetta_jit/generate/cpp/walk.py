@@ -207,7 +207,7 @@ class Walk:
         self.depth += 1
         if self.direction == "encode":
             with self.writer.indented("{"):
-                start, count = self._take(row, lane, spot)
+                start, count = self._take(row, slot.lane, spot)
                 self._each(type_.element, slot.lane, start, count, spot)
             self.writer.line("}")
         else:
@@ -216,10 +216,14 @@ class Walk:
             self._each(type_.element, slot.lane, f"{row}.start", count, spot)
         self.depth -= 1
 
-    def _take(self, row: str, lane: str, spot: Spot) -> tuple[str, str]:
-        """Rows for what a container has. They are taken before the span is set: where types contain themselves, its row may move."""
+    def _take(self, row: str, lane: int, spot: Spot) -> tuple[str, str]:
+        """Rows for what a container has. They are taken before the span is set: where types contain themselves, its row may move.
+
+        Rows of such types are emptied each by itself, when it is set.
+        """
         start, count = self.local("start"), self.local("count")
-        self.lines("list", spot, row=row, lane=lane, start=start, count=count)
+        take = "take_empty" if self.unit.layout.lanes[lane].links is None else "take"
+        self.lines("list", spot, row=row, lane=self.lanes.rows(lane), start=start, count=count, take=take)
         return start, count
 
     def _each(self, type_: Type, lane: int, start: str, count: str, spot: Spot) -> None:
@@ -288,7 +292,7 @@ class Walk:
 
     def _take_one(self, type_: Type, lane: int, row: str, spot: Spot) -> None:
         start = self.local("start")
-        self.writer.line(f"const std::int64_t {start} = rosetta_jit::detail::take_one(to.{self.lanes.rows(lane)});")
+        self.writer.line(f"const std::int64_t {start} = rosetta_jit::detail::take(to.{self.lanes.rows(lane)}, 1);")
         self.writer.line(f"{row} = {{{start}, 1}};")
         self.row(type_, lane, start, spot)
 
@@ -313,7 +317,7 @@ class Walk:
                         self.writer.line(f"auto &{self.local('mapped')} = {self.text('map entry', spot, key=self.local('key'))};")
                     self._plain(type_, member, own.type, f"{inner}.{own.identifier}", self.local(what))
         else:
-            start, _ = self._take(row, lane, spot)
+            start, _ = self._take(row, slot.lane, spot)
             self.writer.line(f"std::int64_t {index} = {start};")
             with self.writer.indented(f"for (const auto &each_{self.depth} : {spot.at}) {{"):
                 known = self._begin_row(slot.lane, inner, f"{index}++")

@@ -2,7 +2,7 @@
 
 The scratch lane holds, from row 0 on: the number of rows n, where the lengths of the root message start, the n rows (parents before
 children; each behind its lane, where there are several), then the lengths. To measure, the list is made and gone through from its end; to
-write, from its start.
+write, from its start. Where the rows of one lane are in that order already, they are the list, which is not made.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, joined, mul
 from rosetta_jit.lowering.codec.holder_fields import Cell, HolderFields, span_of
-from rosetta_jit.lowering.codec.tagged_write import Lengths, present, write_message, write_tag
+from rosetta_jit.lowering.codec.tagged_write import Lengths, changes, present, write_message, write_tag
 from rosetta_jit.lowering.codec.varint_write import write_varint
 from rosetta_jit.lowering.codec.work_list import BEGIN_WORD, MORE_WORD, SIZE_WORD, link
 from rosetta_jit.lowering.limits import MAX_SIZE
@@ -75,9 +75,12 @@ def write_child(writer: Writer, fields: HolderFields, cell: Cell, recursion: Rec
 
 
 def _measure(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: Writer, scratch: int) -> None:
-    rows = _list_rows(encoding, fields, tagged, writer, scratch)
-    count = writer.let("count", rows.number)
-    first = writer.let("first_length", add(mul(count, rows.words), HEADER))
+    if (lane := _lane_in_order(writer, fields.layout)) is not None:
+        count, words = writer.let("count", nodes.Used(lane)), 0
+    else:
+        rows = _list_rows(encoding, fields, tagged, writer, scratch)
+        count, words = writer.let("count", rows.number), rows.words
+    first = writer.let("first_length", add(mul(count, words), HEADER))
     writer.emit(nodes.Reserve(scratch, first))
     lengths = Lengths(scratch, writer.var("lengths", first), write_child)
     back = writer.var("back", index(0))
@@ -170,13 +173,12 @@ def _append(writer: Writer, rows: Rows, lane: int, row: nodes.Expr) -> None:
 
 def _write(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: Writer, scratch: int) -> None:
     writer.expect(nodes.Compare("ge", nodes.Capacity(scratch), index(HEADER)), "length", fields.where, DAMAGED)
-    count = writer.let("count", nodes.Get("i64", nodes.Place(scratch, index(0))))
-    writer.expect(
-        nodes.Binary("and", nodes.Compare("ge", count, index(0)), nodes.Compare("le", count, nodes.Capacity(scratch))),
-        "length",
-        fields.where,
-        DAMAGED,
-    )
+    if (lane := _lane_in_order(writer, fields.layout)) is not None:
+        count = writer.let("count", nodes.Used(lane))
+    else:
+        count = writer.let("count", nodes.Get("i64", nodes.Place(scratch, index(0))))
+        there = nodes.Binary("and", nodes.Compare("ge", count, index(0)), nodes.Compare("le", count, nodes.Capacity(scratch)))
+        writer.expect(there, "length", fields.where, DAMAGED)
     lengths = Lengths(scratch, writer.var("lengths", nodes.Get("i64", nodes.Place(scratch, index(1)))), write_child)
     _expect_lengths(writer, lengths)
     write_message(writer, fields, tagged, lengths)
@@ -205,22 +207,33 @@ def _one_row(writer: Writer, fields: HolderFields, tagged: Tagged, lane: int, at
         inner = HolderFields(writer, layout, Cell(lane, row, layout.lanes[lane].element), Where(f".{layout.lanes[lane].name}"))
         more, size = link(layout, lane, row, MORE_WORD), link(layout, lane, row, SIZE_WORD)
         if writer.direction == "size":
-            writer.emit(nodes.SetField(more, lengths.next))
             writer.position = index(0)
-            write_message(writer, inner, tagged, lengths)
-            writer.emit(nodes.SetField(size, writer.position))
+            message, end = _message(writer, inner, tagged, lengths)
+            writer.emit(*([nodes.SetField(more, lengths.next)] if changes(lengths, message) else []), *message)
+            writer.emit(nodes.SetField(size, end))
         else:
-            writer.assign(lengths.next, nodes.Get("i64", more))
-            _expect_lengths(writer, lengths)
             begin = writer.let("begin_of_message", nodes.Get("i64", link(layout, lane, row, BEGIN_WORD)))
             writer.expect(
                 nodes.Binary("and", nodes.Compare("ge", begin, BEGIN), nodes.Compare("le", begin, END)), "length", inner.where, DAMAGED
             )
             writer.position = begin
-            write_message(writer, inner, tagged, lengths)
-            written = nodes.Binary("sub", writer.position, begin)
+            message, end = _message(writer, inner, tagged, lengths)
+            if changes(lengths, message):
+                writer.assign(lengths.next, nodes.Get("i64", more))
+                _expect_lengths(writer, lengths)
+            writer.emit(*message)
+            writer.position = end
+            written = nodes.Binary("sub", end, begin)
             writer.expect(nodes.Compare("eq", written, nodes.Get("i64", size)), "length", inner.where, DAMAGED)
     return block(body)
+
+
+def _message(writer: Writer, fields: HolderFields, tagged: Tagged, lengths: Lengths) -> tuple[nodes.Block, nodes.Expr]:
+    """What writes the message of a row, and its end. Where it has no lengths, it need not be known which is the first."""
+    with writer.nested() as body:
+        write_message(writer, fields, tagged, lengths)
+        end = writer.position
+    return block(body), end
 
 
 # --- the list --------------------------------------------------------------------------------------------------------------------
@@ -229,6 +242,11 @@ def _one_row(writer: Writer, fields: HolderFields, tagged: Tagged, lane: int, at
 def _words(layout: Layout) -> int:
     """How many words of the scratch lane a row of the list takes: of one lane it needs no number."""
     return min(len(layout.recursive), 2)
+
+
+def _lane_in_order(writer: Writer, layout: Layout) -> int | None:
+    """The lane whose rows are the list as they are; None where there are several, or they may be in another order."""
+    return layout.recursive[0][0] if writer.rows_in_order and len(layout.recursive) == 1 else None
 
 
 def _by_lane(writer: Writer, layout: Layout, scratch: int, at: nodes.Expr, cases: list[tuple[int, nodes.Block]]) -> None:
@@ -249,7 +267,7 @@ def _listed(writer: Writer, layout: Layout, scratch: int, at: nodes.Expr, word: 
 
 
 def _row_of(writer: Writer, layout: Layout, scratch: int, at: nodes.Expr, lane: int) -> nodes.Expr:
-    row = _listed(writer, layout, scratch, at, _words(layout) - 1)
+    row = at if _lane_in_order(writer, layout) is not None else _listed(writer, layout, scratch, at, _words(layout) - 1)
     writer.expect(
         nodes.Binary("and", nodes.Compare("ge", row, index(0)), nodes.Compare("lt", row, nodes.Used(lane))), "length", Where(), DAMAGED
     )

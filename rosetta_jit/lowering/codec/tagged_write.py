@@ -68,12 +68,17 @@ def _write_unknown(writer: Writer, fields: HolderFields) -> None:
     writer.advance(size)
 
 
+def changes(lengths: Lengths, body: nodes.Block) -> bool:
+    """Whether statements write lengths, or read them."""
+    return any(isinstance(each, nodes.Assign) and each.name == lengths.next.name for each, _ in statements(body))
+
+
 def _say_again(writer: Writer, fields: HolderFields, lengths: Lengths, body: list[nodes.Stmt]) -> None:
     """Behind an optional field, which ``body`` writes: what holds whether it was there or not, where the proof may not follow by itself."""
     if writer.direction == "encode":
         inside = nodes.Binary("and", nodes.Compare("ge", writer.position, BEGIN), nodes.Compare("le", writer.position, END))
         writer.expect(inside, "length", fields.where, "the holder changed while it was written")
-    if any(isinstance(each, nodes.Assign) and each.name == lengths.next.name for each, _ in statements(block(body))):
+    if changes(lengths, block(body)):
         known = nodes.Binary(
             "and", nodes.Compare("ge", lengths.next, index(0)), nodes.Compare("le", lengths.next, nodes.Capacity(lengths.lane))
         )

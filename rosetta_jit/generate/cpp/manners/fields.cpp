@@ -32,7 +32,7 @@ rosetta_jit::detail::resize_to($at, $row.count);
 
 /* == list encode == */
 const std::int64_t $count = rosetta_jit::detail::count_of($at);
-const std::int64_t $start = rosetta_jit::detail::take_empty(to.$lane, $count);
+const std::int64_t $start = rosetta_jit::detail::$take(to.$lane, $count);
 $row = {$start, $count};
 
 /* == numbers == */

@@ -578,12 +578,16 @@ inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) 
     const unsigned char *const text = static_cast<const unsigned char *>(memory) + start;
     if (size >= 16) {
         pair any = pair_at(text) | pair_at(text + size - 16);
-        std::int64_t at = 16;
-        for (; size - at > 32; at += 32) {
-            any = any | (pair_at(text + at) | pair_at(text + at + 16));
-        }
-        for (; size - at > 16; at += 16) {
-            any = any | pair_at(text + at);
+        if (size > 32) {
+            const unsigned char *const last = text + size - 32;
+            const unsigned char *at = text + 32;
+            any = any | (pair_at(text + 16) | pair_at(last));
+            for (; last - at > 32; at += 64) {
+                any = any | ((pair_at(at) | pair_at(at + 16)) | (pair_at(at + 32) | pair_at(at + 48)));
+            }
+            if (at < last) {
+                any = any | (pair_at(at) | pair_at(at + 16));
+            }
         }
         return ((any[0] | any[1]) & GOES_ON) == 0;
     }
@@ -627,13 +631,10 @@ inline unsigned lowest_bit(std::uint64_t number) noexcept
 #endif
 }
 
-/* The bytes that a number takes, by its highest bit. */
-inline constexpr std::uint8_t VARINT_SIZES[64] = {1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 5,
-                                                  5, 5, 5, 6, 6, 6, 6, 6, 6, 6, 7, 7, 7, 7, 7, 7, 7, 8, 8, 8, 8, 8, 8, 8, 9, 9, 9, 9, 9, 9, 9, 10};
-
+/* The bytes that a number takes: 9/64 is near enough to 1/7. */
 inline std::int64_t varint_size(std::uint64_t number) noexcept
 {
-    return VARINT_SIZES[highest_bit(number)];
+    return static_cast<std::int64_t>((highest_bit(number) * 9u + 73u) / 64u);
 }
 
 /* The lower seven bits of eight bytes as a number, and a number of 56 bits as such bytes: by halves, quarters, and eighths. */
@@ -1284,14 +1285,11 @@ template <class Lane> ROSETTA_JIT_INLINE std::int64_t take_empty(Lane &to, std::
     return start;
 }
 
-/* The same of one row. */
-template <class Lane> ROSETTA_JIT_INLINE std::int64_t take_one(Lane &to)
+/* Empties what a row has of an object. */
+template <class Row> ROSETTA_JIT_INLINE void empty(Row &row) noexcept
 {
-    using Row = std::remove_reference_t<decltype(*to.rows)>;
     static_assert(std::is_trivially_copyable_v<Row>);
-    const std::int64_t start = take(to, 1);
-    fill_known<static_cast<std::int64_t>(sizeof(Row))>(to.rows + start, 0, 0);
-    return start;
+    fill_known<static_cast<std::int64_t>(sizeof(Row))>(&row, 0, 0);
 }
 
 /* Numbers, or the bytes of a text, as rows. */
