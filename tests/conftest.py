@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import gc
+import os
+import pickle
 import sys
 from collections import Counter
 from functools import lru_cache
+from hashlib import sha256
+from pathlib import Path
+from threading import get_ident
 
 import pytest
 from hypothesis import settings
 
 from rosetta_jit.generate import languages
-from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.startup import entry_points
@@ -20,48 +24,63 @@ from rosetta_jit.transports import installed as transports
 settings.register_profile("reproducible", derandomize=True)
 settings.load_profile("reproducible")
 
+SHARED = "ROSETTA_JIT_TESTS_DIR"
+"""The variable by which a run of pytest that a test starts finds the folder of the run around it."""
+
+
+@pytest.fixture(scope="session")
+def of_all_processes(tmp_path_factory):
+    """A folder that pytest's processes share: workers of xdist, and those that a test starts to run tests in another way."""
+    with pytest.MonkeyPatch.context() as patch:
+        if SHARED not in os.environ:
+            own = tmp_path_factory.getbasetemp()
+            patch.setenv(SHARED, str(own.parent if "PYTEST_XDIST_WORKER" in os.environ else own))
+        yield Path(os.environ[SHARED])
+
 
 @pytest.fixture(scope="session", autouse=True)
-def own_cache(tmp_path_factory):
+def own_cache(of_all_processes):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ROSETTA_JIT_CACHE_DIR", str(tmp_path_factory.mktemp("kernels")))
+        patch.setenv("ROSETTA_JIT_CACHE_DIR", str(of_all_processes / "kernels"))
         yield
 
 
 @pytest.fixture(scope="session", autouse=True)
-def bytecode_once(tmp_path_factory):
+def bytecode_once(of_all_processes):
     """Where no bytecode may be written, each interpreter that a test starts would compile our modules anew, which takes half a second."""
     with pytest.MonkeyPatch.context() as patch:
         if sys.dont_write_bytecode:
             patch.delenv("PYTHONDONTWRITEBYTECODE", raising=False)
-            patch.setenv("PYTHONPYCACHEPREFIX", str(tmp_path_factory.mktemp("bytecode")))
+            patch.setenv("PYTHONPYCACHEPREFIX", str(of_all_processes / "bytecode"))
         yield
 
 
 @pytest.fixture(scope="session", autouse=True)
-def proven_once():
-    """Programs of several backends have the same kernels: each is proven once a process. Tests of the proof do not come this way."""
+def proven_once(of_all_processes):
+    """Programs of several backends have the same kernels: each is improved and proven by the first process that comes to it.
+
+    Tests of the proof do not come this way.
+    """
+    optimised = Build._optimised
+    folder = of_all_processes / "proven"
+    folder.mkdir(exist_ok=True)
+
+    @lru_cache(maxsize=200)
+    def known(name):
+        return pickle.loads((folder / name).read_bytes())  # noqa: S301 - ours
+
+    def once(build, kernel):
+        # By its text: 0.0 and -0.0 are equal, but not the same.
+        name = sha256(f"{build.types.rules is None} {to_text(kernel)}".encode()).hexdigest()
+        if not (folder / name).exists():
+            made = folder / f"{name}.{os.getpid()}.{get_ident()}"
+            made.write_bytes(pickle.dumps(optimised(build, kernel)))
+            made.replace(folder / name)
+        return known(name)
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Build, "_optimised", lambda build, kernel: optimised(Lowered(kernel, to_text(kernel))))  # noqa: ARG005 - a method
+        patch.setattr(Build, "_optimised", once)
         yield
-
-
-class Lowered:
-    """A kernel that is known by its text: 0.0 and -0.0 are equal, but not the same."""
-
-    def __init__(self, kernel, text):
-        self.kernel, self.text = kernel, text
-
-    def __hash__(self):
-        return hash(self.text)
-
-    def __eq__(self, other):
-        return self.text == other.text
-
-
-@lru_cache(maxsize=200)
-def optimised(lowered):
-    return passes.run(lowered.kernel)
 
 
 @pytest.fixture(scope="module", autouse=True)

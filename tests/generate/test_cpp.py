@@ -75,11 +75,18 @@ struct Points { std::vector<Point> points; std::string name; Within within; std:
 """
 LIBRARY = "#pragma once\n#include <cstdint>\n#include <string>\n#include <vector>\n"
 THOROUGH = ("-O2", *QUICK[1:])
+CAREFUL = ("-O1", "-fstrict-aliasing", *QUICK[1:])
+"""What -O2 makes of objects of one class that are read as another, in two thirds of the time."""
+IN_MEMORY = [
+    *((layout, "cdr") for layout in LAID_OUT),
+    ("alike", "ros1"),
+    *(pytest.param(layout, "ros1", marks=pytest.mark.campaign) for layout in LAID_OUT if layout != "alike"),
+]
+"""CDR, whose bytes come in both orders, sets numbers as ROS 1 does, too."""
 
 
 @cpp.needs_cpp
-@pytest.mark.parametrize("encoding", ["ros1", "cdr"])
-@pytest.mark.parametrize("layout", LAID_OUT)
+@pytest.mark.parametrize(("layout", "encoding"), IN_MEMORY)
 def test_lists_of_structs_however_their_class_lies_in_memory(layout, encoding, tmp_path):
     """Also of big-endian CDR, of which numbers are set one by one; texts in lists have all lengths that are copied in other ways."""
     (tmp_path / "points.h").write_text(f"{LIBRARY}namespace rj {{\n{LAID_OUT[layout]}\n{LISTS}namespace msg = ::rj;\n}}\n")
@@ -92,7 +99,8 @@ def test_lists_of_structs_however_their_class_lies_in_memory(layout, encoding, t
     lists = {"points": points, "within": {"points": points[:2]}, "names": names}
     good = [bytes(encode({**each, "name": "n"})) for each in (lists, {**lists, "points": points[:1]}, {})]
     messages = harmed(good, 12, f"{layout} {encoding}")
-    same(answers(cpp.program(tmp_path, name, options=THOROUGH), messages), decode, encode, messages)
+    options = THOROUGH if layout == "alike" else CAREFUL
+    same(answers(cpp.program(tmp_path, name, options=options), messages), decode, encode, messages)
 
 
 @cpp.needs_cpp

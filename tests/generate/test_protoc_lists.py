@@ -41,7 +41,7 @@ def messages() -> list[bytes]:
 
 
 @cpp.needs_cpp
-@pytest.mark.parametrize("syntax", ["proto2", "proto3"])
+@pytest.mark.parametrize("syntax", ["proto2", pytest.param("proto3", marks=pytest.mark.campaign)])
 def test_lists_and_unknown_fields(syntax, tmp_path):
     native.needs_protoc()
     text = TEXT.format(syntax=syntax, optional="optional" if syntax == "proto2" else "")

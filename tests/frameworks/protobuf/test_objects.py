@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import random
 
 import pytest
@@ -204,6 +205,7 @@ def test_nothing_is_counted_wrong(handed):
             for call in (lambda: encode(bad), lambda: decode.to(broken, theirs)):
                 with pytest.raises(rj.RosettaError):
                     call()
+        gc.collect()  # what errors refer to refers to them
 
     run()
     before = [sys.getrefcount(each) for each in counted]
