@@ -168,3 +168,50 @@ def test_integers_of_lists_are_those_of_their_fields(wishes):
             with pytest.raises(unit.EncodeError) as caught:
                 unit.encode(unit.M(**{name: [unit.S(wrong)] if name == "f" else wrong}))
             assert caught.value.kind == "range"
+
+
+def test_arrays_of_numpy_in_arrays_are_joined_by_numpy():
+    """Where all have one length and one type; else a loop finds the one that has not, or takes it as the numbers that it is."""
+    schema = {
+        "t.lcm": "package t; struct s { double x; } struct T { int32_t n; int32_t k; double m[n][3]; int16_t v[n][k]; boolean b[4][k]; "
+        "byte raw[2][n][2]; float x[2][2][3]; s structs[4][2]; }"
+    }
+    given = {"encoding": "lcm", "schema": schema}
+    request, programs = type_request("decode", "t.T", given), (rj.Decoder.of("t.T", **given), rj.Encoder.of("t.T", **given))
+    text = generated(request, "python", BOTH, "unit", Wishes(numpy=True))["unit.py"]
+    assert [text.count(each) for each in (" = _table(", ", 3)) if count", "is_bool=True)\n")] == [4, 1, 1]
+    unit = module(request, BOTH, Wishes(numpy=True))
+    values = {
+        "n": 5,
+        "k": 2,
+        "m": np.arange(15.0).reshape(5, 3),
+        "v": np.arange(10, dtype=np.int16).reshape(5, 2) - 4,
+        "b": np.array([[True, False]] * 4),
+        "raw": [[bytes([each, 255]) for each in range(5)]] * 2,
+        "x": np.arange(12, dtype=np.float32).reshape(2, 2, 3),
+    }
+    plain = {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in values.items()}
+    plain["structs"] = [[{"x": 1.5}, {"x": 2.5}]] * 4
+    message = bytes(programs[1](programs[1].holder_type.from_dict(plain)))
+    plain["structs"] = values["structs"] = [[unit.s(x=1.5), unit.s(x=2.5)]] * 4
+    rows = {name: [*value] if isinstance(value, np.ndarray) else value for name, value in values.items()}
+    others = {
+        "m": [np.array([0, 1, 2]), *rows["m"][1:]],
+        "v": [[-4, -3], *rows["v"][1:]],
+        "b": [[1, 0]] * 4,
+        "x": [rows["x"][0].astype(float), rows["x"][1]],
+    }
+    for given_ in (values, plain, rows, {**rows, **others}, vars_of(unit.decode(message), values)):
+        assert unit.encode(unit.T(**given_)) == message
+    wrong = {"m": [rows["m"][0][:2], *rows["m"][1:]], "v": np.full((5, 2), 70000), "b": rows["b"][:3], "x": np.zeros((2, 3, 2))}
+    for name, value in {**wrong, "m ": rows["m"][:4], "v ": [*rows["v"][:4], np.zeros((2, 1), np.int16)], "b ": "abcd"}.items():
+        with pytest.raises(unit.EncodeError):
+            unit.encode(unit.T(**{**rows, name.strip(): value}))
+    with pytest.raises(unit.EncodeError, match=r"count at \.m\[3\]"):
+        unit.encode(unit.T(**{**rows, "m": [*rows["m"][:3], np.zeros(2), rows["m"][4]]}))
+    answers_as_the_library(unit, programs, harmed([message, bytes(programs[1](programs[1].holder_type()))], 12, "tables"))
+
+
+def vars_of(message, names):
+    """Attributes by their names."""
+    return {name: getattr(message, name) for name in names}

@@ -302,3 +302,29 @@ def test_texts_and_cases_of_messages_are_read_where_they_are_checked():
     good += [one + two + three for one in cases for two in cases[1:5] for three in cases]
     bad = [b"\x0a\x01\xff", b"\x12\x02\xc3", b"\x1a\x03\x12\x01\x80", b"\x22\x01\xc3", b"\x2a\x03\x12\x01\xff", b"\x2a\x04\x12\x03a"]
     answers_as_the_library(unit, programs, [*good, *bad, *(each[:-1] for each in good), *(one + two for one in cases for two in bad)])
+
+
+def test_rows_of_many_numbers_are_read_by_one_call():
+    """Of lists and maps, also within others; what is left of a row that lacks fields are their defaults."""
+    given = protobuf(
+        "message Q { int32 a = 1; double b = 2; bool c = 3; string d = 4; bytes e = 5; optional float f = 6; optional bool g = 7; "
+        "sint64 h = 8; oneof k { int32 i = 9; string j = 10; } } message R { repeated Q many = 1; } "
+        "message M { repeated Q some = 1; map<string, Q> named = 2; repeated R rows = 3; map<int32, R> maps = 4; }"
+    )
+    request = type_request("decode", "t.M", given)
+    text = generated(request, "python", BOTH, "unit")["unit.py"]
+    assert text.count(" in _unpack_each(") == 4
+    assert "some_a, some_h, some_b, " not in text
+    unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    whole = {"a": -5, "b": -0.0, "c": True, "d": "ä", "e": b"\0", "f": 1.5, "g": False, "h": -(2**40), "j": "x"}
+    rows = [whole, {}, {"g": True}, {"i": 0}, {"d": "only"}, {"f": 0.0}]
+    value = {"some": rows, "named": {str(at): row for at, row in enumerate(rows)}, "rows": [{"many": rows[:count]} for count in (0, 1, 6)]}
+    value["maps"] = {-1: {"many": rows}, 0: {}}
+    message = bytes(programs[1](programs[1].holder_type.from_dict(value)))
+    found = unit.decode(message)
+    cases = [("j", "x"), None, None, ("i", 0), None, None]
+    assert found.some == [
+        unit.Q(**{name: each[name] for name in each if name not in "ij"}, k=k) for each, k in zip(rows, cases, strict=True)
+    ]
+    assert (found.rows[2].many, found.rows[0].many, found.named["0"].c) == (found.some, [], True)
+    answers_as_the_library(unit, programs, harmed([message, b"\x0a\x00", b"\x1a\x02\x0a\x00"], 60, "rows"))

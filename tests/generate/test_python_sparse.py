@@ -126,3 +126,19 @@ def test_numbers_are_asked_for_what_they_are_where_they_are_no_defaults(label):
         for wrong in (None, 0, False):
             with pytest.raises(unit.EncodeError):
                 unit.encode(unit.M(**{name: wrong}))
+
+
+def test_presence_words_that_nothing_asks_for_are_not_kept():
+    """Where all fields say by themselves whether they have come; a message that is made in the end asks its word."""
+    inner = "message S { int32 n = 1; optional int32 m = 2; }"
+    for body, is_kept in (
+        (" ".join(f"S f{each} = {each + 1};" for each in range(9)), False),
+        (" ".join(f"optional int32 f{each} = {each + 1};" for each in range(9)), False),
+        ("optional int32 f0 = 1; S f1 = 2;", True),
+    ):
+        given = protobuf(f"{inner} message M {{ {body} }}")
+        request, programs = type_request("decode", "t.M", given), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+        text = generated(request, "python", BOTH, "unit")["unit.py"]
+        assert ("m_presence_0 = present" in text) == is_kept
+        good = [b"", b"\x0a\x02\x08\x05\x12\x00", b"\x08\x05\x12\x02\x08\x01", b"\x08\x00", b"\x42\x00\x0a\x02\x10\x00"]
+        answers_as_the_library(module(request), programs, harmed(good, 20, body))

@@ -25,6 +25,7 @@ from rosetta_jit.generate.python.scope import CODES, Scope, flat_name, view_name
 from rosetta_jit.generate.python.search import FEW, direct
 from rosetta_jit.generate.python.statements import print_block
 from rosetta_jit.generate.python.sums import ends_first, with_locals
+from rosetta_jit.generate.python.unasked import unasked_words, without_words
 from rosetta_jit.generate.python.visiting import OF_READERS, counts_of_rows, print_readers, with_copy
 from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.shares import moved_lanes
@@ -161,7 +162,9 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
     function.settled = settled(body)
     if kernel.direction == "decode" and scope.flat:
         scope.attributes = objects.attributes(body, function.settled, scope.direct)
-    function.read, function.positive = read_names(body, scope.direct.read()), not_negative(body, behind)
+    function.unasked = unasked_words(body, objects.layout, scope)
+    function.read = read_names(without_words(body, function.unasked), scope.direct.read())
+    function.positive = not_negative(body, behind)
     function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, nodes.Reserve))
     blocks = (body, *(routine.body for routine in kernel.routines))
     exprs = (expr for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt))

@@ -144,7 +144,9 @@ class Written:
         else:
             names = [name for name, lane in self.scope.counts.items() if lane == sequence.lane and name in self.function.read]
             count = self.scope.locals.identifier(names[0]) if names else f"len({own})"
-            self.pending.append(Part("", "", (f'Struct(f"{order.replace("<", "")}{{{count}}}{code}").pack(*{own})',)))
+            native = order == "<" and code in "qQ"
+            codes = f"{{{count}}}{f'{{_{code}}}' if native else code}"
+            self.pending.append(Part("", "", (f'Struct(f"{order.replace("<", "")}{codes}").pack(*{own})',)))
 
     def _each(self, sequence: Listed, codes: tuple[str, ...]) -> None:
         """Rows that are numbers."""

@@ -83,7 +83,7 @@ class _Module:
             runtime = runtime.replace(
                 "from typing import Any\n", "from typing import Any\n\nimport numpy as np\nimport numpy.typing as npt\n"
             )
-            runtime += f"\n\n\n{arrays[arrays.index('class ') :].rstrip()}"
+            runtime += f"\n\n\n{arrays[arrays.index('_Array') :].rstrip()}"
         made = "\n".join(
             f"# {ascii(' '.join(line.split()))[1:-1]}" for line in ("Made by rosetta-jit. Changes will be lost.", *self.unit.made_from)
         )

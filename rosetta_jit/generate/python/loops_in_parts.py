@@ -9,6 +9,7 @@ from rosetta_jit.generate.python.bools import Bools, bools_written
 from rosetta_jit.generate.python.flags import Flags, flags_of
 from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.messages_in_parts import Messages
+from rosetta_jit.generate.python.nested_arrays import MANY, Nested, nested_of
 from rosetta_jit.generate.python.object_rows import Listed
 from rosetta_jit.generate.python.positions import NotInParts, Sum, known_width
 from rosetta_jit.generate.python.scope import CODES
@@ -19,9 +20,13 @@ from rosetta_jit.model.layout import Number
 
 
 class Loops(Messages):
-    """Prints loops; ``block`` prints the statements in them, ``reads`` says how often anything reads a local."""
+    """Prints loops; ``block`` prints the statements in them, ``reads`` says how often anything reads a local.
+
+    ``in_nested`` is whether the loop at hand is within one through arrays of which numpy joins all.
+    """
 
     reads: Counter[str]
+    in_nested = False
 
     def block(self, block: nodes.Block) -> None:
         """The statements of a block."""
@@ -44,6 +49,8 @@ class Loops(Messages):
         begin = self.positions.at
         exact, objects = dict(self.exact), dict(self.scope.objects)
         self._check_numbers(loop)
+        nested = nested_of(loop, self.function.read) if self.unit.numpy and not self.in_nested else None
+        self.in_nested |= nested is not None
         lines = self.function.writer.lines
         before = len(lines)
         with self.function.writer.indented(self._head(loop, is_counted=True)):
@@ -52,16 +59,35 @@ class Loops(Messages):
             self.flush()
         if not any(re.search(rf"\b{self.scope.locals.identifier(loop.variable)}\b", line) for line in lines[before + 1 :]):
             lines[before] = lines[before][: -len(lines[before].lstrip())] + f"{self._head(loop, is_counted=False)}"
-            before -= self._without_count(loop, before)
+            before -= nested is None and self._without_count(loop, before)
         if len(lines) == before + 1:
             lines.pop()  # the loop does nothing
         elif (flags := flags_of(loop)) is not None and (sequence := self._sequence_of_flags(loop, flags)) is not None:
             del lines[before:]
             self.line(f"{self.list_name} += [{flags.true!r} if each else {flags.false!r} for each in {sequence.local}]")
+        elif nested is not None and isinstance((slot := self.unit.layout.lanes[nested.lane].element), Number):
+            self._nested(nested, slot.scalar, loop, before)
+        self.in_nested &= nested is None
         self.exact, self.scope.objects = exact, objects
         self._end(holds, begin, width)
         if holds is None:
             self.positions.at = outer.plus(self.positions.sum(loop.count), width)
+
+    def _nested(self, nested: Nested, scalar: str, loop: nodes.For, at: int) -> None:
+        """Ask numpy for all numbers of a loop, whose lines begin ``at``, before it."""
+        writer, sequence = self.function.writer, self._sequence_of(loop)
+        if sequence is None or self.scope.sequences[nested.lane].element is None:
+            return
+        lines, own = writer.lines[at:], self.binder.local("rows")
+        del writer.lines[at:]
+        shape = ", ".join(self.function.text(each) for each in nested.lengths)
+        is_bool = ", is_bool=True" if scalar == "bool" else ""
+        asked = "" if isinstance(loop.count, nodes.Const) else f" if {self.function.text(loop.count)} >= {MANY} else None"
+        self.line(f"{own} = _table({self.scope.dtype(scalar, nested.order)}, {sequence.local}, ({shape}){is_bool}){asked}")
+        with writer.indented(f"if {own} is not None:"):
+            self.line(f"{self.list_name}.append({own})")
+        self.line("else:")
+        writer.lines += [f"    {line}" for line in lines]
 
     def _without_count(self, loop: nodes.For, at: int) -> bool:
         """Leave out the line above a loop which says how many rounds it has, where nothing else needs that."""

@@ -17,6 +17,10 @@ _HOW = {"utf-8": "", "octets": '"utf-8", "surrogateescape"'}
 """How texts are decoded: those that were checked, and others."""
 
 
+MANY_NUMBERS = 6
+"""Numbers of a row from which on one call that reads all of them takes less time than as many that read one."""
+
+
 @dataclass(slots=True)
 class Make:
     """Expressions for objects; ``names`` are the classes, ``reserved`` the lanes of which the kernel takes rows: others stay empty.
@@ -194,16 +198,28 @@ class Make:
                 text_lane, rows = self.scope.view(element.lane, ""), self.scope.view(slot.lane, "q")
                 return f"_texts({text_lane}, data, {rows}[{_rows(start, count, 2)}])"
             case Array(inner):
-                return f"[{self._each(lambda index: self.row(inner, slot.lane, index), start, count)}]"
+                return f"[{self._each(lambda index: self.row(inner, slot.lane, index), slot.lane, start, count)}]"
             case Map(key, value):
                 assert isinstance(element, Row)
                 pair = [(each.type, member.slot) for each, member in zip(map_entry(key, value).fields, element.members, strict=True)]
-                return f"{{{self._each(lambda index: ': '.join(self.value(*each, slot.lane, index) for each in pair), start, count)}}}"
 
-    def _each(self, text: Callable[[str], str], start: str, count: str) -> str:
+                def entry(index: str) -> str:
+                    return ": ".join(self.value(*each, slot.lane, index) for each in pair)
+
+                return f"{{{self._each(entry, slot.lane, start, count)}}}"
+
+    def _each(self, text: Callable[[str], str], lane: int, start: str, count: str) -> str:
         """The text of each element by the name of its index, in a comprehension."""
         self.depth += 1
         index = f"i_{self.depth}"
+        fields = self.scope.unpacked[lane, index] = dict[int, str]()
+        found = text(index)
+        del self.scope.unpacked[lane, index]
+        if (codes := row_codes(fields, self.scope.lanes.stride(lane))) and not re.search(rf"\b{index}\b", found):
+            names = ", ".join(self.scope.own(lane, offset, fields[offset]) for offset in sorted(fields))
+            rows = f"{self.scope.view(lane, '')}[{_rows(start, count, self.scope.lanes.stride(lane))}]"
+            self.depth -= 1
+            return f'{found} for {names} in _unpack_each("{codes}", {rows})'
         found = f"{text(index)} for {index} in range({count if start == '0' else f'{start}, {start} + {count}'})"
         self.depth -= 1
         return found
@@ -259,6 +275,20 @@ class Make:
         if self.unit.layout.lanes[lane].links is not None:
             return f"made_{self.scope.lanes.rows(lane)}({index})"
         return self.value(type_, self.unit.layout.lanes[lane].element, lane, index)
+
+
+def row_codes(fields: Mapping[int, str], stride: int) -> str:
+    """Rows of which many numbers are needed, for the struct module; nothing where they are few, or lie in one another."""
+    if len(fields) < MANY_NUMBERS:
+        return ""
+    codes, at = "=", 0
+    for offset in sorted(fields):
+        if offset < at:
+            return ""
+        codes += f"{offset - at}x" if offset > at else ""
+        codes += CODES[fields[offset]] if fields[offset] != "bool" else "?"
+        at = offset + WIDTH[fields[offset]]
+    return codes + (f"{stride - at}x" if stride > at else "")
 
 
 def _rows(start: str, count: str, each: int = 1) -> str:

@@ -68,9 +68,9 @@ class Function:
     """One function being printed; ``routines`` are functions by name with what they need.
 
     ``settled`` are the fields of the message's row, by offset and type, that are set whatever the message is before any is read.
-    ``positive`` are the locals that are not negative; ``reserved`` says how often rows of a lane are reserved, ``outside`` of which lanes
-    that is not within a loop or a case, and nothing asks for their room. ``measured`` are the hidden lanes that an encoder gets as
-    measuring has left them.
+    ``unasked`` are the presence words for which nothing asks. ``positive`` are the locals that are not negative; ``reserved`` says how
+    often rows of a lane are reserved, ``outside`` of which lanes that is not within a loop or a case, and nothing asks for their room.
+    ``measured`` are the hidden lanes that an encoder gets as measuring has left them.
     """
 
     scope: Scope
@@ -80,6 +80,7 @@ class Function:
     origins: Sequence[Origin]
     objects: Objects
     settled: frozenset[tuple[int, str]] = frozenset()
+    unasked: frozenset[nodes.Place] = frozenset()
     read: frozenset[str] = frozenset()
     is_routine: bool = False
     measured: range = range(0)

@@ -50,6 +50,7 @@ class Scope:
     that lanes belong to; ``counted`` and ``rooms`` are lanes, ``loads`` functions that it needs, ``from_call`` what each call brings:
     its time and number, registers, object. ``small`` are the locals of 64 bits, without a sign, that are known to be below 2**63,
     ``sums`` those that are sums.
+    ``unpacked`` are rows, by lane and index, whose numbers are locals of a comprehension: it gets their types by offset.
     ``attributes`` are the fields of the message's row that are the object's at once, by offset, if it is made first.
     """
 
@@ -72,6 +73,7 @@ class Scope:
     numpy: bool = False
     small: set[str] = field(default_factory=set[str])
     sums: dict[nodes.Expr, str] = field(default_factory=dict[nodes.Expr, str])
+    unpacked: dict[tuple[int, str], dict[int, str]] = field(default_factory=dict[tuple[int, str], dict[int, str]])
 
     def note(self, name: str, *, is_small: bool) -> None:
         """Know of a local whether it is below 2**63."""
@@ -167,7 +169,10 @@ class Scope:
             if scalar in FLOATS or scalar == "bool":
                 (self.bools if scalar == "bool" else self.floats).add(name)
             return name
-        if lane in self.direct.appended or lane in self.direct.whole:
+        if (unpacked := self.unpacked.get((lane, row))) is not None:
+            unpacked[offset] = scalar
+            self.bools |= {self.own(lane, offset, scalar)} if scalar == "bool" else set()
+        if lane in self.direct.appended or lane in self.direct.whole or unpacked is not None:
             return self.own(lane, offset, scalar)
         width, stride = nodes.WIDTH[scalar], self.lanes.stride(lane)
         return f"{self.view(lane, CODES[scalar])}[{scaled(row, stride // width, offset // width)}]"

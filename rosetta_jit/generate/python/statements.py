@@ -86,6 +86,8 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
                 function.scope.forget({name} if isinstance(stmt, nodes.Assign) else set())
                 if isinstance(stmt, nodes.Let) and isinstance(value, nodes.Binary) and value.op == "add":
                     function.scope.sums[value] = function.scope.locals.identifier(name)
+        case nodes.SetField(place) if place in function.unasked:
+            pass
         case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             _effect(function, stmt)
         case nodes.Reserve(lane, count):

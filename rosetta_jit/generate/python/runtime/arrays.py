@@ -8,6 +8,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+_Array = np.ndarray
+_PLAIN = frozenset(map(np.dtype, "?bBhHiIlLqQfd"))
+"""The types of arrays of numbers as this machine has them."""
+
 
 class _Comparable:
     """Objects are equal if their attributes are; arrays are if their elements are."""
@@ -40,22 +44,24 @@ def _array(dtype: "np.dtype[Any]", data: Any, count: int, at: int, copy: bool) -
 
 def _few(numbers: Any) -> Any:
     """Few numbers as Python's, which are packed together with those around them."""
-    return numbers.tolist() if type(numbers) is np.ndarray and numbers.dtype.kind not in "mM" else numbers
+    if type(numbers) is not _Array:
+        return numbers
+    return numbers.tolist() if numbers.dtype in _PLAIN or numbers.dtype.kind not in "mM" else numbers
 
 
 def _integers(dtype: "np.dtype[Any]", numbers: Any) -> Any:
     """The integers of an array as Python's; raises `ValueError` where they are none that the field can have."""
-    if type(numbers) is not np.ndarray:
+    if type(numbers) is not _Array:
         return array(dtype.char, numbers).tolist()
     return numbers.tolist() if numbers.dtype is dtype and numbers.ndim == 1 else np.frombuffer(_raw(dtype, numbers), dtype).tolist()
 
 
 def _raw(dtype: "np.dtype[Any]", numbers: Any, is_bool: bool = False) -> bytes:
     """The bytes of numbers; raises `ValueError` where they are not of one dimension, or cannot be what the field has."""
-    if type(numbers) is np.ndarray and numbers.ndim == 1:
+    if type(numbers) is _Array and numbers.ndim == 1:
         if numbers.dtype is dtype:
             return numbers.tobytes()
-        if numbers.dtype.type is dtype.type:
+        if numbers.dtype.type is (np.bool_ if is_bool else dtype.type):
             return numbers.astype(dtype).tobytes()
     found: npt.NDArray[Any] = np.asarray(numbers, np.bool_ if is_bool else None)
     if found.ndim != 1:
@@ -70,3 +76,14 @@ def _raw(dtype: "np.dtype[Any]", numbers: Any, is_bool: bool = False) -> bytes:
     if not fit.all():
         raise ValueError(f"a number that does not fit {dtype.type.__name__}")
     return converted.tobytes()
+
+
+def _table(dtype: "np.dtype[Any]", rows: Any, shape: tuple[int, ...], is_bool: bool = False) -> bytes | None:
+    """The bytes of arrays in arrays, of a shape; nothing where they have another one, or numbers of another type."""
+    try:
+        found: npt.NDArray[Any] = np.asarray(rows)
+    except (TypeError, ValueError):
+        return None
+    if found.shape != shape or found.dtype.type is not (np.bool_ if is_bool else dtype.type):
+        return None
+    return found.astype(dtype, copy=False).tobytes()

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from io import BytesIO
 from typing import Any
 
-_LONG = 65536
+_LONG, _LONG_TEXT = 65536, 40960
 
 
 class _Long:
@@ -35,7 +35,7 @@ class _LongText:
 
 def _utf8(text: str) -> Any:  # pyright: ignore[reportUnusedFunction]
     """A text as UTF-8."""
-    return _LongText(text) if len(text) >= _LONG and text.isascii() else text.encode("utf-8", "surrogateescape")
+    return _LongText(text) if len(text) >= _LONG_TEXT and text.isascii() else text.encode("utf-8", "surrogateescape")
 
 
 def _long(part: Any) -> Any:  # pyright: ignore[reportUnusedFunction]
@@ -64,7 +64,7 @@ def _whole(parts: Any) -> bytes:  # pyright: ignore[reportUnusedFunction]
 
 def _write(parts: Any, write: Callable[[Any], Any]) -> None:
     for each in parts:
-        if isinstance(each, _Long):
+        if type(each) is _Long:
             _write(each.parts, write)
         else:
-            write(each.text.encode() if isinstance(each, _LongText) else each)
+            write(each.text.encode() if type(each) is _LongText else each)

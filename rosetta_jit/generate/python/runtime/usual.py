@@ -81,6 +81,9 @@ def _error(sites: tuple[tuple[Any, ...], ...], failed: _Failed, end: int | None)
 _ZERO, _ZERO_FLOAT = 0, 0.0
 """What numbers are that nobody has set: the same objects as defaults, so that it takes no call to see that."""
 
+_q, _Q = ("l", "L") if Struct("l").size == 8 else ("q", "Q")
+"""Integers of 64 bits for the struct module, which packs those of C's type long in less time where they have as many."""
+
 _NOTHING = bytearray()
 """Rows of lanes that have no room yet."""
 
