@@ -48,7 +48,7 @@ from rosetta_jit.startup.late import late
 from rosetta_jit.wire.codec import Encoding, Rare
 
 if TYPE_CHECKING:
-    from rosetta_jit.backends.entry.program import Options, Program
+    from rosetta_jit.backends.entry.program import Options
     from rosetta_jit.language.check.mapping import Checked
     from rosetta_jit.pipeline import checked_mapping, mapped, stages
     from rosetta_jit.pipeline.checked_mapping import CheckedMapping
@@ -294,30 +294,31 @@ class Build:
     def image(self) -> bytes:
         """The object code."""
         imported("rosetta_jit.backends.entry.link")
-        from rosetta_jit.backends.entry.link import code_of
+        from rosetta_jit.backends.entry.link import compile_program
 
-        return code_of(self._program)
-
-    @cached_property
-    def _program(self) -> Program:
-        """What is compiled."""
-        from rosetta_jit.backends.entry.program import Program
-
-        return Program(self.kernels, self.entry, {**self.compiled_with, "leaves_rest": True})
+        return compile_program(self.kernels, self.entry, **self.compiled_with)
 
     @property
     def _rest(self) -> dict[str, Any] | None:
         """The rest of the calls, which are compiled when they are asked for; None where the code has them."""
+        from rosetta_jit.backends.entry.program import Program
         from rosetta_jit.backends.entry.texts import rest_text
 
-        text = rest_text(self._program) if self._program.leaves_rest else None
-        return None if text is None else {"symbols": self._program.rest_symbols, **text.plain}
+        program = Program(self.kernels, self.entry, {"with_numba": False, "host": self.host, "leaves_rest": True})
+        text = rest_text(program) if program.leaves_rest else None
+        return None if text is None else {"symbols": program.rest_symbols, **text.plain}
 
     @property
     def compiled_with(self) -> Options:
         """What the code depends on besides the kernels and the entry."""
         opening = None if self.rare is None else self.rare.opening
-        return {"with_numba": self.backend.types_kernels, "functions": self.functions, "opening": opening, "host": self.host}
+        return {
+            "with_numba": self.backend.types_kernels,
+            "functions": self.functions,
+            "opening": opening,
+            "host": self.host,
+            "leaves_rest": True,
+        }
 
     def stage(self, stage: str) -> str:
         """What the program became, as text."""

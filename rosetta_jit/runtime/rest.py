@@ -33,12 +33,14 @@ class Rest:
         self._place = ctypes.c_int64.from_address(addresses[REST])
         self._kernels = {name: addresses[name] for name in KERNELS if name in addresses}
         self._symbols, self._compiled = symbols, compiled
-        self._library: native.Library | None = None
+        self._libraries: list[native.Library] = []
 
     def made(self) -> native.Library:
-        """The code, which the usual call finds from now on. Threads may come here at once: they share what they make."""
-        library = self._library
-        if library is None:
-            library = self._library = native.load(self._compiled(), self._symbols, given=self._kernels)
-            self._place.value = library[ANY_CALL]
-        return library
+        """The code, which the usual call finds from now on.
+
+        Threads may come here at once: what they have made is the same, and all of it stays, as a call may be running in it.
+        """
+        if not self._libraries:
+            self._libraries.append(native.load(self._compiled(), self._symbols, given=self._kernels))
+            self._place.value = self._libraries[0][ANY_CALL]
+        return self._libraries[0]

@@ -10,6 +10,7 @@ import struct
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier
 
 import pytest
 
@@ -54,8 +55,12 @@ def messages(size):
     return [bytes(size) + struct.pack(f"<dI{n}sI{n}s", n / 2, n, b"t" * n, n, bytes(range(n))) for n in range(1, 5)]
 
 
+def rest_of(program):
+    return program._loaded.library.later.__self__
+
+
 def is_made(program):
-    return program._loaded.library.later.__self__._library is not None
+    return bool(rest_of(program)._libraries)
 
 
 def values(holder):
@@ -156,6 +161,25 @@ def test_threads_meet_the_first_call_at_once(of, messages):
     with ThreadPoolExecutor(8) as pool:
         found = list(pool.map(lambda number: values(decode(messages[number % 4], decode.new())), range(200)))
     assert found == [values(decode(messages[number % 4], decode.new())) for number in range(200)]
+
+
+def test_what_threads_have_made_at_once_stays(of, messages):
+    """Each would free what the other one runs, if the last one took the place of those before."""
+    decode = of(rj.Decoder)
+    rest, both = rest_of(decode), Barrier(2)
+    compiled = rest._compiled
+
+    def together():
+        both.wait(10)
+        return compiled()
+
+    rest._compiled = together
+    with ThreadPoolExecutor(2) as pool:
+        one, other = pool.map(lambda _: rest.made(), range(2))
+    assert one is other is rest.made()
+    assert len(rest._libraries) == 2
+    assert rest._place.value == one["any_call"]
+    assert values(decode(messages[0], decode.new()))[1] == "t"
 
 
 def test_it_lives_as_long_as_the_code_that_calls_it(of, messages, size):

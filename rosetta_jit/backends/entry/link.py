@@ -55,18 +55,14 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpa
 
     ``kernels`` are verified: one, or to encode the encoder and its size kernel; of a bridge, the decoder, the size kernel and the encoder.
     """
-    return code_of(Program(kernels, entry, options))
-
-
-def code_of(program: Program) -> bytes:
-    """The same of a program."""
     if is_prelinking():
+        program = Program(kernels, entry, options)
         machine = target_machine(hurried=program.is_vast)
         module = _own(program, machine)
         code = prelinked(machine.emit_object(module), *_surroundings(module, program), gives=program.exported)
         if code is not None:
             return code
-    return object_file(program.kernels, program.entry, **program.options)
+    return object_file(kernels, entry, **options)
 
 
 def object_file(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:

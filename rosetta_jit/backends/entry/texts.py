@@ -57,7 +57,8 @@ class EntryText:
     registers
         How many values kernels keep for the next message.
     inline
-        Of each kernel, whether its calls that are to be quick become its body: the functions' attributes ``#0`` to ``#2``.
+        Of each kernel, whether calls of it that are to be quick become its body: the functions' attributes ``#0`` to ``#2``. The rest has
+        no such calls.
     """
 
     files: tuple[str, ...]
@@ -65,7 +66,7 @@ class EntryText:
     inline: tuple[bool, ...]
 
     @classmethod
-    def of(cls, files: Sequence[str], program: Program) -> EntryText:
+    def of(cls, files: Sequence[str], program: Program, *, is_quick: bool = True) -> EntryText:
         """The module of some files, with what they share, for a program."""
         shared = (
             "shared.ll",
@@ -78,7 +79,7 @@ class EntryText:
         large = (_large_file(),) if NEW_BYTES in files else ()
         count = max(kernel.registers for kernel in program.kernels)
         kept = "registers.ll" if count else "no_registers.ll"
-        return cls((*shared, *large, kept, *files), count, program.are_short)
+        return cls((*shared, *large, kept, *files), count, program.are_short if is_quick else ())
 
     @classmethod
     def of_plain(cls, plain: Mapping[str, Any]) -> EntryText:
@@ -119,7 +120,7 @@ def rest_text(program: Program) -> EntryText | None:
     files = ALONE if program.has_own_many else REST[program.entry]
     if program.leaves_something:
         files = tuple("leaving.ll" if each == "unmeasured.ll" else each for each in files)
-    return EntryText.of(files, program) if files else None
+    return EntryText.of(files, program, is_quick=False) if files else None
 
 
 def _found_rest(program: Program) -> tuple[str, ...]:
