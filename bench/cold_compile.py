@@ -48,11 +48,10 @@ class Clock:
 def main(mapping: str, backend: Backend) -> dict[str, float]:
     clock = Clock()
     with clock.stage("import"):
-        from rosetta_jit.kernel.entries import SYMBOLS
+        from rosetta_jit.api import loading
         from rosetta_jit.kernel.passes import order as passes
         from rosetta_jit.pipeline.build import Build
         from rosetta_jit.pipeline.request import Request
-        from rosetta_jit.runtime.code import native
     if backend == "numba":
         with clock.stage("import numba"):
             from rosetta_jit.backends.numba import function as numba
@@ -66,7 +65,7 @@ def main(mapping: str, backend: Backend) -> dict[str, float]:
     with clock.stage("LLVM"):
         image = build.image()
     with clock.stage("load"):
-        native.load(image, SYMBOLS[build.entry])
+        loading.library(image, build.header)
     return clock.ms
 
 
