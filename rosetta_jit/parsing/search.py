@@ -9,6 +9,7 @@ or by an absolute path.
 from __future__ import annotations
 
 import os
+from codecs import BOM_UTF8
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from itertools import islice
@@ -232,6 +233,6 @@ def _text(name: str, data: bytes) -> Source:
     if len(data) > MAX_FILE_BYTES:
         raise SchemaError((words.file_too_large(name, MAX_FILE_BYTES),))
     try:
-        return Source(name, data.decode("utf-8-sig"))
+        return Source(name, data.removeprefix(BOM_UTF8).decode())
     except UnicodeDecodeError as error:
         raise SchemaError((words.file_not_text(name),)) from error

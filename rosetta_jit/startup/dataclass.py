@@ -65,38 +65,47 @@ if not TYPE_CHECKING:
 
 
 def _made(plain: type[Any], options: Mapping[str, bool]) -> type[Any]:
-    own, said = vars(plain), plain.__annotations__
-    if _is_special(plain):
+    own, types = vars(plain), " ".join(map(str, plain.__annotations__.values()))
+    if "InitVar" in types or _is_special(plain):
         return _standard(plain, options)
     if not plain.__doc__:
         plain.__doc__ = plain.__name__  # else the standard library writes the signature there, for which it imports and asks `inspect`
-    fields = {name: _field(own[name]) if name in own else _PLAIN for name, each in said.items() if not str(each).startswith("ClassVar")}
+    are_plain = "ClassVar" not in types and own.keys().isdisjoint(plain.__annotations__)
+    fields = dict.fromkeys(plain.__annotations__, _PLAIN) if are_plain else _fields(plain)
     names: dict[str, Any] = {}
     given = {name: each for name, each in own.items() if name not in fields and name not in _OF_EACH_CLASS}
     given["__slots__"] = (*fields, "__weakref__") if options.get("weakref_slot") else (*fields,)
     given["__qualname__"] = plain.__qualname__
-    given["__init__"] = _init(fields, names, has_post_init=hasattr(plain, "__post_init__"))
+    given["__init__"] = _init(fields, names, are_plain=are_plain, has_post_init=hasattr(plain, "__post_init__"))
     given["__declared__"] = Declared(plain, options, fields)
     given |= _DESCRIBED
-    _add_methods(given, fields, options)
+    _add_methods(given, fields, options, are_plain=are_plain)
     kind: Any = type(plain)
     made: Any = kind(plain.__name__, plain.__bases__, given)
-    for number, (name, each) in enumerate(fields.items()):
-        store = getattr(made, name).__set__
-        names[f"set{number}"] = store if each.default_factory is MISSING else _made_anew(store, each.default_factory)
+    names |= {f"set{number}": getattr(made, name).__set__ for number, name in enumerate(fields)}
+    if not are_plain:
+        for number, each in enumerate(fields.values()):
+            if each.default_factory is not MISSING:
+                names[f"set{number}"] = _made_anew(names[f"set{number}"], each.default_factory)
     return made
 
 
 def _is_special(plain: type[Any]) -> bool:
-    """Whether a class inherits fields, or brings what is to be made, or values of which no field is made."""
-    if plain.__bases__ != (object,) and any(hasattr(base, _FIELDS) for base in plain.__bases__):
-        return True
-    return not _OWN.isdisjoint(vars(plain)) or "InitVar" in "".join(map(str, plain.__annotations__.values()))
+    """Whether a class inherits fields, or brings what is to be made."""
+    inherits = plain.__bases__ != (object,) and any(hasattr(base, _FIELDS) for base in plain.__bases__)
+    return inherits or not _OWN.isdisjoint(vars(plain))
 
 
-def _add_methods(given: dict[str, Any], fields: Mapping[str, Field], options: Mapping[str, bool]) -> None:
+def _fields(plain: type[Any]) -> dict[str, Field]:
+    """The fields of a class of which some have more than a type."""
+    own = vars(plain)
+    said = ((name, own.get(name, _PLAIN)) for name, each in plain.__annotations__.items() if not str(each).startswith("ClassVar"))
+    return {name: _field(each) for name, each in said}
+
+
+def _add_methods(given: dict[str, Any], fields: Mapping[str, Field], options: Mapping[str, bool], *, are_plain: bool) -> None:
     """All that a class gets, given to it at once, because a class that is changed tells all that have looked at it."""
-    if all(each is _PLAIN for each in fields.values()):
+    if are_plain:
         parameters = compared = tuple(fields)
     else:
         parameters = tuple([name for name, each in fields.items() if each.init])
@@ -168,9 +177,9 @@ _OF_EACH_CLASS = ("__dict__", "__weakref__")
 """What every class without slots has of its own."""
 
 
-def _init(fields: Mapping[str, Field], names: dict[str, Any], *, has_post_init: bool) -> Callable[..., None]:
+def _init(fields: Mapping[str, Field], names: dict[str, Any], *, are_plain: bool, has_post_init: bool) -> Callable[..., None]:
     """Objects are made often, and generic code would be slow at it: each class has its own, with ``names`` of its own for what it needs."""
-    if 0 < len(fields) <= len(STORES) and not has_post_init and all(each is _PLAIN for each in fields.values()):
+    if are_plain and 0 < len(fields) <= len(STORES) and not has_post_init:
         return _named(STORES[len(fields) - 1], ("self", *fields), names, ())
     kinds: list[tuple[bool, bool]] = []
     defaults: list[Any] = []
