@@ -13,6 +13,7 @@ from typing import Literal
 
 from rosetta_jit.generate.c.rows import Element, SpanType, Struct, path_to
 from rosetta_jit.generate.c.words import C_ROWS, RESERVED
+from rosetta_jit.kernel.nodes import Expr, For
 from rosetta_jit.startup.dataclass import dataclass, field
 
 OWN_WORDS = frozenset(
@@ -78,6 +79,20 @@ class Straight:
 
 
 @dataclass(frozen=True, slots=True)
+class Packed:
+    """A loop that sets the elements of a list, which lie in the message as ``lies``, a condition, says that they do in an object.
+
+    ``at`` is where the first one is there, ``size`` how many bytes each has. ``copy`` is the function that copies elements.
+    """
+
+    lane: int
+    at: Expr
+    size: int
+    lies: str
+    copy: str
+
+
+@dataclass(frozen=True, slots=True)
 class Given:
     """An array of an object, whose elements are rows: what gives it a `$count` of them, and the first one until then."""
 
@@ -92,8 +107,9 @@ class Lanes:
     The rows of ``addressed`` lanes are bytes anywhere in memory, by their addresses; those of ``viewed`` lanes are made of an object's
     elements when they are read. ``row``: the functions are given the message's row. ``straight`` are the fields, by lane and offset, that
     no row keeps, as an object has them; the rows of ``opened`` lanes are elements of the object, and so are those of ``given`` ones, of
-    which each message has one array. ``shared`` begins the names of functions of the support, where they are those of a header.
-    ``forward``: a message is written from its begin to its end, so that bytes behind those that are written are not in use.
+    which each message has one array. ``packed`` are loops that may copy all elements at once. ``shared`` begins the names of functions of
+    the support, where they are those of a header. ``forward``: a message is written from its begin to its end, so that bytes behind those
+    that are written are not in use.
     """
 
     prefix: str
@@ -106,6 +122,7 @@ class Lanes:
     straight: Mapping[tuple[int, int], Straight] = field(default_factory=dict[tuple[int, int], Straight])
     opened: frozenset[int] = frozenset()
     given: Mapping[int, Given] = field(default_factory=dict[int, "Given"])
+    packed: Mapping[For, Packed] = field(default_factory=dict["For", "Packed"])
     shown: Mapping[int, str] = field(default_factory=dict[int, str])
     shared: str = ""
     forward: bool = True

@@ -282,7 +282,7 @@ def _print_nested(function: Function, stmt: nodes.For | nodes.While | nodes.If |
             if not isinstance(count, nodes.Const | nodes.Local):
                 function.line(f"const int64_t {(before := scope.locals.identifier(f'{variable} count'))} = {bound};")
                 bound = before
-            with function.block(f"for (int64_t {name} = 0; {name} < {bound}; {name}++)"):
+            with _unless_copied(function, stmt, bound), function.block(f"for (int64_t {name} = 0; {name} < {bound}; {name}++)"):
                 print_block(function, body)
         case nodes.While(condition, body):
             rounds = rounds_of(stmt) if scope.lanes.dialect == "c++" else None
@@ -301,6 +301,24 @@ def _print_nested(function: Function, stmt: nodes.For | nodes.While | nodes.If |
                 _case(function, "default:", default)
         case _:
             assert_never(stmt)
+
+
+@contextmanager
+def _unless_copied(function: Function, stmt: nodes.For, count: str) -> Generator[None]:
+    """Around a loop that sets a list: where its elements lie in the object as in the message, all are copied at once instead."""
+    scope, packed = function.scope, function.scope.lanes.packed.get(stmt)
+    if packed is None:
+        yield
+        return
+    scope.moved.add(packed.lane)
+    with function.block(f"if ({packed.lies})"):
+        what = (scope.rows(packed.lane), f"{scope.takes('bytes')} + {expression(scope, packed.at)}", f"{count} * {packed.size}")
+        function.line(f"{packed.copy}({', '.join(what)});")
+    function.writer.lines[-1] += " else {"
+    function.writer.depth += 1
+    yield
+    function.writer.depth -= 1
+    function.line("}")
 
 
 def _if(function: Function, condition: nodes.Expr, then: nodes.Block, otherwise: nodes.Block) -> None:

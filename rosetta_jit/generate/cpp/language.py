@@ -7,20 +7,17 @@ from pathlib import Path
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.functions import Printed, print_kernel
-from rosetta_jit.generate.c.lanes import Lanes, Straight
+from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.language import parts_of
 from rosetta_jit.generate.cleared import without_clearing
-from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place, uncounted
 from rosetta_jit.generate.cpp.at_once import at_once
+from rosetta_jit.generate.cpp.decoder import decoder_of
 from rosetta_jit.generate.cpp.header import AtOnce, header
-from rosetta_jit.generate.cpp.lists_in_place import opened_lists
 from rosetta_jit.generate.cpp.manners import MANNERS, Manners
-from rosetta_jit.generate.cpp.opened import in_place
+from rosetta_jit.generate.cpp.opened import without_asking
 from rosetta_jit.generate.cpp.put_at_once import put_at_once
 from rosetta_jit.generate.cpp.reading import addressed_in, viewed_in
-from rosetta_jit.generate.cpp.set_in_place import straight_numbers
 from rosetta_jit.generate.cpp.source import source
-from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of
 from rosetta_jit.kernel.ir import Kernel
@@ -38,7 +35,7 @@ def files(unit: Unit) -> dict[str, str]:
         unit = replace(unit, kernels={**unit.kernels, "borrow": without_clearing(unit.kernels["borrow"], unit.layout)})
     parts = parts_of(unit, lambda kernel, lanes, role: _printed(unit, manners, kernel, lanes, role), dialect="c++")
     there = AtOnce(
-        at_once(*_decoder(unit, manners, unit.kernels["borrow"], parts.lanes)) if "borrow" in unit.kernels else "",
+        at_once(*decoder_of(unit, manners, unit.kernels["borrow"], parts.lanes)) if "borrow" in unit.kernels else "",
         put_at_once(unit, manners, parts.lanes) if "encode" in unit.kernels else "",
     )
     return {
@@ -73,19 +70,6 @@ def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: R
         addressed, forward = addressed_in(unit, lanes, manners), not unit.layout.recursive
         kernel, lanes = undamaged_kernel(kernel), replace(lanes, addressed=addressed, viewed=views, row=True, forward=forward)
     else:
-        kernel, lanes = _decoder(unit, manners, kernel, lanes)
+        kernel, lanes = decoder_of(unit, manners, kernel, lanes)
+        kernel = without_asking(kernel, lanes.opened)
     return print_kernel(kernel, lanes, role, unit.origins.get(role, ()))
-
-
-def _decoder(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes) -> tuple[Kernel, Lanes]:
-    """The kernel of a decoder that sets fields where the object has them, as far as it can, and how it reaches them."""
-    walk = Walk(unit, lanes, manners, "decode")
-    straight = {(0, offset): Straight(statement) for offset, (_, statement) in straight_numbers(walk).items()}
-    lists = opened_lists(walk, "given_object")
-    for each in lists:
-        kernel, straight = in_place(kernel, each.fields) or kernel, straight | each.fields
-    opened = frozenset(lane for each in lists for lane in each.containers.keys() - each.texts)
-    arrays = arrays_in_place(walk, "given_object")
-    for each in arrays:
-        kernel = uncounted(kernel, each) or kernel
-    return kernel, replace(lanes, straight=straight, opened=opened, given={each.lane: each.given for each in arrays})

@@ -112,22 +112,37 @@ def _lanes_of(node: Stmt | Expr) -> set[int]:
 
 def laid_out(walk: Walk, listed: Listed) -> list[tuple[str, str]]:
     """The numbers of an element, as its class and as rows reach them; none where it has anything else, or gaps."""
-    element, slot = walk.lanes.all[listed.direct.lane].element, walk.unit.layout.lanes[listed.direct.lane].element
-    found = [*_numbers(walk, listed.element, slot, element, "", "")]
-    covered = sum(size for _, _, size in found)
-    return [(field, member) for field, member, _ in found] if covered == walk.lanes.stride(listed.direct.lane) else []
+    found = [*numbers_of(walk, listed.element, listed.direct.lane)]
+    covered = sum(each.size for each in found)
+    return [(each.field, each.member) for each in found] if covered == walk.lanes.stride(listed.direct.lane) else []
 
 
-def _numbers(walk: Walk, type_: Type, slot: Slot, element: object, at: str, row: str) -> Iterator[tuple[str, str, int]]:
+@dataclass(frozen=True, slots=True)
+class NumberOf:
+    """A number of an element, as its class and as rows reach it, and which bytes of a row it is."""
+
+    field: str
+    member: str
+    offset: int
+    size: int
+
+
+def numbers_of(walk: Walk, type_: Type, lane: int) -> Iterator[NumberOf]:
+    """Those of the elements of a lane."""
+    yield from _numbers(walk, type_, walk.unit.layout.lanes[lane].element, walk.lanes.all[lane].element, NumberOf("", "", 0, 0))
+
+
+def _numbers(walk: Walk, type_: Type, slot: Slot, element: object, around: NumberOf) -> Iterator[NumberOf]:
     resolved = walk.unit.schema.resolve(type_)
     if not isinstance(resolved, Struct) or not isinstance(slot, Row) or not isinstance(element, RowStruct):
         return
     for each, name, member, own in zip(resolved.fields, walk.names(resolved), slot.members, members_of(element), strict=True):
-        inner = walk.text("laid out", Spot("", at, name))
+        inner = walk.text("laid out", Spot("", around.field, name))
+        row, offset = f"{around.member}{own.identifier}", around.offset + own.offset
         if inner and member.presence is None and isinstance(member.slot, Number):
-            yield inner.lstrip("."), f"{row}{own.identifier}", own.size
+            yield NumberOf(inner.lstrip("."), row, offset, own.size)
         elif inner:
-            yield from _numbers(walk, each.type, member.slot, own.type, inner, f"{row}{own.identifier}.")
+            yield from _numbers(walk, each.type, member.slot, own.type, NumberOf(inner, f"{row}.", offset, own.size))
 
 
 def row_struct(walk: Walk, listed: Listed) -> str:

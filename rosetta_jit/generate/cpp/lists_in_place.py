@@ -30,7 +30,7 @@ class Opened:
     """A list of the message with those within it: where each is, for types, by its lane; and what sets a field, by its lane and offset.
 
     Or a text, which has a lane alone. ``texts`` are the lanes of lists of texts, ``numbers`` those of arrays: the type of their rows, and
-    how many they are, if that is fixed.
+    how many they are, if that is fixed; ``structs`` those of lists of structs: the type of these.
     """
 
     at: str
@@ -39,6 +39,7 @@ class Opened:
     fields: dict[tuple[int, int], Straight] = field(default_factory=dict[tuple[int, int], Straight])
     texts: set[int] = field(default_factory=set[int])
     numbers: dict[int, str] = field(default_factory=dict[int, str])
+    structs: dict[int, Type] = field(default_factory=dict[int, Type])
 
     @property
     def lanes(self) -> frozenset[int]:
@@ -124,6 +125,7 @@ def _list(walk: Walk, opened: Opened, type_: Type, span: Span, place: _Place) ->
         opened.fields[span.lane, 0] = Straight(walk.text("text of a list", place.spot, **words), text=True)
         return True
     opened.fields[place.lane, span.offset] = _opening(walk, "open", span, place)
+    opened.structs[span.lane] = resolved.element
     element = f"std::declval<rosetta_jit::detail::element_type<decltype({container})> &>()"
     return _value(walk, opened, resolved.element, layout.element, _Place(Spot(f"{rows}[$index]"), Spot(element), span.lane))
 

@@ -14,7 +14,23 @@ from rosetta_jit.generate.c.positions import difference
 from rosetta_jit.generate.c.straight import size_left
 from rosetta_jit.generate.cleared import settled
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.nodes import Address, Assign, Block, Copy, Expr, For, HostCall, Place, SetField, Stmt, Wire
+from rosetta_jit.kernel.nodes import (
+    Address,
+    Assign,
+    Binary,
+    Block,
+    Const,
+    Copy,
+    Expr,
+    For,
+    HostCall,
+    Place,
+    Require,
+    Reserve,
+    SetField,
+    Stmt,
+    Wire,
+)
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
@@ -35,6 +51,28 @@ def in_place(kernel: Kernel, fields: Fields) -> Kernel | None:
     bodies = [_Body(fields, lanes, body) for body in kernel.bodies]
     found = tuple(each.block(body, {}) for each, body in zip(bodies, kernel.bodies, strict=True))
     return with_bodies(kernel, found) if all(each.is_in_place for each in bodies) else None
+
+
+def without_asking(kernel: Kernel, lanes: frozenset[int]) -> Kernel:
+    """A decoder that asks for no room for lists whose elements are known to be in the message: these are never too many."""
+
+    def kept(block: Block) -> Block:
+        asked = zip(block, (None, *block), strict=False)
+        rest = (stmt for stmt, before in asked if not (isinstance(stmt, Reserve) and stmt.lane in lanes and _is_there(stmt.count, before)))
+        return tuple(with_blocks(stmt, kept) for stmt in rest)
+
+    return with_bodies(kernel, tuple(map(kept, kernel.bodies)))
+
+
+def _is_there(count: Expr, before: Stmt | None) -> bool:
+    """Whether a statement has made sure of so many elements in the message."""
+    match before:
+        case Require(_, Binary("mul", each, Const(_, size))):
+            return each == count and isinstance(size, int) and size > 0
+        case Require(_, size):
+            return size == count
+        case _:
+            return False
 
 
 def _used(stmt: Stmt) -> set[int]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
@@ -14,9 +15,11 @@ from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place
+from rosetta_jit.generate.cpp.decoder import decoder_of
 from rosetta_jit.generate.cpp.header import AtOnce, filled_in
 from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
 from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
+from rosetta_jit.generate.cpp.packed import packed_structs
 from rosetta_jit.generate.cpp.read_in_place import is_local
 from rosetta_jit.generate.cpp.reading import addressed_in, container_type, directs_of, encoder, source_struct, viewed_in, writes_apart
 from rosetta_jit.generate.cpp.set_in_place import straight_numbers
@@ -36,10 +39,8 @@ FILLED = "filled"
 """The memory that a decoder fills: `holder` is the class there, which compilers may warn of."""
 HOLDER = "std::declval<holder &>()"
 """An object, for types."""
-BEGIN = f"""    {FILLED}->now = now;
-    {FILLED}->number = number;
-    {FILLED}->most = rosetta_jit::detail::most_rows(size);"""
-"""What kernels are told that work on more than the object."""
+TOLD = {"now": "now", "number": "number", "most": "rosetta_jit::detail::most_rows(size)"}
+"""What kernels are told by members of the holder, where they ask for it."""
 SELDOM = re.compile(r"^static int64_t (?:fail|fail_here|full)\(", re.MULTILINE)
 """The functions that are called where something is wrong."""
 SAID = """    if (where.scratch >= 0) { /* the mapping has put this text together */
@@ -77,6 +78,7 @@ def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce) -> str:
         structs="\n\n".join(_struct(unit, parts, each, walks["decode"].taken) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
         holder=_row_structs(unit, parts, manners, [*views, *filled])
+        + (packed_structs(walks["decode"], decoder_of(unit, manners, unit.kernels["borrow"], lanes)[0], opened) if opened else "")
         + _holder(unit, parts, given, containers, listed, {lane: kind for each in opened for lane, kind in each.kinds.items()})
         + (source_struct(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
         support=SELDOM.sub(r"ROSETTA_JIT_COLD \g<0>", support(without_unused(called, printed))),
@@ -237,15 +239,17 @@ def _methods(
         finish = [f"    {FILLED}->{lanes.rows(each.lane)}.finish({each.row}, bytes);" for each in directs["decode"]]
         empty = [*finish, *(f"    rosetta_jit::detail::resize_to({each.at}, 0);" for each in opened if each.containers)]
         most = dict.fromkeys(walk.opened, f"{FILLED}->most")
-        own = (lane for lane in range(1, lanes.own) if lane not in bound and lane in printed["borrow"].named)
-        reset = [f"    {FILLED}->{lanes.rows(lane)}.reset({most.get(lane, '')});" for lane in own]
+        own = [lane for lane in range(1, lanes.own) if lane not in bound and lane in printed["borrow"].named]
+        own = [lane for lane in own if lane not in most or lanes.capacity(lane) in printed["borrow"].text]
+        reset = "\n".join(f"    {FILLED}->{lanes.rows(lane)}.reset({most.get(lane, '')});" for lane in own)
+        asks = printed["borrow"].text + reset.replace(FILLED, "holder")
         texts.append(
             Template(known["decode"]).substitute(
                 into,
                 function="decode_any" if there.reads else "try_decode",
-                begin=BEGIN if any("holder" in each.parameters for each in (first, *others)) else "",
+                begin="\n".join(_told(asks)),
                 bind="\n".join(f"    {FILLED}->{lanes.rows(each.lane)}.fill({each.spot.at});" for each in directs["decode"]),
-                reset="\n".join(reset),
+                reset=reset,
                 first=run(first, "failure", FILLED),
                 others="".join(Template(known["other"]).substitute(call=run(each, "other", FILLED)) for each in others),
                 finish="\n".join(finish),
@@ -257,6 +261,13 @@ def _methods(
     words["function"] = "encode_any" if there.puts else "try_encode"
     texts += [encoder(unit, parts, known, words, directs["encode"], walk)] if "encode" in printed else []
     return [re.sub(r"\n+(\n    |\n})", r"\1", text) for text in texts]
+
+
+def _told(text: str) -> Iterator[str]:
+    """The statements that tell a kernel, whose text this is, what it asks of the holder."""
+    for name, value in TOLD.items():
+        if re.search(rf"\bholder->{name}\b", text):
+            yield f"    {FILLED}->{name} = {value};"
 
 
 def _of_wire(unit: Unit, parts: Parts, known: dict[str, str], role: Role) -> str:

@@ -437,9 +437,7 @@ rosetta_jit::result<rosetta_jit::done> codec::try_decode(const void *data, std::
     const unsigned char *const bytes = static_cast<const unsigned char *>(data);
     const int64_t end = reach(size);
     auto &row = filled->message;
-    struct failure failure = {0, 0, {0, 0, 0, 0}};
-    filled->now = now;
-    filled->number = number;
+    struct failure failure;
     filled->most = rosetta_jit::detail::most_rows(size);
     filled->angles.fill((*target.mutable_angles()));
     int64_t result = borrow_1(filled, bytes, end, &failure);
@@ -482,7 +480,7 @@ void gather(const ::torso_state::holder &source, torso_state_source *holder, tor
 /* The bytes of the message. Where parts of it have lengths, these are left in the scratch memory. */
 rosetta_jit::result<std::size_t> measured(torso_state_source *holder, const torso_state_JointAngles &given_row, const torso_state_holder &memory)
 {
-    struct failure failure = {0, 0, {0, 0, 0, 0}};
+    struct failure failure;
     const int64_t end = INT64_MAX;
     static_cast<void>(end);
     static_cast<void>(holder);
@@ -498,7 +496,7 @@ rosetta_jit::result<std::size_t> written(torso_state_source *holder, const torso
 {
     unsigned char *const bytes = static_cast<unsigned char *>(target);
     const int64_t end = reach(capacity);
-    struct failure failure = {0, 0, {0, 0, 0, 0}};
+    struct failure failure;
     static_cast<void>(holder);
     static_cast<void>(given_row);
     static_cast<void>(bytes);

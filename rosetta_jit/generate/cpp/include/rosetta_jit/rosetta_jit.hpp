@@ -55,6 +55,9 @@
 #define ROSETTA_JIT_LIES(CLASS, FIELD, ROW, MEMBER) \
     (offsetof(CLASS, FIELD) == offsetof(ROW, MEMBER) && \
      rosetta_jit::detail::same_numbers<decltype(std::declval<CLASS &>().FIELD), decltype(std::declval<ROW &>().MEMBER)>)
+/* The same of a number in a message, at a byte of the element. */
+#define ROSETTA_JIT_LIES_AT(CLASS, FIELD, OFFSET, NUMBER) \
+    (offsetof(CLASS, FIELD) == OFFSET && rosetta_jit::detail::same_numbers<decltype(std::declval<CLASS &>().FIELD), NUMBER>)
 
 namespace rosetta_jit {
 
@@ -1363,6 +1366,14 @@ constexpr bool may_lie = std::is_standard_layout_v<Class> && std::is_trivially_c
 #else
 template <class Class, class Row> constexpr bool may_lie = false;
 #endif
+
+/* Elements as they lie in a message; of an empty list there may be no place. */
+template <class Element> void copy_elements(Element *target, const unsigned char *from, std::int64_t size)
+{
+    if (ROSETTA_JIT_LIKELY(size > 0)) {
+        std::memcpy(static_cast<void *>(target), from, static_cast<std::size_t>(size));
+    }
+}
 
 /* The type of an element of a container. */
 template <class Container> using element_type = std::remove_cv_t<std::remove_reference_t<decltype(*std::begin(std::declval<const Container &>()))>>;
