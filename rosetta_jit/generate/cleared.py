@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Block, Fill, Get, Place, Return, SetField, Stmt
 from rosetta_jit.kernel.rewrite import with_bodies
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
-from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span
+from rosetta_jit.model.layout import Number, Row, Slot, Span
+from rosetta_jit.startup.dataclass import replace
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.unit import Unit
 
 
 def slots_of(slot: Slot) -> Iterator[Slot]:
@@ -57,12 +62,20 @@ def clears(stmt: Stmt) -> bool:
     return isinstance(stmt, Fill) and stmt.target == Place(0, index(0)) and stmt.byte == 0
 
 
-def without_clearing(kernel: Kernel, layout: Layout) -> Kernel:
-    """A decoder's kernel that does not clear the message's row where all of its fields are set anyway."""
-    wanted = offsets_of(layout.root)
+def without_clearing(unit: Unit) -> Unit:
+    """A unit whose decoders do not clear the message's row where they set all of its fields anyway.
+
+    After a failure whoever calls them clears it. Decoders of several wires leave what others have set, and stay as they are.
+    """
+    wanted = offsets_of(unit.layout.root)
     if wanted is None:
-        return kernel
-    return with_bodies(kernel, tuple(_body(body, frozenset(wanted)) for body in kernel.bodies))
+        return unit
+    decoders = [role for role in ("decode", "borrow") if role in unit.kernels]
+    return replace(unit, kernels={**unit.kernels, **{role: _kernel(unit.kernels[role], frozenset(wanted)) for role in decoders}})
+
+
+def _kernel(kernel: Kernel, wanted: frozenset[int]) -> Kernel:
+    return with_bodies(kernel, tuple(_body(body, wanted) for body in kernel.bodies))
 
 
 def _body(body: Block, wanted: frozenset[int]) -> Block:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import generated
 from rosetta_jit.generate.c.aligned import aligned, as_printed
-from rosetta_jit.generate.c.positions import NONE, after_binding, after_require, forget, is_position, said_by
+from rosetta_jit.generate.c.positions import NONE, after_binding, after_call, after_require, forget, is_position, joined, said_by
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import END, add, index
 
@@ -52,6 +52,27 @@ def test_loops_say_what_they_keep():
     assert not is_position(said_by(within[1:]), AT)
 
 
+def test_behind_branches_a_local_is_one_if_it_is_in_all_of_them():
+    known = after_require(NONE, AT, index(8))
+    moved, strange = after_binding(known, "next", add(AT, 8)), after_binding(known, "next", COUNT)
+    following, stmt = nodes.Local("i64", "next"), nodes.If(nodes.Const("bool", value=True), (nodes.Let("own", AT),))
+    assert is_position(joined(stmt, [moved, after_binding(moved, "next", AT)]), following)
+    assert not is_position(joined(stmt, [moved, strange]), following)
+    assert is_position(joined(stmt, [moved, strange]), add(AT, 8))
+    assert not is_position(joined(stmt, [known, NONE]), AT)
+    assert not is_position(joined(stmt, [after_binding(known, "own", AT)]), nodes.Local("i64", "own"))
+    assert joined(stmt, []) == NONE
+
+
+def test_results_of_a_call_are_as_its_contract_says():
+    following, size = nodes.Local("i64", "next"), nodes.Local("i64", "size")
+    call = nodes.Call("write", (AT,), (following, size), (), ())
+    known = after_call(after_require(NONE, following, index(1)), call, {0})
+    assert is_position(known, following)
+    assert not is_position(known, add(following, 1))
+    assert not is_position(known, size)
+
+
 def test_padding_is_not_waited_for():
     padding = nodes.Let("padding", nodes.Binary("and", nodes.Binary("sub", index(4), AT), index(3)))
     behind = nodes.Let("behind", add(AT, PADDING))
@@ -69,3 +90,10 @@ def test_a_text_after_another_is_checked_with_one_comparison_each():
     assert "const int64_t at_3 = (next + 3) & (-4);" in text
     assert "lacks(" not in text
     assert text.count("padding_2 = (4 - next) & 3;") == 1  # what measures the message does not need it
+
+
+def test_fields_that_may_be_absent_are_checked_with_one_comparison_each():
+    schema = {"m.proto": 'syntax = "proto3"; message P { double x = 1; double y = 2; } message M { repeated P ps = 1; int32 n = 2; }'}
+    text = generated(type_request("decode", "M", {"encoding": "protobuf", "schema": schema}), "c", ("encode",), "unit")["unit.c"]
+    assert "if (end < next_3 + 9) {" in text
+    assert "lacks(" not in text

@@ -20,6 +20,10 @@ message M {{
 }}
 """
 UNKNOWN = b"\xa0\x06\x07"
+TOO_LONG = [b"\xa0\x86\x00\x07", b"\xa0\x86\x80\x80\x00\x07", b"\xa0\x06\x87\x80\x00", b"\xa0\x86\x80\x80\x00\x87" + b"\x80" * 8 + b"\x00"]
+"""The same field, whose tag or number takes more bytes than it needs."""
+REFUSED = [b"\xa0\x86\x80\x80\x80\x00\x07", b"\xa0\x86\x80\x80\x10\x07", b"\xa0\x06\x87" + b"\x80" * 9 + b"\x00", b"\xa3\x06\xa4"]
+"""Fields that are none."""
 
 
 def sized(tag: int, body: bytes) -> bytes:
@@ -52,6 +56,9 @@ def test_lists_and_unknown_fields(syntax, tmp_path):
     request = type_request("decode", "t.M", options)
     name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "unit", Wishes(holder="protobuf", include="t.pb.h")))
     good = messages()
-    given = [*good, *(each[:-1] for each in good if each), *good]
-    found = answers(cpp.program(tmp_path, name, "t.pb.o", "-lprotobuf", options=(*QUICK, f"-isystem{tmp_path}")), given)
-    same(found, rj.Decoder.of("t.M", **options), rj.Encoder.of("t.M", **options), given)
+    given = [*good, *(each[:-1] for each in good if each), *good, *REFUSED, *(sized(34, each) for each in REFUSED)]
+    program = cpp.program(tmp_path, name, "t.pb.o", "-lprotobuf", options=(*QUICK, f"-isystem{tmp_path}"))
+    library = rj.Decoder.of("t.M", **options), rj.Encoder.of("t.M", **options)
+    same(answers(program, given), *library, given)
+    given = [*TOO_LONG, *(sized(34, each) for each in TOO_LONG)]
+    same(answers(program, given), *library, [*[UNKNOWN] * len(TOO_LONG), *[sized(34, UNKNOWN)] * len(TOO_LONG)])

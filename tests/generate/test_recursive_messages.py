@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import subprocess
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -13,6 +14,9 @@ from rosetta_jit.generate.build import Wishes, generated
 from tests.generate import cpp, native
 from tests.generate.driver import answers, harmed
 from tests.generate.test_cpp import BOTH, QUICK, same
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 ONE = """syntax = "proto3"; package t;
 message M {
@@ -78,7 +82,42 @@ def tree(chance: random.Random, depth: int) -> bytes:
     return own + note + kids + field(5, b"x" * chance.randrange(1, 40)) + (UNKNOWN if chance.random() < 0.2 else b"")
 
 
+def of_random_fields(seed: str) -> tuple[str, Callable[[random.Random, int], bytes]]:
+    """A schema whose one field of its own type stands anywhere among others, alone or many times or in a message of its own."""
+    own = random.Random(seed)
+    kinds = own.sample(["int32 {}", "repeated int64 {}", "string {}", "Note {}", "repeated Note {}", "double {}"], own.randint(1, 4))
+    kinds.insert(own.randint(0, len(kinds)), own.choice(["repeated M {}", "M {}", "Box {}"]))
+    fields = "".join(f"{kind.format(f'f{number}')} = {number}; " for number, kind in enumerate(kinds, 1))
+    others = "message Note { string text = 1; } message Box { int32 n = 1; repeated M ms = 2; }"
+    text = f'syntax = "proto3"; package t; {others} message M {{ {fields}}}'
+
+    def value(kind: str, number: int, chance: random.Random, depth: int) -> bytes:
+        within = range(chance.randrange(4) if depth else 0)
+        match kind.removesuffix(" {}"):
+            case "int32":
+                return field(number, chance.randrange(1, 1 << 31))
+            case "repeated int64":
+                return field(number, b"".join(varint(integer(chance)) for _ in range(chance.randrange(1, 9))))
+            case "string":
+                return field(number, b"x" * chance.randrange(1, 40))
+            case "Note" | "repeated Note" as note:
+                several = range(chance.randrange(4) if note != "Note" else 1)
+                return b"".join(field(number, field(1, b"y" * chance.randrange(1, 40))) for _ in several)
+            case "double":
+                return varint(number << 3 | 1) + b"\x00\x01\x02\x03\x04\x05\x06\x40"
+            case "Box":
+                return field(number, field(1, 5) + b"".join(field(2, made(chance, depth - 1)) for _ in within))
+            case _ as child:
+                return b"".join(field(number, made(chance, depth - 1)) for _ in (within if child != "M" else within[:1]))
+
+    def made(chance: random.Random, depth: int) -> bytes:
+        return b"".join(value(kind, number, chance, depth) for number, kind in enumerate(kinds, 1) if chance.random() < 0.8)
+
+    return text, made
+
+
 SCHEMAS = {"one": (ONE, one), "several": (SEVERAL, several), "tree": (TREE, tree)}
+SCHEMAS |= {name: of_random_fields(name) for name in (f"random {seed}" for seed in range(6))}
 
 
 def given(name: str) -> list[bytes]:
@@ -90,7 +129,7 @@ def given(name: str) -> list[bytes]:
 
 
 @cpp.needs_cpp
-@pytest.mark.parametrize("name", ["one", *(pytest.param(name, marks=pytest.mark.campaign) for name in ("several", "tree"))])
+@pytest.mark.parametrize("name", ["one", *(pytest.param(name, marks=pytest.mark.campaign) for name in SCHEMAS if name != "one")])
 def test_classes_of_our_own(name, tmp_path):
     compare(tmp_path, name, Wishes())
 

@@ -16,9 +16,11 @@ from rosetta_jit.backends.printing import Namespace, Writer, counted_lanes
 from rosetta_jit.generate.c.aligned import as_printed
 from rosetta_jit.generate.c.decided import decided
 from rosetta_jit.generate.c.expressions import constant, expression
+from rosetta_jit.generate.c.positions import is_position, said_by
+from rosetta_jit.generate.c.room import moved
 from rosetta_jit.generate.c.scope import Scope, register_name
 from rosetta_jit.generate.c.state import register_word
-from rosetta_jit.generate.c.statements import Callable, Function, moved, print_block
+from rosetta_jit.generate.c.statements import Callable, Function, print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.varint_loops import called
 from rosetta_jit.generate.c.words import C_TYPES
@@ -75,7 +77,7 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Ori
     short = _short(kernel) if lanes.dialect == "c++" else frozenset[str]()
     needed = called(kernel) if lanes.dialect == "c++" else frozenset(each.name for each in kernel.routines)
     for routine in (each for each in kernel.routines if each.name in needed):
-        function = Function(scope(), routine.sites, routines, is_routine=True)
+        function = Function(scope(), routine.sites, routines, is_routine=True, known=said_by(routine.requires))
         inline = "ROSETTA_JIT_INLINE " if routine.name in short else ""
         routines[routine.name] = _routine(writer, role, kernel.direction, routine, function, inline)
     numbers = {0: 0}
@@ -149,7 +151,8 @@ def _routine(writer: Writer, role: str, direction: Direction, routine: Routine, 
     _head(writer, f"{inline}static {'int64_t' if fails else 'void'} {name}({declared})", scope, direction)
     writer.lines += [f"    (void){identifier};" for parameter, identifier in own.items() if parameter not in function.read]
     writer.lines += [*function.writer.lines, "}"]
-    return Callable(name, shared, fails)
+    ensured = said_by(routine.ensures)
+    return Callable(name, shared, fails, frozenset(number for number, each in enumerate(routine.results) if is_position(ensured, each)))
 
 
 def _head(writer: Writer, head: str, scope: Scope, direction: Direction) -> None:

@@ -13,6 +13,7 @@ from rosetta_jit.generate.c.lanes import Dialect, Lanes
 from rosetta_jit.generate.c.rows import Struct
 from rosetta_jit.generate.c.source import source
 from rosetta_jit.generate.c.unit_lanes import hidden_lanes, own_lanes
+from rosetta_jit.generate.cleared import without_clearing
 from rosetta_jit.generate.unit import Role, Unit
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.startup.dataclass import dataclass, replace
@@ -35,6 +36,7 @@ def files(unit: Unit) -> dict[str, str]:
     """The texts of the files by their names."""
     if unit.holder not in ("", "own"):
         raise SchemaError((words.unknown_holder(unit.holder, (("own", "structs over lanes"),)),))
+    unit = without_clearing(unit)
     return as_c(unit, lambda kernel, lanes, role: print_kernel(kernel, lanes, role, unit.origins.get(role, ())))
 
 

@@ -1,7 +1,8 @@
 """What is known of positions of a message where a statement is printed, so that no comparison is made twice.
 
 After `Require(at, size)` both `at` and `at + size` lie between 0 and the end of the message; so does a local that is bound to one of
-these, until it is bound anew. A fact is a sum: its terms, in any order, and its constant.
+these, until it is bound anew, and a result of a routine whose contract says so. Behind branches it does where it did in each of them. A
+fact is a sum: its terms, in any order, and its constant.
 """
 
 from __future__ import annotations
@@ -46,6 +47,18 @@ def after_binding(known: Positions, name: str, value: nodes.Expr) -> Positions:
     """What is known where a local has been bound, for the first time or anew."""
     rest = forget(known, (name,))
     return rest | {_local(name)} if is_position(known, value) else rest
+
+
+def after_call(known: Positions, call: nodes.Call, found: Iterable[int]) -> Positions:
+    """What is known behind a call, of which these results are positions."""
+    return forget(known, bound_in(call)) | {_local(call.results[number].name) for number in found}
+
+
+def joined(stmt: nodes.If | nodes.Switch, ends: Iterable[Positions]) -> Positions:
+    """What is known behind a statement of what is known at the ends of its branches; locals of these end there."""
+    first, *others = [*ends] or [NONE]
+    own = (each.name for each, _ in statements((stmt,)) if isinstance(each, nodes.Let | nodes.Var))
+    return forget(first.intersection(*others), own)
 
 
 def forget(known: Positions, names: Iterable[str]) -> Positions:

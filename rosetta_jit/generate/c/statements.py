@@ -7,13 +7,24 @@ from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
-from string import Template
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.c.aligned import aligned
 from rosetta_jit.generate.c.expressions import expression, location, store, written
-from rosetta_jit.generate.c.positions import NONE, Positions, after_binding, after_require, bound_in, forget, is_position, said_by
+from rosetta_jit.generate.c.positions import (
+    NONE,
+    Positions,
+    after_binding,
+    after_call,
+    after_require,
+    bound_in,
+    forget,
+    is_position,
+    joined,
+    said_by,
+)
+from rosetta_jit.generate.c.room import rows_of
 from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.straight import statement as straight_statement
 from rosetta_jit.generate.c.texts import comment
@@ -29,17 +40,17 @@ from rosetta_jit.kernel.terms import END, add, type_of
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.c.scope import Scope
 
 
 @dataclass(frozen=True, slots=True)
 class Callable:
-    """A routine as a C function: its name, and what it takes besides its own parameters."""
+    """A routine as a C function: its name, what it takes besides its own parameters, and which results are positions of the message."""
 
     name: str
     shared: tuple[str, ...]
     fails: bool
+    positions: frozenset[int] = frozenset()
 
 
 @dataclass(slots=True)
@@ -80,13 +91,14 @@ class Function:
         self.line("}")
 
 
-def print_block(function: Function, block: nodes.Block) -> None:
-    """The statements of a block; what they say of positions holds in there alone."""
+def print_block(function: Function, block: nodes.Block) -> Positions:
+    """The statements of a block, and what is known of positions behind it; in the function it holds in there alone."""
     known, others = function.known, function.aligned
     function.aligned = aligned(block)
     for stmt in block:
         _statement(function, stmt)
-    function.known, function.aligned = known, others
+    found, function.known, function.aligned = function.known, known, others
+    return found
 
 
 def _statement(function: Function, stmt: nodes.Stmt) -> None:
@@ -109,7 +121,8 @@ def _statement(function: Function, stmt: nodes.Stmt) -> None:
         case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             function.line(f"{_effect(scope, stmt)}{_origin(function, stmt)}")
         case nodes.Reserve() | nodes.Advance():
-            _rows(function, stmt)
+            for line in rows_of(scope, stmt):
+                function.line(line)
         case nodes.Return(position, registers):
             for line in function.finish:
                 function.line(line)
@@ -121,7 +134,8 @@ def _statement(function: Function, stmt: nodes.Stmt) -> None:
             _nested(function, stmt)
         case nodes.Call():
             _call(function, stmt)
-            function.known = forget(function.known, bound_in(stmt))
+            found = function.routines[stmt.routine].positions if stmt.routine in function.routines else frozenset[int]()
+            function.known = after_call(function.known, stmt, found)
         case nodes.HostCall():
             _host_call(function, stmt)
             function.known = forget(function.known, bound_in(stmt))
@@ -219,62 +233,30 @@ def _fill(scope: Scope, target: nodes.Address, size: nodes.Expr, byte: int) -> s
     return f"{scope.calls('fill_bytes')}({memory}, {start}, {bare(expression(scope, size))}, {byte});"
 
 
-def _rows(function: Function, stmt: nodes.Reserve | nodes.Advance) -> None:
-    scope, lanes, count = function.scope, function.scope.lanes, bare(expression(function.scope, stmt.count))
-    if stmt.lane in lanes.given:
-        _given_rows(function, stmt, count)
-        return
-    used = scope.used(stmt.lane)
-    if isinstance(stmt, nodes.Advance):
-        function.line(f"{used} += {count};")
-        return
-    scope.takes("failure")
-    free = f"{scope.capacity(stmt.lane)} - {used}"
-    is_full = f"{used} >= {scope.capacity(stmt.lane)}" if count == "1" else f"{count} > {free}"
-    with function.block(f"if ({is_full})"):
-        missing = f"{expression(scope, stmt.count)} - ({free})"
-        if stmt.lane >= lanes.own:
-            missing = f"{scope.calls('bytes_of')}({missing}, {lanes.stride(stmt.lane)})"
-        fails = f"return {scope.calls('full')}(failure, {stmt.lane}, {missing});"
-        grown = lanes.grown(stmt.lane, missing)
-        if grown is None:
-            function.line(fails)
-            return
-        with function.block(f"if (!{grown})"):
-            function.line(fails)
-        scope.moved.add(stmt.lane)
-        function.line(moved(lanes, stmt.lane))
-
-
-def _given_rows(function: Function, stmt: nodes.Reserve | nodes.Advance, count: str) -> None:
-    """An array that an object has gets its length; one that takes more memory than a message may ask for is refused."""
-    scope = function.scope
-    if isinstance(stmt, nodes.Advance):
-        rows = scope.rows(stmt.lane)
-        scope.moved.add(stmt.lane)
-        function.line(f"{rows} = {Template(scope.lanes.given[stmt.lane].sized).substitute(count=count)};")
-        return
-    scope.takes("failure")
-    with function.block(f"if ({count} > {scope.takes('holder')}->most)"):
-        function.line(f"return {scope.calls('full')}(failure, {stmt.lane}, {count} - holder->most);")
-
-
-def moved(lanes: Lanes, lane: int) -> str:
-    """The statement that finds the rows of a lane which has grown."""
-    return f"{lanes.rows(lane)} = {lanes.member(lane)};"
-
-
 def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
-    """A statement with blocks: behind it and, in a loop, within it, what any of them changes is not known but for what a loop says."""
-    after = forget(function.known, bound_in(stmt))
-    if isinstance(stmt, nodes.For | nodes.While):
-        after |= said_by(stmt.invariant) if isinstance(stmt, nodes.While) else NONE
-        function.known = after
-    _print_nested(function, stmt)
-    function.known = after
+    """A statement with blocks, and what is known of positions behind it."""
+    match stmt:
+        case nodes.For() | nodes.While():
+            function.known = forget(function.known, bound_in(stmt))
+            function.known |= said_by(stmt.invariant) if isinstance(stmt, nodes.While) else NONE
+            _loop(function, stmt)
+        case nodes.If(condition, then, otherwise):
+            function.known = joined(stmt, _if(function, condition, then, otherwise))
+        case nodes.Switch(value, cases, default):
+            with function.block(f"switch ({bare(expression(function.scope, value))})"):
+                ends = [
+                    each
+                    for number, body in cases
+                    for each in _case(function, f"case {expression(function.scope, nodes.Const(type_of(value), number))}:", body)
+                ]
+                ends += _case(function, "default:", default)
+            function.known = joined(stmt, ends)
+        case _:
+            assert_never(stmt)
 
 
-def _print_nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
+def _loop(function: Function, stmt: nodes.For | nodes.While) -> None:
+    """A loop: within it, what it changes is not known but for what it says."""
     scope = function.scope
     match stmt:
         case nodes.For(variable, count, body):
@@ -292,13 +274,6 @@ def _print_nested(function: Function, stmt: nodes.For | nodes.While | nodes.If |
                 return
             with function.block(f"while ({bare(expression(scope, condition))})"):
                 print_block(function, body)
-        case nodes.If(condition, then, otherwise):
-            _if(function, condition, then, otherwise)
-        case nodes.Switch(value, cases, default):
-            with function.block(f"switch ({bare(expression(scope, value))})"):
-                for number, body in cases:
-                    _case(function, f"case {expression(scope, nodes.Const(type_of(value), number))}:", body)
-                _case(function, "default:", default)
         case _:
             assert_never(stmt)
 
@@ -321,26 +296,35 @@ def _unless_copied(function: Function, stmt: nodes.For, count: str) -> Generator
     function.line("}")
 
 
-def _if(function: Function, condition: nodes.Expr, then: nodes.Block, otherwise: nodes.Block) -> None:
+def _if(function: Function, condition: nodes.Expr, then: nodes.Block, otherwise: nodes.Block) -> list[Positions]:
+    """What is known at the ends of the branches that have one."""
     if not then:
         condition, then, otherwise = folded(nodes.Unary("not", condition)), otherwise, ()
     with function.block(f"if ({bare(expression(function.scope, condition))})"):
-        print_block(function, then)
-    if otherwise:
-        function.writer.lines[-1] += " else {"
-        function.writer.depth += 1
-        print_block(function, otherwise)
-        function.writer.depth -= 1
-        function.line("}")
+        ends = _branch(function, then)
+    if not otherwise:
+        return [*ends, function.known]
+    function.writer.lines[-1] += " else {"
+    function.writer.depth += 1
+    ends += _branch(function, otherwise)
+    function.writer.depth -= 1
+    function.line("}")
+    return ends
 
 
-def _case(function: Function, label: str, body: nodes.Block) -> None:
+def _branch(function: Function, block: nodes.Block) -> list[Positions]:
+    known = print_block(function, block)
+    return [] if leaves(block) else [known]
+
+
+def _case(function: Function, label: str, body: nodes.Block) -> list[Positions]:
     function.writer.depth -= 1
     with function.block(label):
-        print_block(function, body)
-        if not leaves(body):
+        ends = _branch(function, body)
+        if ends:
             function.line("break;")
     function.writer.depth += 1
+    return ends
 
 
 def _call(function: Function, call: nodes.Call) -> None:

@@ -30,9 +30,7 @@ SHARED = "rosetta_jit/rosetta_jit.hpp"
 
 def files(unit: Unit) -> dict[str, str]:
     """The texts of the files by their names."""
-    manners = _manners(unit)
-    if "borrow" in unit.kernels:
-        unit = replace(unit, kernels={**unit.kernels, "borrow": without_clearing(unit.kernels["borrow"], unit.layout)})
+    manners, unit = _manners(unit), without_clearing(unit)
     parts = parts_of(unit, lambda kernel, lanes, role: _printed(unit, manners, kernel, lanes, role), dialect="c++")
     there = AtOnce(
         at_once(*decoder_of(unit, manners, unit.kernels["borrow"], parts.lanes)) if "borrow" in unit.kernels else "",

@@ -228,6 +228,10 @@ class Walk:
 
     def _each(self, type_: Type, lane: int, start: str, count: str, spot: Spot) -> None:
         index = self.local("i")
+        if self.direction == "encode":
+            first = self.local("first")
+            self.lines("begin", spot, first=first)
+            spot = Spot(first)
         with self.writer.indented(f"for (std::int64_t {index} = 0; {index} < {count}; {index}++) {{"):
             self.row(type_, lane, f"{start} + {index}", Spot(self.text("element", spot, index=index)))
         self.writer.line("}")

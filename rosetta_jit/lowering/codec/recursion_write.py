@@ -16,7 +16,7 @@ from rosetta_jit.lowering.codec.work_list import BEGIN_WORD, MORE_WORD, SIZE_WOR
 from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import Layout
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 from rosetta_jit.wire.codec import Encoding, Entry, Recursion, Tagged
 
 HEADER = 2
@@ -207,6 +207,7 @@ def _one_row(writer: Writer, fields: HolderFields, tagged: Tagged, lane: int, at
         inner = HolderFields(writer, layout, Cell(lane, row, layout.lanes[lane].element), Where(f".{layout.lanes[lane].name}"))
         more, size = link(layout, lane, row, MORE_WORD), link(layout, lane, row, SIZE_WORD)
         if writer.direction == "size":
+            lengths = _of_later_rows(row, lengths) if _lane_in_order(writer, layout) is not None else lengths
             writer.position = index(0)
             message, end = _message(writer, inner, tagged, lengths)
             writer.emit(*([nodes.SetField(more, lengths.next)] if changes(lengths, message) else []), *message)
@@ -226,6 +227,16 @@ def _one_row(writer: Writer, fields: HolderFields, tagged: Tagged, lane: int, at
             written = nodes.Binary("sub", end, begin)
             writer.expect(nodes.Compare("eq", written, nodes.Get("i64", size)), "length", inner.where, DAMAGED)
     return block(body)
+
+
+def _of_later_rows(row: nodes.Expr, lengths: Lengths) -> Lengths:
+    """For a row that is measured behind all later ones: the messages within it have these, or the rows are in another order."""
+
+    def write_later_child(writer: Writer, fields: HolderFields, cell: Cell, recursion: Recursion, where: Where) -> None:
+        writer.expect(nodes.Compare("gt", cell.row, row), "length", where, DAMAGED)
+        lengths.write_child(writer, fields, cell, recursion, where)
+
+    return replace(lengths, write_child=write_later_child)
 
 
 def _message(writer: Writer, fields: HolderFields, tagged: Tagged, lengths: Lengths) -> tuple[nodes.Block, nodes.Expr]:

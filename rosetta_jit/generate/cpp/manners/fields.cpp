@@ -59,8 +59,11 @@ rosetta_jit::detail::assign($at, bytes + ($start), $size);
 /* == element decode == */
 rosetta_jit::detail::element($at, $index)
 
+/* == begin encode == */
+const auto $first = $at.begin();
+
 /* == element encode == */
-rosetta_jit::detail::element_of($at, $index)
+$at[$index]
 
 /* == direct == */
 $at

@@ -1063,15 +1063,6 @@ template <class Container> decltype(auto) element(Container &target, std::int64_
     }
 }
 
-template <class Container> const auto &element_of(const Container &from, std::int64_t index)
-{
-    if constexpr (is_repeated<Container>::value) {
-        return from.Get(static_cast<int>(index));
-    } else {
-        return from[static_cast<std::size_t>(index)];
-    }
-}
-
 /* Around a vector, which rosidl's BoundedVector does not show by data(). */
 template <class Container, class = void> struct holds_vector : std::false_type {};
 template <class Container>
