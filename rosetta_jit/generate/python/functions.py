@@ -15,6 +15,7 @@ from rosetta_jit.generate.python.bools import with_bytes
 from rosetta_jit.generate.python.classes import WORDS
 from rosetta_jit.generate.python.constants import with_constants
 from rosetta_jit.generate.python.descents import Descents, NotNested, descended
+from rosetta_jit.generate.python.empty_spans import without_empty_spans
 from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.late_fields import late_fields
@@ -153,7 +154,7 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
     if kernel.direction == "decode" and scope.flat and objects.layout is not None:
         body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, objects.blobs, few=0 if scope.numpy else FEW)
         known = {*scope.direct.whole, *scope.direct.appended, *scope.direct.elements, *scope.direct.rows}
-        body = ends_first(body)
+        body = without_empty_spans(ends_first(body), kernel.strides, known)
         body, scope.direct.fields = late_fields(body, kernel, objects.layout, known) if descents is None else (body, ())
     behind = frozenset[str]()
     if descents is not None:

@@ -24,7 +24,7 @@ from rosetta_jit.kernel.nodes import Block, Const, Expect, Fill, IsText, Place, 
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.layout import Member, Number, Row, Span
-from rosetta_jit.model.types import Array, Bytes, Field, Map, String, Struct
+from rosetta_jit.model.types import Bytes, Field, String, Struct
 
 OBJECT = "made"
 LEAST = 8
@@ -117,7 +117,7 @@ def settings(make: Make) -> Iterator[str]:
             continue
         value, there = make.member(field, member, slot, 0, "0"), ""
         match unit.schema.resolve(field.type), member.slot:
-            case Array() | Map() | String() | Bytes(), Span() as span if make.scope.direct.late_at(span) is None:
+            case String() | Bytes(), Span() as span if make.scope.direct.late_at(span) is None:
                 there = make.count(span)
             case _:
                 pass
