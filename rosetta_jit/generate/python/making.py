@@ -117,7 +117,7 @@ class Make:
         """A list or a map without elements."""
         element = self.unit.layout.lanes[slot.lane].element
         if isinstance(element, Number) and self.unit.numpy:
-            return f"np.zeros(0, np.{NUMPY[element.scalar][0]})"
+            return self.scope.no_numbers(element.scalar)
         return "{}" if isinstance(self.unit.schema.resolve(type_), Map) else "[]"
 
     def is_there(self, member: Member, slot: Row, lane: int, row: str) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-_Array = np.ndarray
+_Array, _empty = np.ndarray, np.empty
 _PLAIN = frozenset(map(np.dtype, "?bBhHiIlLqQfd"))
 """The types of arrays of numbers as this machine has them."""
 
@@ -19,7 +19,7 @@ class _Comparable:
     __slots__ = ()
 
     def __eq__(self, other: object) -> bool:
-        if type(self) is not type(other):
+        if self.__class__ is not other.__class__:
             return NotImplemented
         names: tuple[str, ...] = getattr(self, "__match_args__", ())
         return all(_are_same(getattr(self, name), getattr(other, name)) for name in names)
