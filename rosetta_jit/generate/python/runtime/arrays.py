@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-_Array, _empty = np.ndarray, np.empty
+_Array, _empty, _numbers_in = np.ndarray, np.empty, np.frombuffer
 _PLAIN = frozenset(map(np.dtype, "?bBhHiIlLqQfd"))
 """The types of arrays of numbers as this machine has them."""
 
@@ -38,7 +38,7 @@ def _are_same(left: Any, right: Any) -> bool:
 
 def _array(dtype: "np.dtype[Any]", data: Any, count: int, at: int, copy: bool) -> "npt.NDArray[Any]":
     """Numbers that lie in bytes as this machine has them: a copy, or a view that cannot be written to."""
-    found: npt.NDArray[Any] = np.ndarray(count, dtype, data, at)
+    found: npt.NDArray[Any] = _numbers_in(data, dtype, count, at)
     return found.copy() if copy else found
 
 
