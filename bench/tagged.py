@@ -41,6 +41,10 @@ def _texts(depth: int, size: int) -> bytes:
     return message
 
 
+def _lists(number: int) -> str:
+    return " ".join(f"repeated {_KINDS[n % len(_KINDS)]} l{n} = {n};" for n in range(1, number + 1))
+
+
 def _nested(depth: int, message: bytes) -> bytes:
     for _ in range(depth):
         message = _sized(10, message)
@@ -70,6 +74,8 @@ TAGGED = {
     "200 KB of text six messages deep": _subject(f"{_WITHIN} A in = 1;", _nested(6, _sized(58, b"x" * 200_000))),
     "18 fields with their defaults": _subject(" ".join(f"{type_} f{n} = {n};" for n, type_ in enumerate(_EIGHTEEN, 1)), b""),
     "12 lists, maps and messages that are not there": _subject(_SEVERAL, b""),
+    "100 lists that are not there": _subject(_lists(100), b""),
+    "20 messages of six lists that are not there": _subject(f"message Row {{ {_lists(6)} }} repeated Row rows = 1;", _sized(10, b"") * 20),
     "a oneof of 12 cases": _subject(
         f"oneof which {{ {' '.join(f'{type_} f{n} = {n};' for n, type_ in enumerate(_KINDS[:12], 1))} }}", b"\x0a\x01a"
     ),

@@ -126,3 +126,10 @@ def test_texts_of_messages_that_may_be_absent():
     some = [{}, whole, *({name: value} for name, value in whole.items())]
     messages = [bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in some]
     answers_as_the_library(unit, programs, harmed(messages, 40, "mutable"))
+
+
+def test_a_field_may_be_called_unknown():
+    given = protobuf("message M { repeated int32 unknown = 1; repeated string unknown_fields = 2; }")
+    unit, programs = module(type_request("decode", "t.M", given)), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
+    parts = (b"\x08\x05", b"\x12\x01a", UNKNOWN)
+    answers_as_the_library(unit, programs, [b"", *parts, b"".join(parts), b"".join(reversed(parts))])

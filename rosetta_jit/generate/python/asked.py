@@ -31,12 +31,12 @@ def _asked_first(block: Block, layout: Layout, reads: Counter[str]) -> Block:
     for old in block:
         stmt = with_blocks(old, lambda inner: _asked_first(inner, layout, reads))
         name, then = _for_any(stmt)
-        let = next((each for each in found if isinstance(each, Let) and each.name == name), None)
-        if let is None or not _is_count(let.value, layout) or reads_of((stmt,))[let.name] != reads[let.name]:
+        let, own = next((each for each in found if isinstance(each, Let) and each.name == name), None), reads_of((old,))
+        if let is None or not _is_count(let.value, layout) or own[let.name] != reads[let.name]:
             found.append(stmt)
             continue
         assert isinstance(let.value, Get)
-        lets = [each for each in found if each is let or _is_start_of(each, let.value.place, reads_of(then), reads)]
+        lets = [each for each in found if each is let or _is_start_of(each, let.value.place, own, reads)]
         found = [each for each in found if each not in lets]
         kept = (each for each in lets if each is not let or reads_of(then)[let.name])
         found.append(If(Compare("gt", let.value, index(0)), (*kept, *then), ()))
@@ -63,11 +63,11 @@ def _is_count(value: Expr, layout: Layout) -> bool:
             return False
 
 
-def _is_start_of(stmt: Stmt, count: Place, then: Counter[str], reads: Counter[str]) -> bool:
-    """Whether a statement says where the sequence of a count starts, which nothing outside of a block reads."""
+def _is_start_of(stmt: Stmt, count: Place, own: Counter[str], reads: Counter[str]) -> bool:
+    """Whether a statement says where the sequence of a count starts, which nothing reads but those of which ``own`` are the reads."""
     match stmt:
         case Let(name, Get(_, Place(lane, row, offset))):
-            return (lane, row, offset + 8) == (count.lane, count.row, count.offset) and then[name] == reads[name]
+            return (lane, row, offset + 8) == (count.lane, count.row, count.offset) and own[name] == reads[name]
         case _:
             return False
 

@@ -8,6 +8,7 @@ from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.python.borrowed import borrowed
 from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.generate.python.functions import is_flat, print_kernel
+from rosetta_jit.generate.python.late_lists import class_without_lists
 from rosetta_jit.generate.python.making import Make, arrays_of
 from rosetta_jit.generate.python.printed import Attempt, Objects
 from rosetta_jit.generate.python.scope import Scope
@@ -64,12 +65,15 @@ class _Decoder:
     def settings(self, scope: Scope) -> list[str]:
         return [*settings(self.make(scope, self.beside))] if scope.attributes is not None else []
 
+    def without_lists(self, scope: Scope) -> str:
+        return class_without_lists(self.unit, scope, self.names[self.unit.type])
+
     def objects(self) -> Objects:
         """What the printers of functions need of all this."""
         in_all, numpy = arrays_of(self.unit, in_recursive=True), self.unit.numpy
         blobs = frozenset(lane for lane, type_ in in_all.items() if isinstance(self.unit.schema.resolve(type_), Bytes))
         lists = frozenset(arrays_of(self.unit)), frozenset(in_all), blobs
-        made = self.made, self.attributes, self.begun, self.settings, self.row, self.inner, self.inner_names
+        made = self.made, self.attributes, self.begun, self.settings, self.without_lists, self.row, self.inner, self.inner_names
         return Objects(*made, self.unit.layout, *lists, numpy, frozenset(self.names.values()))
 
 

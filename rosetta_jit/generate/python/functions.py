@@ -15,9 +15,11 @@ from rosetta_jit.generate.python.bools import with_bytes
 from rosetta_jit.generate.python.classes import WORDS
 from rosetta_jit.generate.python.constants import with_constants
 from rosetta_jit.generate.python.descents import Descents, NotNested, descended
+from rosetta_jit.generate.python.empty_spans import without_empty_spans
 from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.late_fields import late_fields
+from rosetta_jit.generate.python.late_lists import said_to_come
 from rosetta_jit.generate.python.local_names import Locals
 from rosetta_jit.generate.python.mentions import blocks_within
 from rosetta_jit.generate.python.printed import Attempt, Function, Objects
@@ -153,7 +155,7 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
     if kernel.direction == "decode" and scope.flat and objects.layout is not None:
         body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, objects.blobs, few=0 if scope.numpy else FEW)
         known = {*scope.direct.whole, *scope.direct.appended, *scope.direct.elements, *scope.direct.rows}
-        body = ends_first(body)
+        body = without_empty_spans(ends_first(body), kernel.strides, known)
         body, scope.direct.fields = late_fields(body, kernel, objects.layout, known) if descents is None else (body, ())
     behind = frozenset[str]()
     if descents is not None:
@@ -162,6 +164,7 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
     function.settled = settled(body)
     if kernel.direction == "decode" and scope.flat:
         scope.attributes = objects.attributes(body, function.settled, scope.direct)
+        scope.without_lists = objects.without_lists(scope)
     function.unasked = unasked_words(body, objects.layout, scope)
     function.read = read_names(without_words(body, function.unasked), scope.direct.read())
     function.positive = not_negative(body, behind)
@@ -199,10 +202,10 @@ def _completed(line: str, function: Function) -> list[str]:
             rows = {name for name, offset in scope.offsets.items() if offset in offsets}
         return [f"{before}{each}" for each in _cleared(scope, rows, offsets)]
     if text.startswith("<late "):
-        late = scope.direct.fields[int(text[6:-1])]
-        has, rows = scope.has_field(late.name), {name for name, offset in scope.offsets.items() if offset in late.offsets}
-        lines = [f"{has} = True", *_empty(function, _lanes(function) & late.lanes), *_cleared(scope, rows, late.offsets)]
-        return [f"{before}if not {has}:", *(f"{before}    {each}" for each in lines)]
+        late, said = scope.direct.fields[int(text[6:-1])], said_to_come(scope, int(text[6:-1]))
+        rows = {name for name, offset in scope.offsets.items() if offset in late.offsets}
+        lines = [f"{' = '.join(said)} = True", *_empty(function, _lanes(function) & late.lanes), *_cleared(scope, rows, late.offsets)]
+        return [f"{before}if not {said[0]}:", *(f"{before}    {each}" for each in lines)]
     if text.startswith("<views "):
         lane = int(text[7:-1])
         name = scope.lanes.rows(lane)
@@ -279,7 +282,8 @@ def _begin(function: Function, role: Role) -> list[str]:
             lines += [f"{name}_used = 0"] if lane in scope.counted else []
         else:
             lines += _empty_lane(function, lane)
-    lines = chained([*lines, *(f"{scope.has_field(each.name)} = False" for each in late)])
+    said = dict.fromkeys(each for number, _ in enumerate(late) for each in said_to_come(scope, number))
+    lines = chained([*lines, *(f"{each} = False" for each in said)])
     if not scope.flat and kind in ("decode", "borrow"):
         lines.append('message = bytearray(_rows["message"])' if kept else f"message = bytearray({scope.lanes.stride(0)})")
         lines += [f'message_{code} = memoryview(message).cast("{code}")' for lane, code in sorted(scope.views) if lane == 0 and code]

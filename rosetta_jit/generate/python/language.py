@@ -15,6 +15,7 @@ from rosetta_jit.generate.python.collecting import Collect
 from rosetta_jit.generate.python.decoder import print_decoder, taken_lanes
 from rosetta_jit.generate.python.encoder import encoder_in_parts
 from rosetta_jit.generate.python.functions import Attempt, beside_lanes, is_flat, print_kernel
+from rosetta_jit.generate.python.late_lists import name_without_lists
 from rosetta_jit.generate.python.making import Make
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.python.printed import Objects
@@ -37,6 +38,7 @@ MORE = {
     "_several_bytes(": ("long_varints.py", "def "),
     "_long_length(": ("long_lengths.py", "def "),
     "_joined(": ("long_parts.py", "_LONG"),
+    "_set_class(": ("late_lists.py", "_set_class"),
 }
 """What modules have besides that name such functions: a file of the runtime, from where its text begins."""
 OF_DECIMALS = ("_nearest(", "_shortest(", "_fixed_digits(")
@@ -59,7 +61,7 @@ class _Module:
         self.lanes = named_lanes(unit, reserved | beside_lanes(named_lanes(unit, reserved)(())))
         self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.loads, self.structs = set[str](), dict[str, str]()
-        self.root, self.guesses = self.names[unit.type], False
+        self.root, self.guesses, self.without_lists = self.names[unit.type], False, ""
 
     def text(self) -> str:
         """All of it."""
@@ -77,6 +79,9 @@ class _Module:
                 more = (RUNTIME / file).read_text("utf-8")
                 if "BytesIO" in more:
                     runtime = runtime.replace("from itertools", "from io import BytesIO\nfrom itertools", 1)
+                if "_dataclasses" in more:
+                    imports = "import dataclasses as _dataclasses\nimport math\nimport threading as _threading"
+                    runtime = runtime.replace("import math", imports, 1)
                 runtime += f"\n\n\n{more[more.index(begin) :].rstrip()}".replace("  # pyright: ignore[reportUnusedFunction]", "")
         if self.unit.numpy:
             arrays = (RUNTIME / "arrays.py").read_text("utf-8")
@@ -97,7 +102,7 @@ class _Module:
         lines: list[str] = []
         for name in sorted(self.loads):
             _, verb, code, *order = name.split("_")
-            if verb == "dtype":
+            if verb in ("dtype", "type"):
                 lines.append(f'{name} = np.dtype("{">" if order else "<"}{code}")')
             elif verb == "EMPTY":
                 lines.append(f'{name} = memoryview(b"").cast("{code}")')
@@ -109,6 +114,8 @@ class _Module:
             lines += ["_room = [256]", '"""The room that messages took."""']
         if any(asks_host([kernel]) for kernel in self.unit.kernels.values()):
             lines.append("_numbers = _count()")
+        if self.without_lists:
+            lines.append(f"{self.without_lists} = _without_lists({self.root})")
         if self.unit.state:
             words = "".join(f"    {word},  # {name}\n" for name, word in self.unit.state)
             lines += ["# What is kept from one message to the next: integers as they are, floats by their bits.", f"_INITIAL = (\n{words})"]
@@ -142,6 +149,7 @@ class _Module:
 
     def _decoder(self) -> str:
         text, attempts = print_decoder(self.unit, self.names, self.lanes, self.loads, self.paths)
+        self.without_lists = name_without_lists(self.root) if "_set_class(" in text else ""
         return "\n\n".join([self._sites("borrow"), text, f"\n{self._decode(attempts)}"])
 
     def _decoder_of(self, wire: str, role: Role) -> str:
@@ -202,7 +210,7 @@ class _Module:
 
     def _encoder_in_parts(self) -> str:
         kernel = self.unit.kernels["encode"]
-        made = encoder_in_parts(self.unit, kernel, self._lanes(kernel), self.paths)
+        made = encoder_in_parts(self.unit, kernel, self._lanes(kernel), self.paths, self.without_lists)
         self.loads |= made.loads
         writer = Writer()
         writer.line(f"def encode(target: {self.root}) -> bytes:")

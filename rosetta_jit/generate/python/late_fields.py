@@ -29,6 +29,8 @@ from rosetta_jit.startup.dataclass import dataclass, replace
 
 NOBODY = -1
 """The case of statements that stand in none."""
+UNKNOWN = "unknown\0fields"
+"""What unknown fields are called, as no field is."""
 ENDS = 2
 """Statements behind all fields say of a list: where its rows begin, and how many there are."""
 
@@ -76,7 +78,7 @@ def late_fields(block: Block, kernel: Kernel, layout: Layout, known: Collection[
 def _candidates(root: Row, layout: Layout) -> Iterator[LateField]:
     """Lists, maps and unknown fields of a message, and messages within it that may be absent."""
     spans = [(each.name, each.slot) for each in root.members if each.presence is None and isinstance(each.slot, Span)]
-    spans += [("unknown", root.unknown)] if root.unknown is not None else []
+    spans += [(UNKNOWN, root.unknown)] if root.unknown is not None else []
     for name, span in spans:
         if layout.lanes[span.lane].links is None:
             yield LateField(name, span, frozenset(lanes_within(span, layout)), frozenset())

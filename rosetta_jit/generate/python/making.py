@@ -117,7 +117,7 @@ class Make:
         """A list or a map without elements."""
         element = self.unit.layout.lanes[slot.lane].element
         if isinstance(element, Number) and self.unit.numpy:
-            return f"np.zeros(0, np.{NUMPY[element.scalar][0]})"
+            return self.scope.no_numbers(element.scalar)
         return "{}" if isinstance(self.unit.schema.resolve(type_), Map) else "[]"
 
     def is_there(self, member: Member, slot: Row, lane: int, row: str) -> str:
@@ -144,9 +144,16 @@ class Make:
         if known is not None:
             return known
         start, count = self._start(slot, lane, row), self._count(slot, lane, row)
-        if lane == 0 and self.functions is not None:
-            return self._by_function(self.functions, type_, slot, start, count)
-        return self.elements(type_, slot, lane, start, count)
+        if slot.lane in self.scope.direct.gathered:
+            elements = f"{self.scope.lanes.rows(slot.lane)}[{start} : {start} + {count}]"
+        elif lane == 0 and self.functions is not None:
+            elements = self._by_function(self.functions, type_, slot, start, count)
+        else:
+            elements = self.elements(type_, slot, lane, start, count)
+        is_late = lane == 0 and self.scope.direct.late_at(slot) is not None
+        if isinstance(type_, Array | Map) and not is_late and (count.isidentifier() or " for " in elements):
+            return f"({elements} if {count} else {self._nothing(type_, slot)})"
+        return elements
 
     def _by_function(self, functions: dict[str, str], type_: String | Bytes | Array | Map, slot: Span, start: str, count: str) -> str:
         """A sequence of the message, by a function where that takes a comprehension."""
@@ -243,9 +250,6 @@ class Make:
             return self.scope.lanes.rows(slot.lane)
         if slot.lane in known.gathered and known.late_at(slot) is not None:
             return self.scope.lanes.rows(slot.lane)
-        if slot.lane in known.gathered:
-            start = self._start(slot, lane, row)
-            return f"{self.scope.lanes.rows(slot.lane)}[{start} : {start} + {self._count(slot, lane, row)}]"
         if slot.lane in known.appended:
             rows = self.scope.lanes.rows(slot.lane)
             return self._numbers(rows, element.scalar) if isinstance(element, Number) else rows

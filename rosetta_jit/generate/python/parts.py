@@ -15,6 +15,7 @@ from rosetta_jit.generate.python.asked import asked_count, taken_late
 from rosetta_jit.generate.python.defaults import asked_first, reads_of
 from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.failures import fail
+from rosetta_jit.generate.python.late_lists import runs_of_lists
 from rosetta_jit.generate.python.loops_in_parts import Loops
 from rosetta_jit.generate.python.object_rows import Asked, Listed, Maybe, ObjectScope
 from rosetta_jit.generate.python.packed import Part
@@ -29,7 +30,7 @@ from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import expressions_of, statements
-from rosetta_jit.model.layout import Number
+from rosetta_jit.model.layout import Number, Span
 
 
 class Parts(Loops):
@@ -37,7 +38,7 @@ class Parts(Loops):
 
     ``routines`` are the functions that give the bytes which routines write, ``called`` those of them that are. ``lengths`` are the locals
     of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has: ``tested`` are
-    those of them of which nothing but single bits is asked for.
+    those of them of which nothing but single bits is asked for. ``lists`` are those that an object of a class ``without_lists`` has not.
     """
 
     def __init__(self, unit: Unit, function: Function, scope: ObjectScope, body: nodes.Block, routines: Mapping[str, str]) -> None:
@@ -50,11 +51,22 @@ class Parts(Loops):
         self.lengths, self.words = set[str](), dict[str, nodes.Place]()
         self.reads = reads_of(body)
         self.binder.late = taken_late(body)
+        self.lists, self.without_lists = tuple[Span, ...](), ""
 
     # --- statements ------------------------------------------------------------------------------------------------------------------
 
     def block(self, block: nodes.Block) -> None:
-        for stmt in asked_first(block, self.reads, self.scope.is_number):
+        stmts = asked_first(block, self.reads, self.scope.is_number)
+        for are_of_lists, run in runs_of_lists(tuple(stmts), self.lists, self.function.read):
+            if are_of_lists:
+                self.flush()
+                with self.function.writer.indented(f"if type(target) is not {self.without_lists}:"):
+                    self._statements(run)
+            else:
+                self._statements(run)
+
+    def _statements(self, run: nodes.Block) -> None:
+        for stmt in run:
             self._numbered(stmt)
             self._statement(stmt)
 

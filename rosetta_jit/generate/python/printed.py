@@ -40,7 +40,8 @@ class Attempt:
 class Objects:
     """How a function comes to objects: ``result`` is what a return of success gives at a position.
 
-    Where a body sets ``attributes`` of the object (`sparse`), ``begun`` makes it, and ``settings`` are the lines before a return.
+    Where a body sets ``attributes`` of the object (`sparse`), ``begun`` makes it, and ``settings`` are the lines before a return;
+    it is of a class ``without_lists`` where none has come, if there is one.
 
     Of decoders ``row`` is the object of a lane's row, ``inner`` are the lines of functions for rows that contain rows of their own type,
     ``inner_names`` what these are called: they refer to themselves, and to all rows, which would stay in memory for a while.
@@ -52,6 +53,7 @@ class Objects:
     attributes: Callable[[nodes.Block, frozenset[tuple[int, str]], Direct], dict[int, str] | None] = lambda _, __, ___: None
     begun: Callable[[Scope], list[str]] = lambda _: []
     settings: Callable[[Scope], list[str]] = lambda _: []
+    without_lists: Callable[[Scope], str] = lambda _: ""
     row: Callable[[Scope, int], str] = lambda _, lane: f"<row {lane}>"
     inner: Callable[[Scope], list[str]] = lambda _: []
     inner_names: Callable[[Scope], list[str]] = lambda _: []

@@ -42,9 +42,9 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
         count = Const("i64", int(size.value) // stride) if isinstance(size, Const) else _divided(size, stride)
         dtype, number = scope.dtype(slot.scalar, order), bare(expression(scope, count))
         if order == ">" and stride > 1:
-            return f"np.frombuffer(data, {dtype}, {number}, {begin}).astype({scope.dtype(slot.scalar)})"
+            return f"_numbers_in(data, {dtype}, {number}, {begin}).astype({scope.dtype(slot.scalar)})"
         if slot.scalar == "bool":
-            return f"np.frombuffer(data, {dtype}, {number}, {begin}) != 0"
+            return f"_numbers_in(data, {dtype}, {number}, {begin}) != 0"
         scope.from_call.add("copy")
         return f"_array({dtype}, data, {number}, {begin}, call_copy)"
     if isinstance(slot, Number):
@@ -115,7 +115,7 @@ def _rows(scope: Scope, first: Stmt, base: Expr, count: Expr, size: int) -> str:
             if not scope.numpy:
                 return f'[[*each] for each in _unpack_each("{order}{number}{CODES[type_]}", {part})]'
             dtype, numbers = scope.dtype(type_, order or "<"), bare(expression(scope, mul(count, number)))
-            return f"[*np.frombuffer(data, {dtype}, {numbers}, {begin}).astype({scope.dtype(type_)}).reshape(-1, {number})]"
+            return f"[*_numbers_in(data, {dtype}, {numbers}, {begin}).astype({scope.dtype(type_)}).reshape(-1, {number})]"
         case _:
             return f'[each for (each,) in _unpack_each("{size}s", {part})]'
 

@@ -51,7 +51,8 @@ class Scope:
     its time and number, registers, object. ``small`` are the locals of 64 bits, without a sign, that are known to be below 2**63,
     ``sums`` those that are sums.
     ``unpacked`` are rows, by lane and index, whose numbers are locals of a comprehension: it gets their types by offset.
-    ``attributes`` are the fields of the message's row that are the object's at once, by offset, if it is made first.
+    ``attributes`` are the fields of the message's row that are the object's at once, by offset, if it is made first; ``without_lists`` is
+    the class that it has then where none of its lists has come, if there is one.
     """
 
     locals: Locals
@@ -70,6 +71,7 @@ class Scope:
     from_call: set[str] = field(default_factory=set[str])
     direct: Direct = field(default_factory=Direct)
     attributes: dict[int, str] | None = None
+    without_lists: str = ""
     numpy: bool = False
     small: set[str] = field(default_factory=set[str])
     sums: dict[nodes.Expr, str] = field(default_factory=dict[nodes.Expr, str])
@@ -109,6 +111,12 @@ class Scope:
         name = f"_dtype_{code}{'_be' if order == '>' and code[1:] != '1' else ''}"
         self.loads.add(name)
         return name
+
+    def no_numbers(self, scalar: str) -> str:
+        """An array of numpy without elements."""
+        name = f"_type_{'b1' if scalar == 'bool' else NUMPY[scalar][1]}"
+        self.loads.add(name)
+        return f"_empty(0, {name})"
 
     def place(self, place: nodes.Place, scalar: str, row: Callable[[], str]) -> str:
         """A scalar at a place of a kernel; ``row`` is the text of its row."""
@@ -157,6 +165,10 @@ class Scope:
     def has_field(self, name: str) -> str:
         """The local that says whether the message has a late field."""
         return self.locals.identifier(f"has\0{name}")
+
+    def any_lists(self) -> str:
+        """The local that says whether the message has any of its lists."""
+        return self.locals.identifier("any\0lists")
 
     def field(self, lane: int, row: str, offset: int, scalar: str) -> str:
         """A scalar of a row."""

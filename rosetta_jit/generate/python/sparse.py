@@ -17,6 +17,7 @@ from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.python.classes import member_names
 from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.generate.python.late_fields import says_presence
+from rosetta_jit.generate.python.late_lists import lists_of
 from rosetta_jit.generate.python.making import Make
 from rosetta_jit.generate.python.mentions import blocks_within
 from rosetta_jit.generate.unit import Unit
@@ -24,7 +25,7 @@ from rosetta_jit.kernel.nodes import Block, Const, Expect, Fill, IsText, Place, 
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.layout import Member, Number, Row, Span
-from rosetta_jit.model.types import Array, Bytes, Field, Map, String, Struct
+from rosetta_jit.model.types import Bytes, Field, String, Struct
 
 OBJECT = "made"
 LEAST = 8
@@ -110,20 +111,27 @@ def begun(make: Make) -> list[str]:
 
 def settings(make: Make) -> Iterator[str]:
     """The lines that set the other fields of the object, which is made."""
-    unit, slot = make.unit, make.unit.layout.root
+    unit, slot, lists = make.unit, make.unit.layout.root, list[str]()
     assert isinstance(slot, Row)
+    late = lists_of(unit) if make.scope.without_lists else ()
     for field, member, name in _fields(make):
         if _is_attribute(member, make):
             continue
         value, there = make.member(field, member, slot, 0, "0"), ""
         match unit.schema.resolve(field.type), member.slot:
-            case Array() | Map() | String() | Bytes(), Span() as span if make.scope.direct.late_at(span) is None:
+            case String() | Bytes(), Span() as span if make.scope.direct.late_at(span) is None:
                 there = make.count(span)
             case _:
                 pass
-        yield f"{OBJECT}.{name} = {value} if {there} else {make.first(field)}" if there else f"{OBJECT}.{name} = {value}"
+        line = f"{OBJECT}.{name} = {value} if {there} else {make.first(field)}" if there else f"{OBJECT}.{name} = {value}"
+        if member.slot in late:
+            lists.append(f"    {line}")
+        else:
+            yield line
     if slot.unknown is not None:
         yield f"{OBJECT}.unknown_fields = {make.unknown(slot.unknown, 0, '0')}"
+    if lists:
+        yield from (f"if {make.scope.any_lists()}:", *lists, "else:", f"    _set_class({OBJECT}, {make.scope.without_lists})")
 
 
 def _fields(make: Make) -> Iterator[tuple[Field, Member, str]]:

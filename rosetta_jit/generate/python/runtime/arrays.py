@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-_Array = np.ndarray
+_Array, _empty, _numbers_in = np.ndarray, np.empty, np.frombuffer
 _PLAIN = frozenset(map(np.dtype, "?bBhHiIlLqQfd"))
 """The types of arrays of numbers as this machine has them."""
 
@@ -19,7 +19,7 @@ class _Comparable:
     __slots__ = ()
 
     def __eq__(self, other: object) -> bool:
-        if type(self) is not type(other):
+        if self.__class__ is not other.__class__:
             return NotImplemented
         names: tuple[str, ...] = getattr(self, "__match_args__", ())
         return all(_are_same(getattr(self, name), getattr(other, name)) for name in names)
@@ -38,7 +38,7 @@ def _are_same(left: Any, right: Any) -> bool:
 
 def _array(dtype: "np.dtype[Any]", data: Any, count: int, at: int, copy: bool) -> "npt.NDArray[Any]":
     """Numbers that lie in bytes as this machine has them: a copy, or a view that cannot be written to."""
-    found: npt.NDArray[Any] = np.ndarray(count, dtype, data, at)
+    found: npt.NDArray[Any] = _numbers_in(data, dtype, count, at)
     return found.copy() if copy else found
 
 
