@@ -10,6 +10,7 @@ from collections import Counter
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
+from shutil import rmtree
 from threading import get_ident
 
 import pytest
@@ -20,22 +21,20 @@ from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.startup import entry_points
 from rosetta_jit.transports import installed as transports
+from tests.shared import FOLDER, HEADERS
 
 settings.register_profile("reproducible", derandomize=True)
 settings.load_profile("reproducible")
-
-SHARED = "ROSETTA_JIT_TESTS_DIR"
-"""The variable by which a run of pytest that a test starts finds the folder of the run around it."""
 
 
 @pytest.fixture(scope="session")
 def of_all_processes(tmp_path_factory):
     """A folder that pytest's processes share: workers of xdist, and those that a test starts to run tests in another way."""
     with pytest.MonkeyPatch.context() as patch:
-        if SHARED not in os.environ:
+        if FOLDER not in os.environ:
             own = tmp_path_factory.getbasetemp()
-            patch.setenv(SHARED, str(own.parent if "PYTEST_XDIST_WORKER" in os.environ else own))
-        yield Path(os.environ[SHARED])
+            patch.setenv(FOLDER, str(own.parent if "PYTEST_XDIST_WORKER" in os.environ else own))
+        yield Path(os.environ[FOLDER])
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -100,6 +99,12 @@ def offers_anew():
     forget()
     yield
     forget()
+
+
+def pytest_unconfigure(config):
+    """What `tests.generate.cpp.read_once` keeps is large, and of no use to another run."""
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        rmtree(config._tmp_path_factory.getbasetemp() / HEADERS, ignore_errors=True)
 
 
 def pytest_terminal_summary(terminalreporter):
