@@ -17,6 +17,7 @@ import pytest
 from hypothesis import settings
 
 from rosetta_jit.generate import languages
+from rosetta_jit.generate.build import AheadOfTime, LowByteFirst
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.startup import entry_points
@@ -56,11 +57,11 @@ def bytecode_once(of_all_processes):
 
 @pytest.fixture(scope="session", autouse=True)
 def proven_once(of_all_processes):
-    """Programs of several backends have the same kernels: each is improved and proven by the first process that comes to it.
+    """Programs of several backends, and of several languages, have the same kernels: each is improved and proven by the first process
+    that comes to it.
 
     Tests of the proof do not come this way.
     """
-    optimised = Build._optimised
     folder = of_all_processes / "proven"
     folder.mkdir(exist_ok=True)
 
@@ -68,17 +69,21 @@ def proven_once(of_all_processes):
     def known(name):
         return pickle.loads((folder / name).read_bytes())  # noqa: S301 - ours
 
-    def once(build, kernel):
-        # By its text: 0.0 and -0.0 are equal, but not the same.
-        name = sha256(f"{build.types.rules is None} {to_text(kernel)}".encode()).hexdigest()
-        if not (folder / name).exists():
-            made = folder / f"{name}.{os.getpid()}.{get_ident()}"
-            made.write_bytes(pickle.dumps(optimised(build, kernel)))
-            made.replace(folder / name)
-        return known(name)
+    def sharing(optimised):
+        def once(build, kernel):
+            # By its text: 0.0 and -0.0 are equal, but not the same.
+            name = sha256(f"{optimised.__qualname__} {build.types.rules is None} {to_text(kernel)}".encode()).hexdigest()
+            if not (folder / name).exists():
+                made = folder / f"{name}.{os.getpid()}.{get_ident()}"
+                made.write_bytes(pickle.dumps(optimised(build, kernel)))
+                made.replace(folder / name)
+            return known(name)
+
+        return once
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Build, "_optimised", once)
+        for each in (Build, AheadOfTime, LowByteFirst):
+            patch.setattr(each, "_optimised", sharing(each._optimised))
         yield
 
 
