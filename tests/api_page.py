@@ -20,7 +20,8 @@ from rosetta_jit.logs.log import Log
 from rosetta_jit.runtime.nested_columns import Columns, Ragged
 from rosetta_jit.runtime.text_columns import Texts
 from rosetta_jit.startup.cached import cached_property
-from rosetta_jit.transports.base import Caller, Message, Server, Sink, Source
+from rosetta_jit.transports.base import Message, Sink, Source
+from rosetta_jit.transports.calls import Caller, Server
 
 HEAD = """\
 # API reference

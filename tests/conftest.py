@@ -10,32 +10,32 @@ from collections import Counter
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
+from shutil import rmtree
 from threading import get_ident
 
 import pytest
 from hypothesis import settings
 
 from rosetta_jit.generate import languages
+from rosetta_jit.generate.build import AheadOfTime, LowByteFirst
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.startup import entry_points
 from rosetta_jit.transports import installed as transports
+from tests.shared import FOLDER, HEADERS
 
 settings.register_profile("reproducible", derandomize=True)
 settings.load_profile("reproducible")
-
-SHARED = "ROSETTA_JIT_TESTS_DIR"
-"""The variable by which a run of pytest that a test starts finds the folder of the run around it."""
 
 
 @pytest.fixture(scope="session")
 def of_all_processes(tmp_path_factory):
     """A folder that pytest's processes share: workers of xdist, and those that a test starts to run tests in another way."""
     with pytest.MonkeyPatch.context() as patch:
-        if SHARED not in os.environ:
+        if FOLDER not in os.environ:
             own = tmp_path_factory.getbasetemp()
-            patch.setenv(SHARED, str(own.parent if "PYTEST_XDIST_WORKER" in os.environ else own))
-        yield Path(os.environ[SHARED])
+            patch.setenv(FOLDER, str(own.parent if "PYTEST_XDIST_WORKER" in os.environ else own))
+        yield Path(os.environ[FOLDER])
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -57,11 +57,11 @@ def bytecode_once(of_all_processes):
 
 @pytest.fixture(scope="session", autouse=True)
 def proven_once(of_all_processes):
-    """Programs of several backends have the same kernels: each is improved and proven by the first process that comes to it.
+    """Programs of several backends, and of several languages, have the same kernels: each is improved and proven by the first process
+    that comes to it.
 
     Tests of the proof do not come this way.
     """
-    optimised = Build._optimised
     folder = of_all_processes / "proven"
     folder.mkdir(exist_ok=True)
 
@@ -69,17 +69,21 @@ def proven_once(of_all_processes):
     def known(name):
         return pickle.loads((folder / name).read_bytes())  # noqa: S301 - ours
 
-    def once(build, kernel):
-        # By its text: 0.0 and -0.0 are equal, but not the same.
-        name = sha256(f"{build.types.rules is None} {to_text(kernel)}".encode()).hexdigest()
-        if not (folder / name).exists():
-            made = folder / f"{name}.{os.getpid()}.{get_ident()}"
-            made.write_bytes(pickle.dumps(optimised(build, kernel)))
-            made.replace(folder / name)
-        return known(name)
+    def sharing(optimised):
+        def once(build, kernel):
+            # By its text: 0.0 and -0.0 are equal, but not the same.
+            name = sha256(f"{optimised.__qualname__} {build.types.rules is None} {to_text(kernel)}".encode()).hexdigest()
+            if not (folder / name).exists():
+                made = folder / f"{name}.{os.getpid()}.{get_ident()}"
+                made.write_bytes(pickle.dumps(optimised(build, kernel)))
+                made.replace(folder / name)
+            return known(name)
+
+        return once
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Build, "_optimised", once)
+        for each in (Build, AheadOfTime, LowByteFirst):
+            patch.setattr(each, "_optimised", sharing(each._optimised))
         yield
 
 
@@ -100,6 +104,12 @@ def offers_anew():
     forget()
     yield
     forget()
+
+
+def pytest_unconfigure(config):
+    """What `tests.generate.cpp.read_once` keeps is large, and of no use to another run."""
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        rmtree(config._tmp_path_factory.getbasetemp() / HEADERS, ignore_errors=True)
 
 
 def pytest_terminal_summary(terminalreporter):

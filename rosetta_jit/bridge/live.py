@@ -19,7 +19,8 @@ from rosetta_jit.transports.limits import MAX_QUEUE_BYTES
 if TYPE_CHECKING:
     from rosetta_jit.bridge.configuration import Route
     from rosetta_jit.bridge.translating import Translator
-    from rosetta_jit.transports.base import Bytes, Caller, Sink
+    from rosetta_jit.transports.base import Bytes, Sink
+    from rosetta_jit.transports.calls import Caller
 
     Say = Callable[[str], object]
     Waiting = tuple[bytes, int, int]

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.bridge.counting import RouteCounts
 from rosetta_jit.errors import MessageError, TransportError
-from rosetta_jit.transports.base import ANSWER_FAILED, Caller, Message, Server
+from rosetta_jit.transports.base import Message
+from rosetta_jit.transports.calls import ANSWER_FAILED, Caller, Server
 
 if TYPE_CHECKING:
     from rosetta_jit.bridge.configuration import Rpc

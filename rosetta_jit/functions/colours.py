@@ -14,7 +14,9 @@ from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
 from rosetta_jit.language.scope import Scope
 from rosetta_jit.language.typed import INT64
-from rosetta_jit.lowering.colours import ENCODINGS, HALVED, PACKED, Picture, to_rgb, to_yuv
+from rosetta_jit.lowering.colours.conversion import ENCODINGS, HALVED, PACKED, Picture
+from rosetta_jit.lowering.colours.to_rgb import to_rgb
+from rosetta_jit.lowering.colours.to_yuv import to_yuv
 from rosetta_jit.lowering.evaluation import Evaluation
 from rosetta_jit.lowering.texts.views import View, sound
 from rosetta_jit.model import expr as model

@@ -97,3 +97,7 @@ class End:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
+
+
+def not_open() -> None:
+    """How an end is closed that nothing has opened yet, or that is closed already."""

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any
 from rosetta_jit.catalogue import transports as words
 from rosetta_jit.errors import AddressError, MissingPackage
 from rosetta_jit.transports.address import Address, Option, parse, settle
-from rosetta_jit.transports.base import QUEUE, Caller, Server, Sink, Source, Transport
+from rosetta_jit.transports.base import QUEUE, Sink, Source, Transport
+from rosetta_jit.transports.calls import Caller, Server
 from rosetta_jit.transports.installed import installed
 from rosetta_jit.transports.limits import MAX_MESSAGE_BYTES
 
 if TYPE_CHECKING:
-    from rosetta_jit.transports.base import Answer, Deliver, Lost
+    from rosetta_jit.transports.base import Deliver, Lost
+    from rosetta_jit.transports.calls import Answer
 
 COMMON = {
     "max_message": Option("size", MAX_MESSAGE_BYTES, "no message is larger than so many bytes"),

@@ -61,6 +61,7 @@ GROUPS = {
     "default": "ignore and default",
     "component": "functions of several values",
     **{f"family {name}": "functions of several values" for name in ("rotations", "poses", "geodesy", "utm")},
+    **{f"family {name}": "functions of whole arrays" for name in ("sequences", "runs", "bits")},
     "state": "state",
     "set_state": "state",
     "renamed": "same",

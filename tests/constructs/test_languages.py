@@ -18,10 +18,11 @@ from rosetta_jit.generate.build import NO_WISHES, generated
 from tests.constructs.contained import EVERY, contained
 from tests.constructs.examples import FILES, MAPPINGS
 from tests.generate import cpp, lisp
+from tests.generate.cpp import QUICK
 from tests.generate.driver import answers, needs_gcc
 from tests.generate.python import answer, module
 from tests.generate.python import same as same_line
-from tests.generate.test_examples import QUICK, Case, case_of, decoded, encoded, results
+from tests.generate.test_examples import Case, case_of, decoded, encoded, results
 from tests.generate.through_c import loaded_in_c
 from tests.mapping_examples import Example
 from tests.test_documents import EXAMPLES
@@ -174,7 +175,7 @@ def in_cpp(name: str, folder: Path) -> None:
 @lisp.needs_sbcl
 @pytest.mark.parametrize("name", SHORT[:1])
 def test_in_lisp(name, tmp_path):
-    in_lisp(name, tmp_path)
+    in_lisp(name, tmp_path, lisp.QUICKLY)
 
 
 @lisp.needs_sbcl
@@ -184,9 +185,9 @@ def test_each_in_lisp(name, tmp_path):
     in_lisp(name, tmp_path)
 
 
-def in_lisp(name: str, folder: Path) -> None:
+def in_lisp(name: str, folder: Path, *before: str) -> None:
     made = case(name)
-    (found,) = lisp.answers(folder, [(made.request, made.messages)])
+    (found,) = lisp.answers(folder, [(made.request, made.messages)], *before)
     if name == STATE:  # whose messages must not be decoded again to say what is in them
         assert [" ".join(line.split()[:2]) if line.startswith("ok ") else line for line in found] == made.wanted()
         return

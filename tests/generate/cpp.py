@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
 
+from tests.shared import FOLDER, HEADERS
+
 STRICT = ("-std=c++17", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror")
 SANITIZED = ("-O1", "-g1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+QUICK = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+THOROUGH = ("-O2", *QUICK[1:])
+CAREFUL = ("-O1", "-fstrict-aliasing", *QUICK[1:])
+"""What -O2 makes of objects of one class that are read as another, in two thirds of the time."""
+PLAIN = ("-O0",)
+OFTEN = (QUICK, THOROUGH, CAREFUL, PLAIN)
+"""Options with which many programs are made: for these the headers that all of them begin with are read once."""
 MAIN = Path(__file__).with_name("driver.cpp")
+OURS = "rosetta_jit/rosetta_jit.hpp"
 
 needs_cpp = pytest.mark.skipif(shutil.which("g++") is None, reason="generated C++ is compiled by g++, which is not installed")
 
@@ -35,11 +47,39 @@ def program(folder: Path, name: str, *sources: str, compiler: str = "g++", optio
     """The program around a unit, which must not give a compiler cause to complain."""
     made = folder / f"{name}.{compiler}"
     words = [f'-DHEADER="{name}.hpp"', f"-DUNIT={name}"]
-    command = [compiler, *STRICT, *options, f"-I{folder}", *words, main, folder / f"{name}.cpp", *sources, "-lm", "-o", made]
+    begun = read_once(folder, name, options) if compiler == "g++" and begins_with_unit(main) else ()
+    command = [compiler, *STRICT, *options, *begun, f"-I{folder}", *words, main, folder / f"{name}.cpp", *sources, "-lm", "-o", made]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
     assert done.returncode == 0, done.stderr
     assert not done.stderr
     return made
+
+
+def begins_with_unit(main: Path) -> bool:
+    """Whether a program includes the unit's header before any other."""
+    return next(line for line in main.read_text().splitlines() if line.startswith("#include")) == "#include HEADER"
+
+
+def read_once(folder: Path, name: str, options: tuple[str, ...]) -> tuple[str, ...]:
+    """Options for g++, which then does not read the headers anew that the unit's own header includes before it declares anything.
+
+    Those are some of the standard library, and the one that all units have. Other headers are read where they are included.
+    """
+    modes = tuple(each for each in options if not each.startswith("-isystem"))
+    if modes not in OFTEN:
+        return ()
+    includes = [line for line in (folder / f"{name}.hpp").read_text().splitlines() if line.startswith("#include")]
+    text = "".join(f"{line}\n" for line in includes[: includes.index(f"#include <{OURS}>") + 1])
+    known = sha256("\n".join([text, (folder / OURS).read_text(), *modes]).encode()).hexdigest()
+    begin = Path(os.environ[FOLDER]) / HEADERS / f"{known}.hpp"
+    made = Path(f"{begin}.gch")
+    if not made.exists():
+        begin.parent.mkdir(exist_ok=True)
+        begin.write_text(text)
+        own = Path(f"{made}.{os.getpid()}")
+        subprocess.run(["g++", *STRICT, *modes, f"-I{folder}", "-x", "c++-header", begin, "-o", own], check=True)
+        own.replace(made)
+    return "-Winvalid-pch", "-include", str(begin)
 
 
 def compiled(compiler: str, folder: Path, name: str, *options: str) -> None:

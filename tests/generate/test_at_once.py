@@ -8,8 +8,9 @@ import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import generated
 from tests.generate import cpp
+from tests.generate.cpp import QUICK
 from tests.generate.driver import answers, harmed
-from tests.generate.test_cpp import BOTH, QUICK, same
+from tests.generate.test_cpp import BOTH, same
 
 NUMBERS = "bool flag\nfloat64 x\nint8 small\nuint16 medium\nfloat64[36] covariance\nint32[3] three\nfloat32 y\n"
 TYPES = {

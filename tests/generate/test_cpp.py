@@ -20,6 +20,7 @@ from rosetta_jit.generate.cpp.language import INCLUDE, SHARED
 from rosetta_jit.generate.cpp.manners import MANNERS
 from tests.generate import cpp, native
 from tests.generate.corpora import corpora
+from tests.generate.cpp import CAREFUL, QUICK, THOROUGH
 from tests.generate.driver import answers, expected, harmed
 from tests.generate.test_c import HOSTILE, SUBJECTS, TORSO, named
 from tests.golden import GOLDEN, check_golden
@@ -29,7 +30,6 @@ CMAKE = INCLUDE.parents[1] / "cmake"
 HERE = Path(__file__).parent
 MODELS = f"-I{HERE / 'models'}"
 NUMBERS = 'syntax = "proto2"; package rj; message Numbers { repeated double many = 1; optional double sometimes = 2; }'
-QUICK = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 OUTER = "=" * 80 + "\nMSG: evil/Inner\nfloat32 while\nstring memcpy\nuint8 holder\nint64[2] which\nstring codec\nbool[] std\n"
 OUTER += "float64[] target\nint32 given_object\n"
 
@@ -74,9 +74,6 @@ struct Within { std::vector<Point> points; };
 struct Points { std::vector<Point> points; std::string name; Within within; std::vector<Name> names; };
 """
 LIBRARY = "#pragma once\n#include <cstdint>\n#include <string>\n#include <vector>\n"
-THOROUGH = ("-O2", *QUICK[1:])
-CAREFUL = ("-O1", "-fstrict-aliasing", *QUICK[1:])
-"""What -O2 makes of objects of one class that are read as another, in two thirds of the time."""
 IN_MEMORY = [
     *((layout, "cdr") for layout in LAID_OUT),
     ("alike", "ros1"),

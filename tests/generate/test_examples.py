@@ -19,6 +19,7 @@ from rosetta_jit.api.options import request_of
 from rosetta_jit.errors import MappingError
 from rosetta_jit.generate.build import NO_WISHES, generated
 from tests.generate import cpp, lisp
+from tests.generate.cpp import QUICK
 from tests.generate.driver import answers, expected, harmed, needs_gcc
 from tests.generate.python import answer, module
 from tests.generate.python import same as same_line
@@ -27,7 +28,6 @@ from tests.mapping_examples import Example, example, type_of
 from tests.runtime.test_shipped_growth import likely
 from tests.test_documents import EXAMPLES
 
-QUICK = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 ROUNDS = 30
 NAMES = list(EXAMPLES)
 

@@ -20,8 +20,9 @@ from rosetta_jit.kernel.nodes import Assign, Binary, Compare, Const, Expr, Fill,
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import replace
 from tests.generate import cpp
+from tests.generate.cpp import CAREFUL, THOROUGH
 from tests.generate.driver import answers, harmed
-from tests.generate.test_cpp import BOTH, CAREFUL, LIBRARY, THOROUGH, same
+from tests.generate.test_cpp import BOTH, LIBRARY, same
 
 SEPARATOR = "=" * 80
 TYPE = f"""Part[] parts

@@ -46,7 +46,6 @@ UNITS_AT_ONCE = 25
 """So many units are given to one process of SBCL, which compiles its runtime once."""
 ROOM = 1 << 14
 """Elements, and bytes, for which generated C has room where nothing bounds them: types that contain themselves have many here."""
-PLAIN = ("-O0",)
 OURS = """
 unit holder codec decode encode size borrow error result status failure message memory rows used capacity count start which state kept now
 number line path kind detail offset value target element inner row index data end begin bytes lane lanes scratch sites site unknown_fields
@@ -228,7 +227,7 @@ def through_protoc(made: Case, folder: Path) -> list[str]:
     subprocess.run(["protoc", "--cpp_out=.", "h.proto"], cwd=folder, check=True)
     subprocess.run(["g++", "-std=c++17", "-w", "-O0", "-c", "h.pb.cc"], cwd=folder, check=True)
     name = cpp.write(folder, generated(made.request, "cpp", BOTH, "unit", Wishes(holder="protobuf", include="h.pb.h")))
-    return driver.answers(cpp.program(folder, name, "h.pb.o", "-lprotobuf", options=(*PLAIN, f"-isystem{folder}")), made.messages)
+    return driver.answers(cpp.program(folder, name, "h.pb.o", "-lprotobuf", options=(*cpp.PLAIN, f"-isystem{folder}")), made.messages)
 
 
 LANGUAGES = {

@@ -12,8 +12,9 @@ import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import Wishes, generated
 from tests.generate import cpp, native
+from tests.generate.cpp import QUICK
 from tests.generate.driver import answers, harmed
-from tests.generate.test_cpp import BOTH, QUICK, same
+from tests.generate.test_cpp import BOTH, same
 
 if TYPE_CHECKING:
     from collections.abc import Callable

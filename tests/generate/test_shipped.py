@@ -16,6 +16,7 @@ from rosetta_jit.api.options import request_of
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.generate.build import NO_WISHES, generated
 from tests.generate import cpp, driver, lisp, python
+from tests.generate.cpp import QUICK
 from tests.generate.python import module
 from tests.language.test_shipped_laws import ROOT, SHIPPED
 from tests.runtime.test_shipped_growth import damaged, encoding, likely, messages
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 
 ROUNDS = 24
 COMPILERS = {"c": ("gcc", "clang"), "cpp": ("g++", "clang++")}
-QUICK = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 SAMPLE = {"packed/gamepad.mapping", "ros1/nav_sat_fix_utm.mapping"}
 NOT_GENERATED = {"ros1/compressed_image.mapping"}
 """Its kernels call what compresses."""

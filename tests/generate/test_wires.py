@@ -21,10 +21,10 @@ from rosetta_jit.cli import main
 from rosetta_jit.generate.build import generated
 from tests.api.test_across_wires import MAPPING, SCHEMAS, WIRES, message
 from tests.generate import cpp, lisp
+from tests.generate.cpp import QUICK
 from tests.generate.driver import SANITIZED, STRICT, needs_gcc
 
 HERE = Path(__file__).parent
-QUICK = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 NAMES = list(WIRES)
 FILES = {**SCHEMAS, "seen.mapping": MAPPING + '  reject "too steep" when .tilt.step > 1\n'}
 """A message of tilt is refused after it has set an element of an array that pose fills, too."""

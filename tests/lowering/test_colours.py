@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.lowering.colours import ENCODINGS, MOSAICS
+from rosetta_jit.lowering.colours.conversion import ENCODINGS, MOSAICS
 
 OTHER_BACKENDS = ["python", "interpreter"]
 SOME = ("bayer_gbrg8", "yuv422", "nv21")

@@ -8,7 +8,8 @@ import struct
 
 import rosetta_jit as rj
 from rosetta_jit.transports import loop as loops
-from rosetta_jit.transports.base import Message, Server, Source
+from rosetta_jit.transports.base import Message, Source
+from rosetta_jit.transports.calls import Server
 from rosetta_jit.transports.stream import Stream
 from tests.transports.free import free_port, until
 
@@ -26,7 +27,8 @@ def test_a_full_queue_drops_the_oldest_and_counts():
 
 
 def test_queues_hold_few_large_messages(monkeypatch):
-    monkeypatch.setattr("rosetta_jit.transports.base.MAX_QUEUE_BYTES", 5)
+    for module in ("base", "calls"):
+        monkeypatch.setattr(f"rosetta_jit.transports.{module}.MAX_QUEUE_BYTES", 5)
     source, server = Source("nothing", None, None), Server("nothing", lambda _: None)
     refused = []
     for each in (b"12", b"34", b"5", b"67", b"123456789"):

@@ -28,8 +28,9 @@ from functools import reduce
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
-from rosetta_jit.language.arrays.array_functions import ARGUMENTS, NUMBER_BYTES, NUMBERS, PADDED
+from rosetta_jit.language.arrays.array_functions import ARGUMENTS, NUMBERS
 from rosetta_jit.language.arrays.counts import ONE, ZERO, LayoutError, folded, minus, over, plus, times
+from rosetta_jit.language.arrays.put_back import listed_numbers
 from rosetta_jit.language.limits import MAX_LISTED
 from rosetta_jit.model.expr import Binary, Call, Each, Expr, Len, List, Literal, Name, Path, Pick, Slice, Step
 from rosetta_jit.startup.dataclass import dataclass, replace
@@ -39,18 +40,6 @@ if TYPE_CHECKING:
     from rosetta_jit.language import folding
 else:
     folding = Late("rosetta_jit.language.folding")
-
-
-OPPOSITE = {
-    "planar": "interleaved",
-    "interleaved": "planar",
-    "rows": PADDED,
-    PADDED: "rows",
-    NUMBERS: NUMBER_BYTES,
-    NUMBER_BYTES: NUMBERS,
-    "upper_triangle": "symmetric",
-    "symmetric": "upper_triangle",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,13 +211,6 @@ def _permuted(view: View, order: Expr, call: Call) -> View:
     return replace(split, axes=(*outer, _listed(chosen, last.step, order)))
 
 
-def listed_numbers(order: Expr) -> tuple[int, ...]:
-    """The integers of a list that stands in the text; () if it holds anything else."""
-    items = order.items if isinstance(order, List) else ()
-    numbers = tuple(item.value for item in items if isinstance(item, Literal) and type(item.value) is int)
-    return numbers if len(numbers) == len(items) else ()
-
-
 def _planar(view: View, channels: Expr, size: Expr, *, call: Call) -> View:
     split = _split(view, (channels, size), call)
     *outer, channel, part = split.axes
@@ -295,32 +277,6 @@ def _triangle(view: View, size: Expr, call: Call, *, is_upper: bool) -> View:
         () if axis.count == Literal(total) else ((Binary("!=", axis.count, Literal(total), call.span), f"there are not {total} elements"),)
     )
     return replace(view, axes=(_listed(numbers, axis.step, call),), refused=(*view.refused, *wrong))
-
-
-def put_back(call: Call, value: Expr) -> Call:
-    """The function that puts the elements back."""
-    _, *arguments = call.arguments
-    match call.function, arguments:
-        case "transposed", [rows, columns, *size]:
-            return Call(call.function, (value, columns, rows, *size), call.span)
-        case "permuted", [order]:
-            numbers = listed_numbers(order)
-            found = (Literal(numbers.index(number), order.span) for number in range(len(numbers)) if number in numbers)
-            return Call(call.function, (value, List(tuple(found), order.span)), call.span)
-        case _:
-            return Call(OPPOSITE.get(call.function, call.function), (value, *arguments), call.span)
-
-
-def rounded_bytes(expr: Expr) -> Expr:
-    """Bytes of integers that are computed in floats, each rounded to the nearest; any other expression as it is."""
-    match expr:
-        case Call(function, (value, Name(name), *_)) if function == NUMBER_BYTES and not name.startswith("float"):
-            nearest = Call(name, (value, Name("round", value.span)), value.span)
-            return replace(expr, arguments=(nearest, *expr.arguments[1:]))
-        case Call(function, (array, *_)) if function in ARGUMENTS:
-            return replace(expr, arguments=(rounded_bytes(array), *expr.arguments[1:]))
-        case _:
-            return expr
 
 
 def _flat(view: View, call: Call) -> Axis:

@@ -8,7 +8,7 @@
 | `table(x) {a = b}`| table(value) {b = a}              |
 
 What undoes an operator or a function stands in its record (`language.operators`, `language.function`), beside what comes back when it is
-undone. Arrays are in `language.arrays.layouts`, and expressions of several fields in `language.both_ways.inverse_parts`.
+undone. Arrays are in `language.arrays.put_back`, and expressions of several fields in `language.both_ways.inverse_parts`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.arrays.array_functions import ARGUMENTS
-from rosetta_jit.language.arrays.layouts import put_back, rounded_bytes
+from rosetta_jit.language.arrays.put_back import put_back, rounded_bytes
 from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.function import SEVERAL, Affine, ByType, Function
 from rosetta_jit.language.groups import GroupFunction, arguments_of, component, function_of

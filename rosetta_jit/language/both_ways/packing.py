@@ -18,7 +18,7 @@ from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.both_ways.array_relations import with_layouts
 from rosetta_jit.language.both_ways.branches import asked_of_holder, facts_of, test_between
 from rosetta_jit.language.both_ways.checks import agreement, checks_of, guard
-from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solve
+from rosetta_jit.language.both_ways.inverse import condition_in, fields_in
 from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.learning import learn
 from rosetta_jit.language.both_ways.named_fields import fields_in_rules, is_among, set_by
@@ -28,7 +28,7 @@ from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.installed import written
 from rosetta_jit.language.limits import MAX_BLOCKS
 from rosetta_jit.model.element_rules import ignored_elements, ignoring
-from rosetta_jit.model.expr import Binary, Call, Coerced, Expr, Item, Len, List, Literal, Path
+from rosetta_jit.model.expr import Binary, Call, Coerced, Expr, Len, List, Literal, Path
 from rosetta_jit.model.mapping import (
     Arranged,
     Assign,
@@ -51,9 +51,13 @@ from rosetta_jit.model.types import Float
 from rosetta_jit.model.walk import Field, fields_of, parts, path_of
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass, field, replace
+from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
+    from rosetta_jit.language.both_ways import unpackable
     from rosetta_jit.language.both_ways.inverse import TypeOf
+else:
+    unpackable = Late("rosetta_jit.language.both_ways.unpackable")
 
 
 NOTHING: Mapping[Field, Expr] = MappingProxyType({})
@@ -181,7 +185,7 @@ class Packing:
         if conditional is not None and not fields_of(place, "wire"):
             return self.split(rule, conditional, loops)
         if not all(map(self.is_completed, missing)):
-            self.problems.append(_reason(replace(rule, value=wanted), missing, place, self.known, id(rule)))
+            self.problems.append(unpackable.reason(replace(rule, value=wanted), missing, place, self.known, id(rule)))
         return ()
 
     def setting(self, target: Field, loops: Loops, rule: Relation) -> tuple[Rule, ...]:
@@ -371,28 +375,3 @@ def _is_zero(constant: Expr) -> bool:
 def _rejects(rules: tuple[Rule, ...]) -> bool:
     """Whether a block does nothing but reject."""
     return bool(rules) and all(isinstance(rule, Reject) for rule in rules)
-
-
-def _reason(rule: Relation, missing: list[Field], place: Expr, known: Knowledge, number: int) -> Diagnostic:
-    """Why a relation, in which what is known of the wire has been replaced, cannot be packed."""
-    shown = list(dict.fromkeys(show_expr(each) for each in missing))
-    if fields_of(place, "wire"):
-        return words.index_reads(fields_of(place, "wire")[0].span)
-    if len(shown) > 1:
-        return words.several_fields(rule.value.span, shown, known.unsolved.get(number, ""))
-    try:
-        solve(rule.value, rule.place, known.type_of)
-    except NoInverseError as error:
-        return words.no_inverse(error.part.span, str(error), rule.span, shown[0], _other_way(error.part))
-    return words.index_reads(missing[0].span)
-
-
-def _other_way(part: Expr) -> str:
-    """How an expression that cannot be turned round is written so that it can."""
-    match part:
-        case Binary("==", value, Literal(1)) if type(part.right) is Literal:
-            return words.bit_of(show_expr(value))
-        case Item(Call() as call) if (group := group_of(call)) is not None:
-            return words.all_numbers(show_expr(call), [each.names[0] for each in group.components])
-        case _:
-            return ""

@@ -173,12 +173,12 @@ def _becomes(value: Expr, place: Place) -> str | None:
 def _is_empty(place: Place, trip: Trip) -> bool:
     """Whether the first direction refuses what has anything at a place."""
     if isinstance(place.type, Array):
-        return any(isinstance(each, Const) and each.value == 0 for each in trip.equal_to(LenOf(place)))
-    return trip.truth(Has(place)) is False
+        return any(isinstance(each, Const) and each.value == 0 for each in trip.known.equal_to(LenOf(place)))
+    return trip.known.truth(Has(place)) is False
 
 
 def _value_outcome(result: Result, trip: Trip) -> Outcome:
-    trip.ranges = result.ranges
+    trip.known.ranges = result.ranges
     place, value = result.place, result.value
     goal = LenOf(place) if result.is_length else Access(place, place.type)
     value = None if value is None else given_back(trip.towards(value, goal))
@@ -193,19 +193,19 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
             return BY_BLOCK
         case Access(other) | LenOf(other) if other.side != place.side:
             is_element = any(isinstance(step, IndexStep) for step in other.steps)
-            return None if value in trip.equal_to(goal) else UNSHOWN if is_element else Lost("nothing of it is kept")
-        case _ if trip.is_same(value, goal) or value == goal or any(value == other for other in trip.equal_to(goal)):
+            return None if value in trip.known.equal_to(goal) else UNSHOWN if is_element else Lost("nothing of it is kept")
+        case _ if trip.is_same(value, goal) or value == goal or any(value == other for other in trip.known.equal_to(goal)):
             return None
-        case Const(bool(holds)) if trip.truth(goal) is holds:
+        case Const(bool(holds)) if trip.known.truth(goal) is holds:
             return None
-        case Const(constant) if any(isinstance(other, Const) and other.value == constant for other in trip.equal_to(goal)):
+        case Const(constant) if any(isinstance(other, Const) and other.value == constant for other in trip.known.equal_to(goal)):
             return None
         case Const(constant):
             return Lost(f"it becomes {constant!r}")
         case _ if (why := _becomes(value, place)) is not None:
             return Lost(why)
         case _:
-            return None if any(same_number(value, each) for each in (goal, *trip.equal_to(goal))) else _come_back(value, goal)
+            return None if any(same_number(value, each) for each in (goal, *trip.known.equal_to(goal))) else _come_back(value, goal)
 
 
 def _come_back(value: Expr, goal: Expr) -> Outcome:

@@ -7,12 +7,10 @@ conditions of the path, are known. The second direction then decides its own con
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rosetta_jit.language.algebra.equality import (
     Ranges,
-    digit,
-    fact,
     has_local,
     own_part,
     reads_other,
@@ -21,13 +19,12 @@ from rosetta_jit.language.algebra.equality import (
     same_ranges,
     unify,
 )
-from rosetta_jit.language.algebra.quotients import Facts
 from rosetta_jit.language.laws.byte_views import byte_of, number_of
-from rosetta_jit.language.laws.chain import table_of
 from rosetta_jit.language.laws.key_lookup import number_found
 from rosetta_jit.language.laws.loop_orders import round_of
 from rosetta_jit.language.laws.refusals import may_refuse
 from rosetta_jit.language.laws.simplest import simplest
+from rosetta_jit.language.laws.truths import Truths
 from rosetta_jit.language.laws.whole_texts import whole_text
 from rosetta_jit.language.laws.writes import Write, changed, is_left_absent, is_part_of, is_within, union_depths, writes_of
 from rosetta_jit.language.limits import MAX_LOOKED, MAX_ORDERED
@@ -37,11 +34,8 @@ from rosetta_jit.language.typed import (
     BOOL,
     Access,
     Assign,
-    Binary,
     Call,
-    Choice,
     Const,
-    Convert,
     Default,
     Expr,
     FieldStep,
@@ -55,13 +49,12 @@ from rosetta_jit.language.typed import (
     Rule,
     Search,
     SetLength,
-    Unary,
     When,
 )
 from rosetta_jit.language.walk import indices, placed, rebuilt, renamed
 from rosetta_jit.model.expr import Literal, Side
 from rosetta_jit.model.rules import Kept
-from rosetta_jit.model.types import Array, Float, Int, Map, Struct, Union
+from rosetta_jit.model.types import Array, Map, Struct, Union
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass, replace
 
@@ -85,11 +78,11 @@ class Result:
 
 
 class Trip:
-    """The second direction, run on what one execution path of the first one leaves."""
+    """The second direction, run on what one execution path of the first one leaves.
 
-    """``by_round`` is whether rounds of loops take different ways, ``left`` how many more rules are compared with other loops.
-
-    ``refusals`` are the rejections of the text for which nothing shows that what came through the first direction passes them.
+    ``known`` is what its conditions say, ``by_round`` whether rounds of loops take different ways, ``left`` how many more rules are
+    compared with other loops. ``refusals`` are the rejections of the text for which nothing shows that what came through the first
+    direction passes them.
     """
 
     def __init__(self, path: ExecutionPath) -> None:
@@ -99,101 +92,30 @@ class Trip:
             self.writes.setdefault(field_names(write.place), []).append(write)
         places = [found[0].place for found in self.writes.values()]
         self.origin: Side = "holder" if places and places[0].side == "wire" else "wire"
-        self.plain: Facts | None = None
-        self.ranges: Ranges = ()
-        self.truths: dict[Expr, tuple[bool, Ranges]] = {}
-        self.equal: dict[Expr, list[tuple[Expr, Ranges]]] = {}
+        self.known = Truths(self.origin)
         for condition, holds, ranges in path.known:
-            self.know(condition, ranges, holds=holds)
+            self.known.know(condition, ranges, holds=holds)
         self.refused = False
         self.refusals: list[Reject[Expr]] = []
         self.by_round = any(has_local(condition) for condition, _, _ in path.known)
         self.left = MAX_ORDERED
-
-    def know(self, condition: Expr, ranges: Ranges, *, holds: bool) -> None:
-        """What follows from a condition, in all rounds of loops over ``ranges``."""
-        match condition:
-            case Unary("not", operand):
-                self.know(operand, ranges, holds=not holds)
-            case Binary("and" | "or" as operator, left, right) if (operator == "and") == holds:
-                self.know(left, ranges, holds=holds)
-                self.know(right, ranges, holds=holds)
-            case Binary("==" | "!=" as operator, left, right):
-                if (operator == "==") == holds and _equal_to_the_bit(left, right):
-                    self.same(left, right, ranges)
-                self.true(replace(condition, operator="=="), ranges, holds=(operator == "==") == holds)
-                self.true(replace(condition, operator="!="), ranges, holds=(operator == "!=") == holds)
-                if isinstance(right, Const):
-                    self.know_key(left, right, ranges, holds=(operator == "==") == holds)
-            case Binary("differs", left, right) if not holds:
-                self.same(left, right, ranges)
-                self.true(condition, ranges, holds=holds)
-            case _:
-                self.true(condition, ranges, holds=holds)
-
-    def know_key(self, table: Expr, chosen: Const, ranges: Ranges, *, holds: bool) -> None:
-        """What follows for the key of a table of constants, which may be made another integer, from whether it has chosen one of them."""
-        keeps = isinstance(table, Convert) and isinstance(table.type, Int) and table.rule not in {"saturate", "wrap"}
-        choice = table.operand if isinstance(table, Convert) and keeps else table
-        found = table_of(choice) if isinstance(choice, Choice) else None
-        if found is None:
-            return
-        key, rest = found[0], found[2]
-        entries: dict[Any, Any] = found[1]
-        mine = [each for each, value in entries.items() if value == chosen.value]
-        for each in entries.keys() - mine if holds else mine:
-            self.know(Binary("==", key, Const(each, key.type), BOOL), ranges, holds=False)
-        if holds and len(mine) == 1 and (rest is None or rest.value != chosen.value):
-            self.know(Binary("==", key, Const(mine[0], key.type), BOOL), ranges, holds=True)
-        for value in {each for each in entries.values() if holds and each != chosen.value}:
-            self.true(Binary("==", table, Const(value, chosen.type), BOOL), ranges, holds=False)
-
-    def narrowed(self, expr: Expr) -> Expr:
-        """An expression whose choices have no cases that are known not to come."""
-        match expr:
-            case Choice(cases) if any(self.truth(condition) is False for condition, _ in cases):
-                left = [(condition, value) for condition, value in cases if self.truth(condition) is not False]
-                return self.narrowed(replace(expr, cases=tuple(left))) if left else expr
-            case _:
-                return rebuilt(expr, self.narrowed)
-
-    def same(self, left: Expr, right: Expr, ranges: Ranges) -> None:
-        self.plain = None
-        self.equal.setdefault(left, []).append((right, ranges))
-        self.equal.setdefault(right, []).append((left, ranges))
-
-    def true(self, condition: Expr, ranges: Ranges, *, holds: bool) -> None:
-        self.truths[_without_span(condition)] = holds, ranges
-
-    def applies(self, expr: Expr, ranges: Ranges) -> bool:
-        """Whether what is known of each round of some loops is known in this round: where the loops are these."""
-        return not has_local(expr) or same_ranges(ranges, self.ranges[: len(ranges)], self.always())
-
-    def truth(self, condition: Expr) -> bool | None:
-        """Whether a condition is known to hold."""
-        holds, ranges = self.truths.get(_without_span(condition), (None, ()))
-        return holds if holds is None or self.applies(condition, ranges) else None
-
-    def equal_to(self, expr: Expr) -> list[Expr]:
-        """What an expression is known to be equal to."""
-        return [other for other, ranges in self.equal.get(expr, []) if self.applies(Binary("==", expr, other, BOOL), ranges)]
 
     def run(self, rules: tuple[Rule, ...]) -> Iterator[Result]:
         for rule in rules:
             match rule:
                 case Assign(place, value) | SetLength(place, value):
                     where = placed(place, self.of)
-                    made = self.narrowed(self.of(changed(rule, value)))
-                    yield Result(where, isinstance(rule, SetLength), made, rule.span, self.ranges, may_refuse(value, self.of))
+                    made = self.known.narrowed(self.of(changed(rule, value)))
+                    yield Result(where, isinstance(rule, SetLength), made, rule.span, self.known.ranges, may_refuse(value, self.of))
                 case Default(place):
-                    yield Result(place, is_length=False, value=None, span=rule.span, ranges=self.ranges)
+                    yield Result(place, is_length=False, value=None, span=rule.span, ranges=self.known.ranges)
                 case For(body=body, kept=Kept()):
-                    for write in writes_of((rule,), self.ranges):
+                    for write in writes_of((rule,), self.known.ranges):
                         yield Result(write.place, write.is_length, write.value, rule.span, write.ranges)
                 case For(_, start, stop, body):
-                    around, self.ranges = self.ranges, (*self.ranges, (self.of(start), self.of(stop)))
+                    around, self.known.ranges = self.known.ranges, (*self.known.ranges, (self.of(start), self.of(stop)))
                     yield from self.run(body)
-                    self.ranges = around
+                    self.known.ranges = around
                 case When(condition, then, otherwise):
                     yield from self.when(self.of(condition), then, otherwise)
                 case Reject():
@@ -207,20 +129,20 @@ class Trip:
                 yield from self.run(then if holds else otherwise)
             case _ if all(isinstance(rule, Reject) for rule in then):
                 self.refusals += [rule for rule in then if isinstance(rule, Reject) and rule.written]
-                self.know(condition, self.ranges, holds=False)
+                self.known.know(condition, self.known.ranges, holds=False)
                 yield from self.run(otherwise)
             case _ if otherwise and all(isinstance(rule, Reject) for rule in otherwise):
                 self.refusals += [rule for rule in otherwise if isinstance(rule, Reject) and rule.written]
-                self.know(condition, self.ranges, holds=True)
+                self.known.know(condition, self.known.ranges, holds=True)
                 yield from self.run(then)
             case Has(place) if not otherwise and all(is_part_of(write.place, place) for write in writes_of(then, ())):
-                known = dict(self.truths)
-                self.know(condition, self.ranges, holds=True)  # where it is not there, nothing is set, and nothing lost
+                known = dict(self.known.truths)
+                self.known.know(condition, self.known.ranges, holds=True)  # where it is not there, nothing is set, and nothing lost
                 yield from self.run(then)
-                self.truths = known
+                self.known.truths = known
             case _:
                 for write in writes_of((*then, *otherwise), ()):
-                    yield Result(write.place, is_length=False, value=Local("?"), span=None, ranges=self.ranges)
+                    yield Result(write.place, is_length=False, value=Local("?"), span=None, ranges=self.known.ranges)
 
     # --- expressions ---------------------------------------------------------------------------------------------------
 
@@ -272,7 +194,7 @@ class Trip:
 
     def is_absent(self, names: tuple[str, ...], message: Message, *, in_rounds: bool = False) -> bool:
         """Whether a place is known not to be there, or another case of its union is; or that of an element, in some rounds of loops."""
-        for condition, (holds, ranges) in self.truths.items():
+        for condition, (holds, ranges) in self.known.truths.items():
             if isinstance(condition, Has) and bool(ranges) == in_rounds and condition.place.side == self.origin:
                 subject = field_names(condition.place)
                 unions = union_depths(condition.place, message)
@@ -289,44 +211,29 @@ class Trip:
             if write.is_length == length and (unify(write.place.steps, place.steps, bound) or self.alike(write.place, place, bound)):
                 alike.append((write, renamed(write.value, bound)))
         # Where several loops set such an element, it is the one over the same numbers that sets this.
-        mine = [each for each in alike if same_ranges(each[0].ranges, self.ranges)] if len(alike) > 1 else alike
+        mine = [each for each in alike if same_ranges(each[0].ranges, self.known.ranges)] if len(alike) > 1 else alike
         yield from (value for _, value in mine)
 
     def ordered(self, names: tuple[str, ...], place: Place, *, length: bool) -> Iterator[Expr]:
         """What loops that run in another order set an element to."""
         side: Side = "wire" if place.side == "holder" else "holder"
-        bounds = [each for bounds in self.ranges for each in bounds]
+        bounds = [each for bounds in self.known.ranges for each in bounds]
         if self.by_round or any(reads_other(each, side) for each in (*indices(place), *bounds)):
             return
-        facts = self.facts(side)
+        facts = self.known.facts(side)
         for write in self.writes.get(names, []):
             if write.is_length == length and self.left > 0:
                 self.left -= 1
-                bound = round_of(write.place, write.ranges, place, self.ranges, facts)
+                bound = round_of(write.place, write.ranges, place, self.known.ranges, facts)
                 if bound is not None:
                     yield renamed(write.value, bound)
-
-    def facts(self, side: Side) -> Facts:
-        """What is known of integers of the side that the first direction reads."""
-        pairs = [(expr, other) for expr in self.equal if isinstance(expr, Access | LenOf) for other in self.equal_to(expr)]
-        found = [fact(*pair) for pair in pairs if not any(reads_other(each, side) for each in pair)]
-        digits = [digit(each, self.truth) for each in self.truths if not reads_other(each, side)]
-        return Facts(tuple(each for each in found if each is not None), tuple(each for each in digits if each is not None))
-
-    def always(self) -> Facts:
-        """What lengths and integers are known to be whatever the round."""
-        if self.plain is None:
-            pairs = [(expr, other) for expr, others in self.equal.items() if isinstance(expr, Access | LenOf) for other, _ in others]
-            found = [fact(*pair) for pair in pairs if not any(has_local(each) or reads_other(each, self.origin) for each in pair)]
-            self.plain = Facts(tuple(each for each in found if each is not None))
-        return self.plain
 
     def is_same(self, value: Expr, goal: Access | LenOf) -> bool:
         """Whether a value is what lies at a place, whatever its indices look like."""
         side = goal.place.side
         if reads_other(value, side):
             return False
-        facts = self.facts(side)
+        facts = self.known.facts(side)
         return same_place(value, goal, facts) or same_number(value, goal, facts)
 
     def towards(self, value: Expr, goal: Access | LenOf) -> Expr:
@@ -360,25 +267,13 @@ class Trip:
 
     def simple(self, expr: Expr) -> Expr:
         """An expression in place of which something simpler can stand."""
-        if (known := self.truth(expr)) is not None:
+        if (known := self.known.truth(expr)) is not None:
             return Const(known, BOOL)
         found = simplest(expr, self.own_part)
         if isinstance(found, Call):
-            return byte_of(found) or (found.function == "+" and whole_text(found, self.equal_to)) or found
+            return byte_of(found) or (found.function == "+" and whole_text(found, self.known.equal_to)) or found
         return found
 
     def own_part(self, expr: Expr) -> Expr | None:
         """The part of an integer that it is the same as."""
-        return None if reads_other(expr, self.origin) else own_part(expr, lambda: self.facts(self.origin))
-
-
-def _without_span(expr: Expr) -> Expr:
-    """An expression that is the same wherever it is written."""
-    return replace(expr, span=None) if isinstance(expr, Binary) else expr
-
-
-def _equal_to_the_bit(left: Expr, right: Expr) -> bool:
-    """Whether two values of which a condition says that they are equal are the same: -0 equals 0."""
-    if not isinstance(left.type, Float) and not isinstance(right.type, Float):
-        return True
-    return any(isinstance(each, Const) and each.value != 0 for each in (left, right))
+        return None if reads_other(expr, self.origin) else own_part(expr, lambda: self.known.facts(self.origin))

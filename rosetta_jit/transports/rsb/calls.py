@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
-from rosetta_jit.transports.base import Caller, Message, Pending, Server
+from rosetta_jit.transports.base import Message
+from rosetta_jit.transports.calls import Caller, Pending, Server
 from rosetta_jit.transports.rsb.bus import Participant, buses
 from rosetta_jit.transports.rsb.notification import Event, EventId
 from rosetta_jit.transports.rsb.scopes import scope_of

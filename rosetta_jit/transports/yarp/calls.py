@@ -9,7 +9,8 @@ from time import monotonic, sleep, time_ns
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
-from rosetta_jit.transports.base import Caller, Message, Pending, Server
+from rosetta_jit.transports.base import Message
+from rosetta_jit.transports.calls import Caller, Pending, Server
 from rosetta_jit.transports.conversation import connected
 from rosetta_jit.transports.feeding import SOME, ProtocolError
 from rosetta_jit.transports.loop import loop

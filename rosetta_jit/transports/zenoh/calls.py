@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import zenoh
 
 from rosetta_jit.errors import TransportError
-from rosetta_jit.transports.base import Caller, Message, Pending, Server
+from rosetta_jit.transports.base import Message
+from rosetta_jit.transports.calls import Caller, Pending, Server
 from rosetta_jit.transports.zenoh.client import message_of
 from rosetta_jit.transports.zenoh.sessions import key_of, sessions
 
