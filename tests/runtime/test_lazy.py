@@ -52,6 +52,25 @@ def test_the_first_call_finds_the_function_and_passes_on_its_arguments(sum_code)
     assert found == ["two", "one"]
 
 
+def test_stubs_of_one_image_are_apart(sum_code):
+    """Each has tables of its own, which refer to what ends with it."""
+    image, found = assembled(stubs_text(("sum",)), ()), list[str]()
+
+    def stubs(name):
+        def find():
+            found.append(name)
+            made.bind("sum", sum_code["sum"])
+
+        made = Stubs(image, {"sum": find}, {})
+        return made
+
+    kept, gone = stubs("kept"), stubs("gone")
+    assert kept["sum"] != gone["sum"]
+    del gone
+    assert CALL(kept["sum"])(1, 2, 3, 4) == 0o1234
+    assert found == ["kept"]
+
+
 def test_a_function_that_is_not_found_fails_and_is_looked_for_again(sum_code):
     errors = [ValueError("first"), KeyboardInterrupt("second")]
 

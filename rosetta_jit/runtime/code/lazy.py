@@ -50,7 +50,8 @@ class Stubs:
     """
 
     def __init__(self, image: bytes, finders: Mapping[str, Callable[[], object]], failures: Mapping[str, int]) -> None:
-        self._code = native.load(image, (*finders, *TABLES))
+        own = f"stubs {id(self)}"  # the tables are filled for these stubs alone, and what they refer to ends with them
+        self._code = native.load(image, (*finders, *TABLES), program=own)
         self._numbers = {name: number for number, name in enumerate(finders)}
         self._finders = tuple(finders.values())  # the table has no references of its own
         self._slots, called, when_failed = (self._table(name) for name in TABLES)
