@@ -80,6 +80,9 @@ JSON = st.recursive(
     max_leaves=5,
 )
 
+SHORT = st.floats(width=32, allow_nan=False, allow_infinity=False).filter(lambda each: abs(each) < 3.4e38)
+"""Google's parser refuses the largest ones, which are written with so few digits that they round up."""
+
 
 @st.composite
 def fields(draw, depth=1):
@@ -90,7 +93,7 @@ def fields(draw, depth=1):
     return {
         **maybe("aLongName", NUMBERS.map(str) | NUMBERS),
         **maybe("HUGE!", st.integers(0, 2**64 - 1).map(str)),
-        **maybe("short", st.floats(width=32, allow_nan=False, allow_infinity=False) | st.sampled_from(["NaN", "-Infinity", -0.0, 0.1])),
+        **maybe("short", SHORT | st.sampled_from(["NaN", "-Infinity", -0.0, 0.1])),
         **maybe("long", st.floats(allow_nan=False, allow_infinity=False) | st.sampled_from(["NaN", "Infinity", "1e3", 3])),
         **maybe("raw", st.sampled_from(["", "AA==", "_-8", "/+8=", "aGk"])),
         **maybe("kind", st.sampled_from(["NONE", "SOME", 5, 77])),
