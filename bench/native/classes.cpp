@@ -194,7 +194,7 @@ int main(int, char** arguments) {
     const Bytes ours = content(arguments[1]), theirs = content(arguments[2]);
     const int rounds = std::atoi(arguments[3]);
     const double round_ns = 1e9 * std::atof(arguments[4]);
-    UNIT::codec codec;
+    static UNIT::codec codec;
     Message one;
     Theirs other;
     if (!codec.try_decode(ours.data(), ours.size(), one) || !theirs_read(theirs.data(), theirs.size(), other) || !agree(codec, one, other, ours)) {
@@ -207,19 +207,23 @@ int main(int, char** arguments) {
     Contender contenders[] = {
         {"ours decode", [&](std::int64_t iterations, int turn) {
             const unsigned char* const data = places.of(turn, ours);
-            return read<Message>([&](Message& message) { return codec.try_decode(data, ours.size(), message).has_value(); }, iterations);
+            const std::size_t size = ours.size();
+            return read<Message>([=](Message& message) { return codec.try_decode(data, size, message).has_value(); }, iterations);
         }, 0},
         {"theirs decode", [&](std::int64_t iterations, int turn) {
             const unsigned char* const data = places.of(turn, theirs);
-            return read<Theirs>([&](Theirs& message) { return theirs_read(data, theirs.size(), message); }, iterations);
+            const std::size_t size = theirs.size();
+            return read<Theirs>([=](Theirs& message) { return theirs_read(data, size, message); }, iterations);
         }, 0},
         {"ours anew", [&](std::int64_t iterations, int turn) {
             const unsigned char* const data = places.of(turn, ours);
-            return read_anew<Message>([&](Message& message) { return codec.try_decode(data, ours.size(), message).has_value(); }, iterations);
+            const std::size_t size = ours.size();
+            return read_anew<Message>([=](Message& message) { return codec.try_decode(data, size, message).has_value(); }, iterations);
         }, 0},
         {"theirs anew", [&](std::int64_t iterations, int turn) {
             const unsigned char* const data = places.of(turn, theirs);
-            return read_anew<Theirs>([&](Theirs& message) { return theirs_read(data, theirs.size(), message); }, iterations);
+            const std::size_t size = theirs.size();
+            return read_anew<Theirs>([=](Theirs& message) { return theirs_read(data, size, message); }, iterations);
         }, 0},
         {"ours encode", [&](std::int64_t iterations, int turn) { return write(one, places.of(turn, ours), encode, iterations); }, 0},
         {"theirs encode", [&](std::int64_t iterations, int turn) { return write(other, places.of(turn, theirs), peer_encode, iterations); }, 0},
