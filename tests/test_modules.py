@@ -150,3 +150,21 @@ def test_others_are_not_touched(package):
     assert shown(
         package, "import pack, packs, json\nprint(*[type(each.__spec__.loader).__module__ for each in (packs, json)])"
     ) == " ".join(["_frozen_importlib_external"] * 2)
+
+
+def test_finders_of_others_come_first(package):
+    """As those that measure coverage or check types do: they were there before this package."""
+    program = """
+import sys
+from importlib.machinery import ModuleSpec, SourceFileLoader
+class Finder:
+    def find_spec(self, name, path=None, target=None):
+        return ModuleSpec(name, Loader(name, "")) if name == "pack.two" else None
+class Loader(SourceFileLoader):
+    def get_code(self, fullname):
+        return compile("VALUE = 'theirs'", "<theirs>", "exec")
+sys.meta_path.insert(0, Finder())
+import pack.two
+print(pack.two.VALUE)
+"""
+    assert shown(package, program) == "theirs"

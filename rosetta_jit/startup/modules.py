@@ -1,7 +1,7 @@
 """Our own modules found and read with fewer questions: a compiler is some 350 of them, and Python asks each time as if it knew nothing.
 
-`install` puts a finder before Python's own, for the modules of this package alone. Where Python asks one finder after the other, and lists
-folders, it looks whether the file is there that a name stands for, and reads a module's compiled file as Python does where that is as new
+`install` puts a finder before Python's own, for the modules of this package alone. Where Python lists folders and asks the finder of each,
+it looks whether the file is there that a name stands for, and reads a module's compiled file as Python does where that is as new
 as the source. All else - no compiled file, one elsewhere or too old, an archive - is left to Python's own finder and loader.
 """
 
@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
-from importlib.machinery import ModuleSpec, SourceFileLoader
+from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from importlib.util import MAGIC_NUMBER, cache_from_source
 from marshal import loads
 from stat import S_ISREG
@@ -24,9 +24,12 @@ _COMPARED_BY_TIME = MAGIC_NUMBER + bytes(4)
 
 
 def install() -> None:
-    """Have the modules of this package found so from now on, where names of files that differ in case are different files."""
-    if sys.platform == "linux":
-        sys.meta_path.insert(0, _Finder())
+    """Have the modules of this package found so from now on, where names of files that differ in case are different files.
+
+    Finders that others have put before Python's own are asked before ours, too: they may change what they find.
+    """
+    if sys.platform == "linux" and PathFinder in sys.meta_path:
+        sys.meta_path.insert(sys.meta_path.index(PathFinder), _Finder())
 
 
 class _Finder:
