@@ -31,17 +31,28 @@ class _Element:
     size: int
     numbers: Mapping[int, tuple[Scalar, int]]
 
+    def lies_as(self, other: _Element) -> bool:
+        """Whether another one has the same numbers in the same places."""
+        return (self.size, self.numbers) == (other.size, other.numbers)
+
 
 def packed_lists(walk: Walk, kernel: Kernel, lists: Iterable[Opened]) -> dict[For, Packed]:
     """The loops of a decoder that set such lists."""
-    found = {stmt: element for stmt, element in _loops(kernel) if _fields(walk, lists, element)}
-    return {stmt: Packed(each.lane, each.at, each.size, _lies(walk, each.lane), COPY) for stmt, each in found.items()}
+    found = _found(walk, kernel, lists)
+    return {stmt: Packed(each.lane, each.at, each.size, _lies(walk, each.lane), COPY) for stmt, each, _ in found}
 
 
 def packed_structs(walk: Walk, kernel: Kernel, lists: Iterable[Opened]) -> str:
     """What is known of their elements."""
-    found = {each.lane: (each, _fields(walk, lists, each)) for _, each in _loops(kernel)}
-    return "\n".join(_struct(walk, each, fields) for _, (each, fields) in sorted(found.items()) if fields)
+    found = {each.lane: _struct(walk, each, fields) for _, each, fields in _found(walk, kernel, lists)}
+    return "\n".join(text for _, text in sorted(found.items()))
+
+
+def _found(walk: Walk, kernel: Kernel, lists: Iterable[Opened]) -> list[tuple[For, _Element, list[NumberOf]]]:
+    """Such loops, their elements, and the numbers of these; where several set one list, it lies in all their messages alike."""
+    loops = [*_loops(kernel)]
+    found = [(stmt, each, _fields(walk, lists, each)) for stmt, each in loops]
+    return [each for each in found if each[2] and all(other.lies_as(each[1]) for _, other in loops if other.lane == each[1].lane)]
 
 
 def _lies(walk: Walk, lane: int) -> str:
