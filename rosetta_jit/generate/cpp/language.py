@@ -32,13 +32,14 @@ def files(unit: Unit) -> dict[str, str]:
     """The texts of the files by their names."""
     manners, unit = _manners(unit), without_clearing(unit)
     parts = parts_of(unit, lambda kernel, lanes, role: _printed(unit, manners, kernel, lanes, role), dialect="c++")
+    decoder = decoder_of(unit, manners, unit.kernels["borrow"], parts.lanes) if "borrow" in unit.kernels else None
     there = AtOnce(
-        at_once(*decoder_of(unit, manners, unit.kernels["borrow"], parts.lanes)) if "borrow" in unit.kernels else "",
+        "" if decoder is None else at_once(*decoder),
         put_at_once(unit, manners, parts.lanes) if "encode" in unit.kernels else "",
     )
     return {
         f"{unit.name}.hpp": header(unit, manners, there),
-        f"{unit.name}.cpp": source(unit, parts, manners, there),
+        f"{unit.name}.cpp": source(unit, parts, manners, there, None if decoder is None else decoder[0]),
         SHARED: (INCLUDE / SHARED).read_text("utf-8"),
     }
 

@@ -15,7 +15,6 @@ from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place
-from rosetta_jit.generate.cpp.decoder import decoder_of
 from rosetta_jit.generate.cpp.header import AtOnce, filled_in
 from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
 from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
@@ -28,6 +27,7 @@ from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.generate.shares import WHOLE, changed_lanes
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of, wires_of
+from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.model.types import Ref
 
 if TYPE_CHECKING:
@@ -51,8 +51,8 @@ SAID = """    if (where.scratch >= 0) { /* the mapping has put this text togethe
 """
 
 
-def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce) -> str:
-    """The text of the source file; ``there`` as for `header`."""
+def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce, decoder: Kernel | None) -> str:
+    """The text of the source file; ``there`` as for `header`. ``decoder`` is the kernel that sets fields where the object has them."""
     printed, lanes = parts.printed, parts.lanes
     walks = {direction: Walk(unit, lanes, manners, direction) for direction in ("decode", "encode")}
     opened = opened_lists(walks["decode"], "target") if "borrow" in printed else []
@@ -78,7 +78,7 @@ def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce) -> str:
         structs="\n\n".join(_struct(unit, parts, each, walks["decode"].taken) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
         holder=_row_structs(unit, parts, manners, [*views, *filled])
-        + (packed_structs(walks["decode"], decoder_of(unit, manners, unit.kernels["borrow"], lanes)[0], opened) if opened else "")
+        + ("" if decoder is None else packed_structs(walks["decode"], decoder, opened))
         + _holder(unit, parts, given, containers, listed, {lane: kind for each in opened for lane, kind in each.kinds.items()})
         + (source_struct(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
         support=SELDOM.sub(r"ROSETTA_JIT_COLD \g<0>", support(without_unused(called, printed))),
