@@ -8,7 +8,7 @@ from functools import lru_cache, partial
 from typing import Any
 
 from rosetta_jit.errors import CacheWarning, warn
-from rosetta_jit.kernel.entries import HOST, ON_DEMAND, REST, SYMBOLS
+from rosetta_jit.kernel.entries import HOST, NEXT, NEXT_CALL, NEXT_KERNEL, ON_DEMAND, REST, SYMBOLS
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.cache.kernels import Cache
 from rosetta_jit.runtime.cache.names import entry_name, request_name
@@ -127,7 +127,8 @@ def library(image: bytes, header: Mapping[str, Any]) -> native.Library:
     called, wanted, rest = header["host"], SYMBOLS[header["entry"]], header.get("rest")
     later = None
     if rest is not None and native.is_prelinked(image):
-        wanted = (*(each for each in wanted if each not in rest["symbols"]), REST)
+        following = (NEXT, NEXT_KERNEL) if NEXT_CALL in rest["symbols"] else ()
+        wanted = (*(each for each in wanted if each not in rest["symbols"]), REST, *following)
         later = partial(_rest, rest)
     prepare = partial(_host_functions, called) if called else len
     wanted = (*wanted, HOST) if called else wanted

@@ -28,6 +28,8 @@ borrowed from a message, or much of the lanes is not used any more. Encoders acc
 
 RESULT, GROW = 9, -1
 """What a failed kernel returned; `GROW` is the result of one that lacked room."""
+UNUSUAL = -1 << 63
+"""What the first of a kernel's bodies gives where the next one is to be asked: no place in a message, and the number of no failure."""
 HIDDEN, HIDDEN_COUNT = 10, 11
 NOW, NUMBER = 12, 13
 ERROR_OFFSET = 14

@@ -304,7 +304,7 @@ class Build:
         from rosetta_jit.backends.entry.program import Program
         from rosetta_jit.backends.entry.texts import rest_text
 
-        program = Program(self.kernels, self.entry, {"with_numba": False, "host": self.host, "leaves_rest": True})
+        program = Program(self.kernels, self.entry, {"with_numba": self.backend.types_kernels, "host": self.host, "leaves_rest": True})
         text = rest_text(program) if program.leaves_rest else None
         return None if text is None else {"symbols": program.rest_symbols, **text.plain}
 

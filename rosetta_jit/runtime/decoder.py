@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 from weakref import WeakKeyDictionary
 
-from rosetta_jit.kernel.state import CLEAN, NUMBER, VALID
+from rosetta_jit.kernel.state import CLEAN, NUMBER, RESULT, UNUSUAL, VALID
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.methods import turning
@@ -279,15 +279,17 @@ class DecoderBase(Program):
             return self(message) if self._becomes_mine() else self(message, self._holder_of_thread())
         holder = self._holder if len(arguments) == 1 else self._checked(arguments[1])
         source, before = message_spans.source_of(message), holder.lanes_.source[0]
-        data = run.readable(source)
+        data, is_left_to_next = run.readable(source), holder.lanes_.words[RESULT] == UNUSUAL
         if self._loaded.wire is not None:
             self._join(data, holder, self._loaded.wire)
-            return holder
-        with holder.lanes_ as lanes, self._numbered(lanes):
-            lanes.begin_filling()
-            self._decode(data, lanes)
-            lanes.source[0] = source if self._loaded.borrow else None
-            lanes.words[VALID] = CLEAN
+        else:
+            with holder.lanes_ as lanes, self._numbered(lanes):
+                lanes.begin_filling()
+                self._decode(data, lanes)
+                lanes.source[0] = source if self._loaded.borrow else None
+                lanes.words[VALID] = CLEAN
+        if is_left_to_next:
+            self._need_rest()
         del before  # outside: what ends with it may run any code
         return holder
 

@@ -178,7 +178,7 @@ def test_what_threads_have_made_at_once_stays(of, messages):
         one, other = pool.map(lambda _: rest.made(), range(2))
     assert one is other is rest.made()
     assert len(rest._libraries) == 2
-    assert rest._place.value == one["any_call"]
+    assert rest._places["any_call"].value == one["any_call"]
     assert values(decode(messages[0], decode.new()))[1] == "t"
 
 
@@ -235,3 +235,56 @@ def test_it_wants_nothing_but_the_kernels_besides_what_is_allowed():
         place(code, ("any_call",))
     with pytest.raises(ForeignCodeError, match="wants size from the process"):
         place(code, ("any_call",), {"kernel": 1})
+
+
+@pytest.fixture
+def bottles(size):
+    """A decoder of doubles in YARP, a message with one tag for all of them, as is usual, one with a tag for each, and the numbers."""
+    fields = "".join(f'("d{number}" :double)' for number in range(size))
+    decode = rj.Decoder.of("rest", schema={"r.bottle-schema": f'"rest" ({fields})'}, imports=["r.bottle-schema"], encoding="yarp3")
+    numbers = [number / 2 for number in range(size)]
+    tagged = b"".join(struct.pack("<id", 10, number) for number in numbers)
+    return decode, struct.pack(f"<ii{size}d", 266, size, *numbers), struct.pack("<ii", 256, size) + tagged, numbers
+
+
+def doubles(holder):
+    return list(holder.to_dict().values())
+
+
+def test_what_the_first_body_leaves_has_it_made_and_gives_the_same_before_and_behind(bottles):
+    decode, usual, tagged, numbers = bottles
+    made = []
+    for message in (usual, tagged, usual, tagged, tagged):
+        assert doubles(decode(message)) == numbers
+        made.append(is_made(decode))
+    assert made == [False, True, True, True, True]
+
+
+def test_what_no_body_takes_is_told_in_the_same_words_and_has_nothing_made(bottles):
+    decode, usual, tagged, numbers = bottles
+    broken = (b"", usual[:-1], usual + b"\0", tagged[:-1], tagged[:9] + b"\1" + tagged[10:], struct.pack("<ii", 257, 1))
+
+    def told():
+        words = []
+        for message in broken:
+            with pytest.raises(rj.DecodeError) as error:
+                decode(message)
+            words.append(str(error.value))
+            with pytest.raises(rj.InvalidHolder):
+                _ = decode._holder.d0
+        return words
+
+    assert doubles(decode(usual)) == numbers
+    before = told()
+    assert not is_made(decode)
+    assert doubles(decode(tagged)) == numbers
+    assert is_made(decode)
+    assert told() == before
+    assert doubles(decode(usual)) == numbers
+
+
+def test_threads_meet_what_the_first_body_leaves_at_once(bottles):
+    decode, usual, tagged, numbers = bottles
+    with ThreadPoolExecutor(8) as pool:
+        found = list(pool.map(lambda number: doubles(decode((usual, tagged)[number % 2])), range(200)))
+    assert found == 200 * [numbers]

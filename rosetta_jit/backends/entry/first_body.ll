@@ -9,5 +9,3 @@ define internal i64 @usual(ptr %data, i64 %size, ptr %state) alwaysinline {
 define internal ptr @state_behind(ptr %context, ptr %state) alwaysinline {
   ret ptr %state
 }
-
-declare ptr @call_of_next(ptr, ptr)

@@ -22,12 +22,12 @@ from typing import TYPE_CHECKING, Unpack
 
 from llvmlite import binding, ir
 
-from rosetta_jit.backends.entry.program import NEXT_CALL, Options, Program
+from rosetta_jit.backends.entry.program import Options, Program
 from rosetta_jit.backends.entry.texts import next_text, rest_text, template, usual_text
 from rosetta_jit.backends.llvm import definitions, support
 from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.backends.llvm.routines import common_routine
-from rosetta_jit.kernel.entries import ANY_CALL, LATER, REST, SYMBOLS, EntryName
+from rosetta_jit.kernel.entries import ANY_CALL, LATER, NEXT_CALL, REST, SYMBOLS, EntryName
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.state import ERROR_SITE, USED, lane_word, state_words
 from rosetta_jit.kernel.traits import has_loops_for_vectors, is_moderate, our_functions
@@ -86,7 +86,7 @@ def assembly(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Opti
 
 def compile_rest(text: str) -> bytes:
     """Code of the rest of programs, from its text: prelinked, it wants their kernels."""
-    exported = (ANY_CALL, *LATER)
+    exported = (ANY_CALL, NEXT_CALL, *LATER)
 
     def compiled() -> bytes:
         image = prelinked(object_of([part_of(text, exported)], exported, thorough=False))
@@ -168,8 +168,9 @@ def _own_parts(program: Program, *, whole: bool) -> Iterator[str]:
 def _surrounding_texts(program: Program) -> tuple[str, ...]:
     """The modules that a program's surroundings are linked from."""
     usual = None if program.is_inside else usual_text(program)
+    following = None if program.leaves_next else next_text(program)
     rest = None if program.leaves_rest else rest_text(program)
-    return tuple(each.text for each in (usual, next_text(program), rest) if each is not None)
+    return tuple(each.text for each in (usual, following, rest) if each is not None)
 
 
 def _own_many(kernel: Kernel, *, whole: bool) -> Iterator[str]:

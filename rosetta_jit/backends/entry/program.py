@@ -6,16 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NotRequired, TypedDict
 
 from rosetta_jit.kernel import traits
-from rosetta_jit.kernel.entries import ANY_CALL, HOST, LATER, ON_DEMAND, REST, SYMBOLS, EntryName
+from rosetta_jit.kernel.entries import ANY_CALL, HOST, LATER, NEXT, NEXT_CALL, NEXT_KERNEL, ON_DEMAND, REST, SYMBOLS, EntryName
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.runtime.code.prelink import is_prelinking
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.host import UserFunction
-
-NEXT_KERNEL, NEXT_CALL = "kernel.next", "call_of_next"
-"""Of a kernel whose first body is a part of the usual call, the bodies behind it, and the rest of the call."""
 
 
 class Options(TypedDict):
@@ -68,18 +65,28 @@ class Program:
     def symbols(self) -> tuple[str, ...]:
         """What it defines for its users."""
         every = SYMBOLS[self.entry]
-        return (*(each for each in every if each not in self.rest_symbols), REST) if self.leaves_rest else every
+        if not self.leaves_rest:
+            return every
+        places = (REST, NEXT) if self.leaves_next else (REST,)
+        return (*(each for each in every if each not in self.rest_symbols), *places)
 
     @cached_property
     def rest_symbols(self) -> tuple[str, ...]:
         """What the rest defines."""
         later = (each for each in LATER if each in SYMBOLS[self.entry] and not (each == "many" and self.has_own_many))
-        return () if self.entry == "bridge" else (ANY_CALL, *later)
+        if self.entry == "bridge":
+            return ()
+        return (ANY_CALL, NEXT_CALL, *later) if self.leaves_next else (ANY_CALL, *later)
 
     @cached_property
     def leaves_rest(self) -> bool:
         """Whether the rest is compiled when it is asked for."""
-        return self.options.get("leaves_rest", False) and is_prelinking() and bool(self.rest_symbols)
+        return self.options.get("leaves_rest", False) and is_prelinking() and self.entry != "bridge"
+
+    @cached_property
+    def leaves_next(self) -> bool:
+        """Whether the next call is made with the rest."""
+        return self.leaves_rest and self.has_usual
 
     @cached_property
     def leaves_something(self) -> bool:

@@ -2,8 +2,8 @@
 
 Three parts stand around a program's kernels. The *usual call* has the common case. The *next call* goes on with a message that the first
 body of a kernel has left, where that alone is a part of the usual call. The *rest* is whatever else is called: with a holder that is given,
-with other objects than bytes, for many messages. It may be left out until it is asked for (`rosetta_jit.runtime.rest`): it needs no more of
-a program than where its kernels are, and what a header of the cache can hold.
+with other objects than bytes, for many messages. The last two may be left out, and made together when one of them is first asked for
+(`rosetta_jit.runtime.rest`): they need no more of a program than where its kernels are, and what a header of the cache can hold.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def usual_text(program: Program) -> EntryText:
     """The module of the usual call."""
     arguments = "arguments.ll" if program.is_inside else "arguments_left.ll"
     body = "first_body.ll" if program.has_usual else "all_bodies.ll"
-    return EntryText.of((*USUAL[program.entry], *_found_rest(program), arguments, body), program)
+    return EntryText.of((*USUAL[program.entry], *_found_rest(program), arguments, *_found_next(program), body), program)
 
 
 def next_text(program: Program) -> EntryText | None:
@@ -116,10 +116,12 @@ def next_text(program: Program) -> EntryText | None:
 
 
 def rest_text(program: Program) -> EntryText | None:
-    """The module of the rest, where the program has one."""
+    """The module of the rest, where the program has one; of one that leaves it out, with the next call."""
     files = ALONE if program.has_own_many else REST[program.entry]
     if program.leaves_something:
         files = tuple("leaving.ll" if each == "unmeasured.ll" else each for each in files)
+    if program.leaves_next:
+        files = tuple(dict.fromkeys((*NEXT[program.entry], *files)))
     return EntryText.of(files, program, is_quick=False) if files else None
 
 
@@ -128,6 +130,13 @@ def _found_rest(program: Program) -> tuple[str, ...]:
     if not REST[program.entry]:
         return ()
     return ("rest_later.ll",) if program.leaves_rest else ("rest_linked.ll",)
+
+
+def _found_next(program: Program) -> tuple[str, ...]:
+    """How the usual call finds the next one."""
+    if not program.has_usual:
+        return ()
+    return ("next_later.ll",) if program.leaves_next else ("next_linked.ll",)
 
 
 def _thread_file() -> str:

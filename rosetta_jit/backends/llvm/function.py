@@ -33,6 +33,7 @@ from rosetta_jit.kernel.state import (
     GROW_ROWS,
     HIDDEN_COUNT,
     INDEX_WORDS,
+    UNUSUAL,
     USED,
     lane_word,
 )
@@ -49,9 +50,6 @@ ARGUMENTS = ("buffer", "begin", "end", "state", "row")
 
 MANY_STATEMENTS = 512
 """Statements of a body from which on its failures are so many that each stores what it reports."""
-
-UNUSUAL = -1 << 63
-"""What a kernel's first body gives where the next one is to be asked: no place in a message, and the number of no failure."""
 
 
 def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, has_usual: bool = False) -> ir.Function:
