@@ -88,7 +88,12 @@ def is_short_and_straight(kernel: ir.Kernel) -> bool:
     is_short = not _are_more(_on_the_way(first), SHORT[kernel.direction])
     if not is_short and (_are_more(statements(first), SHORT_IN_VECTORS) or not are_straight_and_compute((kernel,))):
         return False
-    return not any(isinstance(each, nodes.For | nodes.While) for each, _ in statements(first))
+    return is_straight(first)
+
+
+def is_straight(block: nodes.Block) -> bool:
+    """Whether a block has no loops, nor the blocks inside."""
+    return not any(isinstance(each, nodes.For | nodes.While) for each, _ in statements(block))
 
 
 def is_short(kernel: ir.Kernel) -> bool:

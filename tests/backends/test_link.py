@@ -9,10 +9,12 @@ import time
 from dataclasses import replace
 
 import pytest
+from llvmlite import ir
 
 from rosetta_jit.backends.entry.link import assembly, compile_program, llvm_text, object_file
+from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.kernel.entries import SYMBOLS
-from rosetta_jit.kernel.nodes import Binary, Const, Convert, Let, Load, Local, Place, SetField
+from rosetta_jit.kernel.nodes import Binary, Const, Convert, For, Let, Load, Local, Place, SetField
 from rosetta_jit.kernel.terms import BEGIN, ROW, add
 from rosetta_jit.kernel.traits import are_straight_and_compute, has_loops_for_vectors, leaves_something
 from rosetta_jit.pipeline.build import Build
@@ -128,6 +130,15 @@ def test_a_later_form_of_a_message_is_another_function():
     text = llvm_text([kernels.attempts()], "decode", with_numba=False)
     found = re.findall(r"define (?:internal )?(preserve_mostcc )?[^@]*@(kernel\.next[.next]*)\(", text)
     assert found == [("", "kernel.next"), ("preserve_mostcc ", "kernel.next.next")]
+
+
+@pytest.mark.parametrize("has_loop", [False, True])
+def test_llvm_hurries_with_a_later_form_that_has_no_loop(has_loop):
+    kernel, module = kernels.attempts(), ir.Module()
+    first, second, *others = kernel.bodies
+    second = (For("i", Const("i64", 2), (Let("twice", Const("i64", 2)),)), *second) if has_loop else second
+    llvm.emit(module, replace(kernel, bodies=(first, second, *others)), "kernel")
+    assert ("optnone" in module.get_global("kernel.next").attributes) is not has_loop
 
 
 def test_code_of_many_arrays_takes_time_in_proportion():
