@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import islice
+from typing import NamedTuple
 
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.walk import blocks_of, every_statement, parts_of, statements
@@ -29,18 +30,22 @@ LARGE_WITHOUT_RULES = 500
 """The same where no rules compute anything: of what reads or writes a type as it is, a pass that comes again improves next to nothing."""
 
 
-VAST = 12_000
-"""Statements of kernels, each counted once for every block that it stands in, from which on work that grows faster takes minutes."""
-
-
 def is_large(kernel: ir.Kernel, limit: int = LARGE) -> bool:
     """Whether a kernel has so many statements that it is not worth while to improve it again and again."""
     return _are_more(every_statement(kernel), limit)
 
 
-def are_vast(kernels: Iterable[ir.Kernel]) -> bool:
-    """Whether kernels are so large, or nested so deep, that only work in proportion to their size is done on them."""
-    return sum(depth for kernel in kernels for body in kernel.bodies for _, depth in statements(body)) > VAST
+class Counted(NamedTuple):
+    """How many statements there are, and how many if each is counted once for every block that it stands in."""
+
+    statements: int
+    of_all_blocks: int
+
+
+def counted(kernels: Iterable[ir.Kernel]) -> Counted:
+    """The statements of kernels."""
+    depths = [depth for kernel in kernels for body in kernel.bodies for _, depth in statements(body)]
+    return Counted(len(depths), sum(depths))
 
 
 def are_straight_and_compute(kernels: Iterable[ir.Kernel]) -> bool:

@@ -12,9 +12,10 @@ import pytest
 from llvmlite import ir
 
 from rosetta_jit.backends.entry.link import assembly, compile_program, llvm_text, object_file
+from rosetta_jit.backends.entry.program import LONG, Program
 from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.kernel.entries import SYMBOLS
-from rosetta_jit.kernel.nodes import Binary, Const, Convert, For, Let, Load, Local, Place, SetField
+from rosetta_jit.kernel.nodes import Binary, Const, Convert, For, If, Let, Load, Local, Place, SetField
 from rosetta_jit.kernel.terms import BEGIN, ROW, add
 from rosetta_jit.kernel.traits import are_straight_and_compute, has_loops_for_vectors, leaves_something
 from rosetta_jit.pipeline.build import Build
@@ -139,6 +140,16 @@ def test_llvm_hurries_with_a_later_form_that_has_no_loop(has_loop):
     second = (For("i", Const("i64", 2), (Let("twice", Const("i64", 2)),)), *second) if has_loop else second
     llvm.emit(module, replace(kernel, bodies=(first, second, *others)), "kernel")
     assert ("optnone" in module.get_global("kernel.next").attributes) is not has_loop
+
+
+@pytest.mark.parametrize(("depth", "lines"), [(1, LONG), (3, LONG // 2)])
+def test_code_is_made_in_a_hurry_where_it_would_take_long(depth, lines):
+    """Statements in one, two and three blocks stand in two on average."""
+    block = (Let("one", Const("i64", 1)),)
+    for _ in range(depth - 1):
+        block = (If(Const("bool", value=True), block),)
+    program = Program([replace(kernels.fixed(1), bodies=(block,))], "decode", {"with_numba": False})
+    assert [program.would_take_long(each) for each in (lines, lines + 1)] == [False, True]
 
 
 def test_code_of_many_arrays_takes_time_in_proportion():

@@ -9,6 +9,7 @@ import struct
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.lowering.codec.field_order import MOST_GUESSED
 from tests.frameworks.protobuf.proto_files import varint
 
 NUMBERS = [*range(1, 25), *range(120, 134), 2047, 2048]
@@ -111,3 +112,15 @@ def test_what_may_be_absent_is_not_guessed(backend):
         pytest.skip("the others go through the loop")
     schema = {"order.proto": f'syntax = "proto3"; package order; message Fields {{ {FIELDS.replace("required ", "")} }}'}
     assert "load i16" not in rj.Decoder.of("order.Fields", encoding="protobuf", schema=schema, backend=backend).stage("llvm")
+
+
+@pytest.mark.parametrize("count", [MOST_GUESSED, MOST_GUESSED + 1])
+def test_few_fields_are_guessed(backend, count):
+    if backend != "llvm":
+        pytest.skip("the others go through the loop")
+    fields = "".join(f" required int64 f{number} = {number};" for number in range(1, count + 1))
+    schema = {"order.proto": f'syntax = "proto2"; package order; message Fields {{ {fields} }}'}
+    decode = rj.Decoder.of("order.Fields", encoding="protobuf", schema=schema, backend=backend)
+    assert ("load i16" in decode.stage("llvm")) is (count == MOST_GUESSED)
+    decoded = decode(b"".join(field(number, number % 300) for number in range(1, count + 1)))
+    assert [getattr(decoded, f"f{number}") for number in range(1, count + 1)] == [number % 300 for number in range(1, count + 1)]

@@ -57,8 +57,7 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpa
     """
     if is_prelinking():
         program = Program(kernels, entry, options)
-        machine = target_machine(hurried=program.is_vast)
-        module = _own(program, machine)
+        module, machine = _optimised(program, _own_parts(program, whole=False))
         code = prelinked(machine.emit_object(module), *_surroundings(module, program), gives=program.exported)
         if code is not None:
             return code
@@ -67,21 +66,20 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpa
 
 def object_file(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:
     """The same as one object file, which only a linker can load; it has the rest."""
-    program = _whole(kernels, entry, options)
-    machine = target_machine(hurried=program.is_vast)
-    return machine.emit_object(_optimised(program, machine))
+    module, machine = _whole(kernels, entry, options)
+    return machine.emit_object(module)
 
 
 def llvm_text(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> str:
     """The optimised LLVM module as text."""
-    return str(_optimised(_whole(kernels, entry, options), target_machine()))
+    module, _ = _whole(kernels, entry, options)
+    return str(module)
 
 
 def assembly(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> str:
     """The machine code as assembler text."""
-    program = _whole(kernels, entry, options)
-    machine = target_machine(hurried=program.is_vast)
-    return machine.emit_assembly(_optimised(program, machine))
+    module, machine = _whole(kernels, entry, options)
+    return machine.emit_assembly(module)
 
 
 def compile_rest(text: str) -> bytes:
@@ -96,23 +94,18 @@ def compile_rest(text: str) -> bytes:
     return kept("rest", text, compiled)
 
 
-def _whole(kernels: Sequence[Kernel], entry: EntryName, options: Options) -> Program:
-    """A program in one piece."""
-    return Program(kernels, entry, {**options, "leaves_rest": False})
+def _whole(kernels: Sequence[Kernel], entry: EntryName, options: Options) -> tuple[binding.ModuleRef, binding.TargetMachine]:
+    """A program in one module, after one run of LLVM's passes, and what makes code of it."""
+    program = Program(kernels, entry, {**options, "leaves_rest": False})
+    return _optimised(program, (*_own_parts(program, whole=True), *_surrounding_texts(program)))
 
 
-def _optimised(program: Program, machine: binding.TargetMachine) -> binding.ModuleRef:
-    """The whole program in one module, after one run of LLVM's passes."""
-    module = linked((*_own_parts(program, whole=True), *_surrounding_texts(program)))
+def _optimised(program: Program, parts: Iterable[str]) -> tuple[binding.ModuleRef, binding.TargetMachine]:
+    """Parts of a program as one module, after LLVM's passes, and what makes code of it."""
+    texts = tuple(parts)
+    module, machine = linked(texts), target_machine(hurried=program.would_take_long(sum(text.count("\n") for text in texts)))
     _optimise(module, program, machine)
-    return module
-
-
-def _own(program: Program, machine: binding.TargetMachine) -> binding.ModuleRef:
-    """A program's own module, after LLVM's passes."""
-    module = linked(_own_parts(program, whole=False))
-    _optimise(module, program, machine)
-    return module
+    return module, machine
 
 
 def _optimise(module: binding.ModuleRef, program: Program, machine: binding.TargetMachine) -> None:

@@ -35,6 +35,14 @@ class Options(TypedDict):
     leaves_rest: NotRequired[bool]
 
 
+VAST = 12_000
+"""Statements of kernels, each counted once for every block that it stands in, from which on work that grows faster takes minutes."""
+
+LONG = 110_000
+"""Lines of LLVM's text, each counted once for every block that a statement stands in on average, from which on code is made in a hurry:
+in a tenth of the time, which is a second for so many lines and grows faster than they do. Calls take three to twenty times as long."""
+
+
 class Program:
     """Kernels that are compiled together, as `link.compile_program` takes them. Large ones are looked through once for each question.
 
@@ -96,7 +104,16 @@ class Program:
     @cached_property
     def is_vast(self) -> bool:
         """Whether only work in proportion to the kernels' size is done on them."""
-        return traits.are_vast(self.kernels)
+        return self._counted.of_all_blocks > VAST
+
+    def would_take_long(self, lines: int) -> bool:
+        """Whether LLVM would take long to make good code of so many lines: the more for one, the deeper in loops and branches it stands."""
+        statements, of_all_blocks = self._counted
+        return lines * of_all_blocks > LONG * statements
+
+    @cached_property
+    def _counted(self) -> traits.Counted:
+        return traits.counted(self.kernels)
 
     @cached_property
     def calls_host(self) -> bool:

@@ -28,6 +28,9 @@ TWO_BYTE_TAGS = 1 << 14
 RUN = 16
 """Fields in a row of which each guesses the next one. What compilers know of one field they work out from the one before."""
 
+MOST_GUESSED = 400
+"""Fields up to which they are guessed. Of more, guesses save a sixth of a message's time, and cost as much to compile as all else."""
+
 NESTED = 12
 """Blocks within blocks from which on nothing is guessed: a kernel nests a hundred deep, and guessing adds to it."""
 
@@ -51,7 +54,7 @@ def read_cases(writer: Writer, tag: Local, cases: Sequence[Case], unknown: Calla
     """Read what is behind a tag, and on as long as guesses are right; ``unknown`` reads it if no case does."""
     start = writer.position
     after = writer.var("next", start)
-    if len(writer.around) >= NESTED or all(case.guess == NONE for case in cases):
+    if len(writer.around) >= NESTED or len(cases) > MOST_GUESSED or all(case.guess == NONE for case in cases):
         known = tuple((case.tag, _body(writer, case.read, after)) for case in cases)
         writer.emit(Switch(tag, known, _body(writer, unknown, after)))
         writer.position = after
