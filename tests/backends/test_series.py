@@ -196,6 +196,20 @@ def test_cases_of_a_switch_are_found():
     assert len(texts.numbers) == COUNTS["protobuf"]
 
 
+@pytest.mark.parametrize(("count", "words"), [(128, 0), (1000, 16)])
+def test_cases_of_large_kernels_are_found_for_each_word_that_notes_what_is_there(count, words):
+    """Of 64 optional fields each; few of them are quicker, each printed by itself."""
+    fields = "\n".join(f"  optional int64 number{number} = {number + 1};" for number in range(count))
+    options = {"encoding": "protobuf", "schema": {"a.proto": f'syntax = "proto2"; package a;\nmessage All {{\n{fields}\n}}'}}
+    (made,) = Build(Request("decode", type="a.All", files=tuple(options["schema"].items()), encoding="protobuf")).kernels
+    assert [len(cases.numbers) for each in found(made, made.bodies[0]).switches.values() for cases in each] == [64] * (words - 1) + [
+        count % 64
+    ] * (words > 0)
+    values = {f"number{number}": number * 37 % 5000 for number in range(0, count, 3)}
+    decoded = rj.Decoder.of("a.All", **options)(rj.Encoder.of("a.All", **options)(values))
+    assert {name: getattr(decoded, name) for name in (f"number{number}" for number in range(count)) if decoded.has(name)} == values
+
+
 def repeated(*, last, inside=False):
     """A kernel that reads forty numbers in as many stretches; in the end it uses the name of one of them again, perhaps inside a branch."""
     one = Const("i64", 1)

@@ -13,6 +13,7 @@ from rosetta_jit.backends.llvm.outline import Outline, Slot, is_number
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Assign, Block, Call, Const, Copy, Expr, Fill, For, If, Local, Reserve, Scalar, Stmt, Switch, While
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
+from rosetta_jit.kernel.traits import is_large
 from rosetta_jit.kernel.walk import blocks_of, flat, parts_of
 
 ROUNDS = 16
@@ -60,6 +61,7 @@ class _Look:
 
     def __init__(self, kernel: Kernel) -> None:
         self.strides, self.own_lanes = kernel.strides, kernel.lanes
+        self.is_large = is_large(kernel)
 
     def outline(self, stmt: Stmt) -> Outline:
         return Outline(stmt, self.strides, self.own_lanes)
@@ -96,7 +98,11 @@ class _Look:
         return [self.outline(stmt) if times[kind] >= ROUNDS else None for stmt, kind in zip(block, kinds, strict=True)]
 
     def cases(self, switch: Switch) -> tuple[Cases, ...]:
-        """The cases of a switch that are alike, where they are many, or of very many statements."""
+        """The cases of a switch that are alike, where they are many, or of very many statements.
+
+        Where they use other names of what is around them, as optional fields do that are noted in other words, each is printed, which takes
+        half of the time to run: but for large kernels, which LLVM would take seconds for.
+        """
         alike = dict["Hashable", list[tuple[int, "Block", list["Slot"]]]]()
         kinds = [tuple(map(type, body)) for _, body in switch.cases]
         times = Counter(kinds)
@@ -104,7 +110,9 @@ class _Look:
             if times[kind] < ROUNDS and (times[kind] == 1 or not _is_vast(body)):
                 continue
             outlines = list(map(self.outline, body))
-            alike.setdefault(tuple([each.shape for each in outlines]), []).append((number, body, _joined(each.slots for each in outlines)))
+            slots = _joined(each.slots for each in outlines)
+            around = _names_around(slots) if self.is_large else ()
+            alike.setdefault((around, *[each.shape for each in outlines]), []).append((number, body, slots))
         groups = [each for each in alike.values() if len(each) > 1 and len(each[0][1]) > 1]
         made = [_case(group) for group in groups if len(group) >= ROUNDS or _is_vast(group[0][1])]
         return tuple(each for each in made if each is not None)
@@ -158,6 +166,12 @@ def _carries(slots: Sequence[Sequence[Slot]], begin: int, period: int) -> int:
 
 def _joined(slots: Iterable[Sequence[Slot]]) -> list[Slot]:
     return [slot for each in slots for slot in each]
+
+
+def _names_around(slots: Sequence[Slot]) -> tuple[str, ...]:
+    """What a case uses that is bound around it: cases of one series use the same."""
+    bound = {slot.name for slot in slots if slot.kind == "bound"}
+    return tuple([slot.name for slot in slots if slot.is_use and slot.name not in bound])
 
 
 def _is_vast(body: Block) -> bool:
