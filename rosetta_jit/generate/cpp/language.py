@@ -49,6 +49,8 @@ def _manners(unit: Unit) -> Manners:
     manners = {each.name: each for each in MANNERS}.get(unit.holder or "own")
     if manners is None:
         raise SchemaError((words.unknown_holder(unit.holder, tuple((each.name, each.summary) for each in MANNERS)),))
+    if unit.include and manners.header is None:
+        raise SchemaError((words.needless_header(manners.name),))
     if manners.framework not in ("", unit.framework) and not unit.include:
         known = tuple(each.name for each in MANNERS if each.name == "own" or each.framework == unit.framework)
         raise SchemaError((words.of_another_framework(manners.name, unit.type, unit.framework, known),))
