@@ -14,7 +14,7 @@ from rosetta_jit.generate.cpp.at_once import at_once
 from rosetta_jit.generate.cpp.decoder import decoder_of
 from rosetta_jit.generate.cpp.header import AtOnce, header
 from rosetta_jit.generate.cpp.manners import MANNERS, Manners
-from rosetta_jit.generate.cpp.opened import without_asking
+from rosetta_jit.generate.cpp.opened import without_asking, without_counting
 from rosetta_jit.generate.cpp.put_at_once import put_at_once
 from rosetta_jit.generate.cpp.reading import addressed_in, viewed_in
 from rosetta_jit.generate.cpp.source import source
@@ -73,4 +73,5 @@ def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: R
     else:
         kernel, lanes = decoder_of(unit, manners, kernel, lanes)
         kernel = without_asking(kernel, lanes.opened)
+        kernel = kernel if wire_of(role) else without_counting(kernel, lanes.given)
     return print_kernel(kernel, lanes, role, unit.origins.get(role, ()))
