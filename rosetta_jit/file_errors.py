@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from collections.abc import Generator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -29,12 +31,35 @@ def named(path: Path) -> Generator[Path]:
 
 @contextmanager
 def whole(path: Path) -> Generator[Path]:
-    """Another name for a file that is being written; it gets its own when all went well, and goes otherwise."""
+    """Another name for a file that is being written; it gets its own when all went well, and goes otherwise.
+
+    Raises
+    ------
+    OSError
+        A folder has that name, before anything is written; what else goes wrong, with the file's own name.
+    """
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     part = path.with_name(f"{path.name}.part")
     with named(path):
         try:
             yield part
+            part.replace(path)
         except BaseException:
             part.unlink(missing_ok=True)
             raise
-        part.replace(path)
+
+
+def folder(path: Path) -> Path:
+    """A folder, made where there is none.
+
+    Raises
+    ------
+    NotADirectoryError
+        Something else has that name.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(path)) from None
+    return path

@@ -61,6 +61,19 @@ class Namespace:
         return candidate
 
 
+def joined(path: str) -> str:
+    """The words of a path as one."""
+    return re.sub(r"\W+", "_", path).strip("_")
+
+
+def class_name(scope: Namespace, type_: str) -> str:
+    """The simple name of a type, or all of its name where another type has that: each type gets another identifier."""
+    simple = re.split(r"[./:]+", type_)[-1]
+    if simple not in scope.identifiers:
+        return scope.identifier(simple)
+    return scope.identifier(f"{type_}\0" if type_ == simple else re.sub(r"[./:]+", ".", type_))
+
+
 def statements(block: Block) -> list[Stmt]:
     """All statements of a block, those of inner blocks included."""
     return walk.flat(block)

@@ -21,6 +21,22 @@ def no_numpy(language: str, known: Sequence[str]) -> Diagnostic:
     return error("no-numpy", message, help_=f"leave out --arrays numpy, or choose --language {' or '.join(known)}")
 
 
+def needless_in(option: str, language: str, known: Sequence[str]) -> Diagnostic:
+    help_ = f"leave it out, or choose --language {' or '.join(known)}"
+    return error("needless-option", f"`{option}` says nothing about source in `{language}`", help_=help_)
+
+
+def needless_header(holder: str) -> Diagnostic:
+    message = f"`--include` says nothing about `--holder {holder}`, whose classes are generated"
+    return error("needless-option", message, help_="leave it out, or choose the --holder that has such classes, as protobuf")
+
+
+def unusable_header(name: str) -> Diagnostic:
+    return error(
+        "unusable-header", f"`{name}` cannot be included", help_="name the header as between < and >: rst/kinematics/JointAngles.pb.h"
+    )
+
+
 def no_manner(holder: str, kind: str, where: str) -> Diagnostic:
     message = f"classes of `{holder}` have no fields as `{where}` ({kind.split(maxsplit=1)[0]})"
     return error("not-in-holder", message, help_="choose another --holder, as own")

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_parameters, add_wire, encoding_of, parameters_of, wire_of
-from rosetta_jit.file_errors import named, whole
+from rosetta_jit.file_errors import folder, named, whole
 from rosetta_jit.pipeline.request import Request
 
 if TYPE_CHECKING:
@@ -70,15 +70,14 @@ def run(arguments: argparse.Namespace) -> int:
     """All files are made before any is written, and none gets its name before all are whole; one line says what each is."""
     _check(arguments)
     texts = _object(arguments) if arguments.emit == "object" else _source(arguments)
-    folder = Path(cast("str", arguments.output))
+    output = Path(cast("str", arguments.output))
     with ExitStack() as files:
-        for name, text in texts.items():
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            path = files.enter_context(whole(folder / name))
-            with named(folder / name):
-                path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        parts = [files.enter_context(whole(folder((output / name).parent) / Path(name).name)) for name in texts]
+        for part, (name, text) in zip(parts, texts.items(), strict=True):
+            with named(output / name):
+                part.write_bytes(text if isinstance(text, bytes) else text.encode())
     for name in texts:
-        print(f"wrote {folder / name}")
+        print(f"wrote {output / name}")
     return 0
 
 
@@ -96,7 +95,7 @@ def _check(arguments: argparse.Namespace) -> None:
 def _source(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:
     from rosetta_jit.generate.build import Wishes, generated
 
-    name = arguments.name or _name(arguments.subject, arguments.language)
+    name = _name(arguments)
     wishes = Wishes(arguments.freestanding, arguments.holder or "", arguments.include or "", numpy=arguments.arrays == "numpy")
     return generated(_request(arguments), arguments.language, arguments.directions, name, wishes)
 
@@ -110,8 +109,10 @@ def _object(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:
 
     if arguments.language != "c":
         raise SchemaError((no_object(arguments.language),))
-    name, triple = arguments.name or _name(arguments.subject, arguments.language), arguments.target or binding.get_default_triple()
-    return object_of(_request(arguments), arguments.directions, name, triple, arguments.cpu, freestanding=arguments.freestanding)
+    triple = arguments.target or binding.get_default_triple()
+    return object_of(
+        _request(arguments), arguments.directions, _name(arguments), triple, arguments.cpu, freestanding=arguments.freestanding
+    )
 
 
 def _request(arguments: argparse.Namespace) -> Request:
@@ -129,7 +130,11 @@ def _is_mapping(subject: str) -> bool:
     return subject.endswith(".mapping")
 
 
-def _name(subject: str, language: str) -> str:
+def _name(arguments: argparse.Namespace) -> str:
+    return _usual_name(arguments.subject, arguments.language) if arguments.name is None else arguments.name
+
+
+def _usual_name(subject: str, language: str) -> str:
     """``yarp/icub/torso_state.mapping`` and ``sensor_msgs/JointState`` give ``torso_state`` and ``joint_state``.
 
     A name that a header of C has, or a word of the language, as that of ``std_msgs/String``, is preceded by what stands before it:

@@ -227,6 +227,22 @@ def _machine(language: Language) -> type[AheadOfTime]:
     return LowByteFirst if language.low_byte_first else AheadOfTime
 
 
+def _check_wishes(wishes: Wishes, language: str, known: Mapping[str, Language]) -> None:
+    """Refuse what a language cannot do, or has no meaning in it."""
+
+    def of_others(can: Callable[[Language], bool]) -> tuple[str, ...]:
+        return () if can(known[language]) else tuple(name for name, each in known.items() if can(each))
+
+    if wishes.numpy and (others := of_others(lambda each: each.numpy)):
+        raise SchemaError((words.no_numpy(language, others),))
+    if wishes.freestanding and (others := of_others(lambda each: each.freestanding)):
+        raise SchemaError((words.needless_in("--freestanding", language, others),))
+    if wishes.include and (others := of_others(lambda each: each.holders)):
+        raise SchemaError((words.needless_in("--include", language, others),))
+    if not wishes.include.isprintable() or ">" in wishes.include:
+        raise SchemaError((words.unusable_header(wishes.include),))
+
+
 def generated(request: Request, language: str, roles: tuple[Role, ...], name: str, wishes: Wishes = NO_WISHES) -> dict[str, str]:
     """The files of a mapping or type in a language, by their names.
 
@@ -253,8 +269,7 @@ def generated(request: Request, language: str, roles: tuple[Role, ...], name: st
         raise SchemaError((words.unknown_language(language, tuple(known)),))
     if not known[language].may_name(name):
         raise SchemaError((words.unusable_name(name),))
-    if wishes.numpy and not known[language].numpy:
-        raise SchemaError((words.no_numpy(language, tuple(name for name, each in known.items() if each.numpy)),))
+    _check_wishes(wishes, language, known)
     with within_stack():
         machine = _machine(known[language])
         wanted = _of_wires(request, roles) if known[language].wires else roles

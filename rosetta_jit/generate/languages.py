@@ -38,6 +38,10 @@ class Language:
     fills_objects
         What it prints is such, and the code around its decoders takes texts from the message, too. The code around its encoders makes rows
         of objects, those of what an object contains after its own.
+    freestanding
+        What it prints can do without the language's library.
+    holders
+        It can fill classes that headers declare, besides its own.
     numpy
         Its arrays of numbers can be numpy's.
     wires
@@ -52,6 +56,8 @@ class Language:
     borrows: bool = False
     low_byte_first: bool = False
     fills_objects: bool = False
+    freestanding: bool = False
+    holders: bool = False
     numpy: bool = False
     wires: bool = False
     taken: str = ""
@@ -85,7 +91,11 @@ LANGUAGES = (
         taken="rosetta_jit.generate.python.classes:NOT_MODULES",
     ),
     Language(
-        "c", "C11: NAME.h and NAME.c, without allocation, globals or dependencies", "rosetta_jit.generate.c.language:files", wires=True
+        "c",
+        "C11: NAME.h and NAME.c, without allocation, globals or dependencies",
+        "rosetta_jit.generate.c.language:files",
+        freestanding=True,
+        wires=True,
     ),
     Language(
         "cpp",
@@ -94,6 +104,7 @@ LANGUAGES = (
         borrows=True,
         low_byte_first=True,
         fills_objects=True,
+        holders=True,
         wires=True,
         taken="rosetta_jit.generate.cpp.names:NOT_NAMESPACES",
     ),

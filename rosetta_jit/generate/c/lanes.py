@@ -109,7 +109,8 @@ class Lanes:
     no row keeps, as an object has them; the rows of ``opened`` lanes are elements of the object, and so are those of ``given`` ones, of
     which each message has one array. ``packed`` are loops that may copy all elements at once. ``shared`` begins the names of functions of
     the support, where they are those of a header. ``forward``: a message is written from its begin to its end, so that bytes behind those
-    that are written are not in use.
+    that are written are not in use. ``renamed`` are fields of the message's row, by offset, whose paths have, as one
+    word, that of another one: what they are called as locals.
     """
 
     prefix: str
@@ -126,6 +127,7 @@ class Lanes:
     shown: Mapping[int, str] = field(default_factory=dict[int, str])
     shared: str = ""
     forward: bool = True
+    renamed: Mapping[int, str] = field(default_factory=dict[int, str])
 
     def stride(self, lane: int) -> int:
         """Bytes of a row."""

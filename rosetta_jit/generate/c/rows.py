@@ -9,6 +9,7 @@ a message may have other values than 0 and 1, which a C `bool` must not.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from itertools import count
 from typing import assert_never
 
@@ -197,6 +198,27 @@ def _through(member: Member, offset: int, scalar: str) -> str | None:
         return f".{member.identifier}[{index}]" if rest == 0 and member.type == scalar else None
     inner = path_to(member.type, offset, scalar)
     return None if inner is None else f".{member.identifier}{inner}"
+
+
+def paths_of(element: Element | None, offset: int = 0) -> Iterator[tuple[int, str]]:
+    """The scalars of a row: where each lies, and how it is written behind the row."""
+    match element:
+        case None:
+            return
+        case str():
+            yield offset, ""
+        case SpanType():
+            yield from ((offset, ".start"), (offset + 8, ".count"))
+        case Struct():
+            for member in element.members:
+                at, name = offset + member.offset, f".{member.identifier}"
+                if member.many is None:
+                    yield from ((inner, name + path) for inner, path in paths_of(member.type, at))
+                else:
+                    step = member.size // member.many
+                    yield from ((at + index * step, f"{name}[{index}]") for index in range(member.many))
+        case _:
+            assert_never(element)
 
 
 def elements_of(layout: Layout, structs: Structs, names: tuple[str, ...]) -> tuple[Element, ...]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from itertools import count
 
-from rosetta_jit.backends.printing import Namespace
+from rosetta_jit.backends.printing import Namespace, joined
 from rosetta_jit.generate.c.accessors import words_of
 from rosetta_jit.generate.c.lanes import OWN_WORDS, Lane, Lanes
-from rosetta_jit.generate.c.rows import Structs, elements_of
+from rosetta_jit.generate.c.rows import Structs, elements_of, paths_of
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.generate.unit import Unit
@@ -28,7 +29,20 @@ def own_lanes(unit: Unit) -> tuple[Structs, list[Lane]]:
 def named_lanes(unit: Unit, reserved: frozenset[str]) -> Callable[[Sequence[int]], Lanes]:
     """All of them for kernels whose rows take so many bytes each, called otherwise than what is reserved."""
     own = [replace(each, identifier=f"{each.identifier}_lane") if each.identifier in reserved else each for each in own_lanes(unit)[1]]
-    return lambda strides: Lanes(unit.name, (*own, *hidden_lanes(strides[len(own) :])), len(own))
+    renamed = _renamed(own[0])
+    return lambda strides: Lanes(unit.name, (*own, *hidden_lanes(strides[len(own) :])), len(own), renamed=renamed)
+
+
+def _renamed(lane: Lane) -> dict[int, str]:
+    """Names for the fields of a row whose words together are those of another one: ``a.b`` and ``a_b``, a text ``s`` and ``s_start``."""
+    words = {offset: joined(path) for offset, path in paths_of(lane.element)}
+    times, taken = Counter(words.values()), set(words.values())
+    found = dict[int, str]()
+    for offset, name in words.items():
+        if times[name] > 1:
+            found[offset] = next(each for number in count(offset) if (each := f"{name}_{number}") not in taken)
+            taken.add(found[offset])
+    return found
 
 
 def _named(names: Sequence[str], unit: str) -> list[tuple[str, str]]:

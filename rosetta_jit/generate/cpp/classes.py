@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.backends.printing import Namespace
+from rosetta_jit.backends.printing import Namespace, class_name
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.generate.inner_types import reached_types
@@ -23,13 +23,10 @@ NOT_CLASSES = frozenset({"codec", "holder", "unknown_fields", "std", "rosetta_ji
 
 def names_of(unit: Unit) -> dict[str, str]:
     """The classes and enums of a unit by their names in the schema."""
-    parts = {name: re.split(r"[./:]+", name) for name in reached_types(unit)}
-    scope = Namespace(RESERVED | NOT_CLASSES | {unit.name} | of_unit(unit.name, (each[-1] for each in parts.values())))
-    found: dict[str, str] = {}
-    for name, (*_, simple) in parts.items():
-        whole = "_".join(parts[name])
-        found[name] = scope.identifier(simple if simple not in scope.identifiers else whole)
-    return found
+    names = [*reached_types(unit)]
+    simple = (re.split(r"[./:]+", name)[-1] for name in names)
+    scope = Namespace(RESERVED | NOT_CLASSES | {unit.name} | of_unit(unit.name, simple))
+    return {name: class_name(scope, name) for name in names}
 
 
 def classes(unit: Unit) -> str:

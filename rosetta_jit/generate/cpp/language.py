@@ -14,7 +14,7 @@ from rosetta_jit.generate.cpp.at_once import at_once
 from rosetta_jit.generate.cpp.decoder import decoder_of
 from rosetta_jit.generate.cpp.header import AtOnce, header
 from rosetta_jit.generate.cpp.manners import MANNERS, Manners
-from rosetta_jit.generate.cpp.opened import without_asking
+from rosetta_jit.generate.cpp.opened import without_asking, without_counting
 from rosetta_jit.generate.cpp.put_at_once import put_at_once
 from rosetta_jit.generate.cpp.reading import addressed_in, viewed_in
 from rosetta_jit.generate.cpp.source import source
@@ -49,6 +49,8 @@ def _manners(unit: Unit) -> Manners:
     manners = {each.name: each for each in MANNERS}.get(unit.holder or "own")
     if manners is None:
         raise SchemaError((words.unknown_holder(unit.holder, tuple((each.name, each.summary) for each in MANNERS)),))
+    if unit.include and manners.header is None:
+        raise SchemaError((words.needless_header(manners.name),))
     if manners.framework not in ("", unit.framework) and not unit.include:
         known = tuple(each.name for each in MANNERS if each.name == "own" or each.framework == unit.framework)
         raise SchemaError((words.of_another_framework(manners.name, unit.type, unit.framework, known),))
@@ -71,4 +73,5 @@ def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: R
     else:
         kernel, lanes = decoder_of(unit, manners, kernel, lanes)
         kernel = without_asking(kernel, lanes.opened)
+        kernel = kernel if wire_of(role) else without_counting(kernel, lanes.given)
     return print_kernel(kernel, lanes, role, unit.origins.get(role, ()))

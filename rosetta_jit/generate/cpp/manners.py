@@ -79,8 +79,7 @@ def _joined(struct: Struct) -> str:
 def _nested(struct: Struct) -> str:
     """Messages within others: protoc joins their names by underscores, and writes one behind its keywords."""
     parts = struct.name.split(".")
-    first = next((number for number, part in enumerate(parts) if part[:1].isupper()), len(parts) - 1)
-    named = ""
+    first, named = len(parts) - 1 - int(struct.option("nested") or 0), ""
     for part in parts[first:]:
         named = f"{named}_{part}" if named else part
         named = f"{named}_" if named in PROTOC else named

@@ -5,7 +5,7 @@ rosetta_jit::result<rosetta_jit::done> codec::$function(const void *data, std::s
     const unsigned char *const bytes = static_cast<const unsigned char *>(data);
     const int64_t end = reach(size);
     auto &row = filled->message;
-    struct failure failure;
+    struct failure failure$unset;
 $begin
 $kept
 $reset
@@ -28,7 +28,7 @@ rosetta_jit::result<rosetta_jit::done> codec::try_decode_$wire(const void *data,
     const unsigned char *const bytes = static_cast<const unsigned char *>(data);
     const int64_t end = reach(size);
     const auto before = filled->message;
-    struct failure failure;
+    struct failure failure$unset;
     filled->now = now;
     filled->number = number;
 $kept
@@ -80,7 +80,7 @@ $bind
 /* The bytes of the message. Where parts of it have lengths, these are left in the scratch memory. */
 rosetta_jit::result<std::size_t> measured(${name}_source *holder, const $row &given_row, const ${name}_holder &memory)
 {
-    struct failure failure;
+    struct failure failure$unmeasured;
     const int64_t end = INT64_MAX;
     static_cast<void>(end);
     static_cast<void>(holder);
@@ -96,7 +96,7 @@ ${inline}rosetta_jit::result<std::size_t> written(${name}_source *holder, const 
 {
     unsigned char *const bytes = static_cast<unsigned char *>(target);
     const int64_t end = reach(capacity);
-    struct failure failure;
+    struct failure failure$unset;
     static_cast<void>(holder);
     static_cast<void>(given_row);
     static_cast<void>(bytes);

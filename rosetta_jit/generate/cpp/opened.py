@@ -6,16 +6,19 @@ itself has must be set whatever the message is: nothing may be left of another o
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import TypeGuard
 
+from rosetta_jit.generate.c.aligned import as_printed
 from rosetta_jit.generate.c.lanes import Straight
 from rosetta_jit.generate.c.positions import difference
 from rosetta_jit.generate.c.straight import size_left
 from rosetta_jit.generate.cleared import settled
+from rosetta_jit.generate.reachable import read_names
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import (
     Address,
+    Advance,
     Assign,
     Binary,
     Block,
@@ -24,11 +27,14 @@ from rosetta_jit.kernel.nodes import (
     Expr,
     For,
     HostCall,
+    Let,
     Place,
     Require,
     Reserve,
     SetField,
     Stmt,
+    Used,
+    Var,
     Wire,
 )
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks, with_bodies
@@ -62,6 +68,31 @@ def without_asking(kernel: Kernel, lanes: frozenset[int]) -> Kernel:
         return tuple(with_blocks(stmt, kept) for stmt in rest)
 
     return with_bodies(kernel, tuple(map(kept, kernel.bodies)))
+
+
+def without_counting(kernel: Kernel, given: Collection[int]) -> Kernel:
+    """A decoder that does not count the rows of lanes which it asks nothing about; what ``given`` lanes count is how long they become."""
+    elsewhere = {lane for routine in kernel.routines for lane in _asked(routine.body)}
+
+    def uncounted(body: Block) -> Block:
+        asked = elsewhere.union(_asked(body), given)
+
+        def kept(block: Block) -> Block:
+            return tuple(with_blocks(stmt, kept) for stmt in block if not (isinstance(stmt, Advance) and stmt.lane not in asked))
+
+        return kept(body)
+
+    return with_bodies(kernel, tuple(map(uncounted, kernel.bodies)))
+
+
+def _asked(block: Block) -> Iterator[int]:
+    """The lanes of which anything needs to know how many rows are in use."""
+    read = read_names(as_printed(block))
+    for stmt, _ in statements(block):
+        if isinstance(stmt, Reserve):
+            yield stmt.lane
+        if not (isinstance(stmt, Let | Var | Assign) and stmt.name not in read):
+            yield from (part.lane for expr in expressions_of(stmt) for part in subexpressions(expr) if isinstance(part, Used))
 
 
 def _is_there(count: Expr, before: Stmt | None) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from string import Template
 from typing import TYPE_CHECKING
 
+from rosetta_jit.generate.c.functions import Attempt
 from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.source import run
 from rosetta_jit.generate.cleared import offsets_of, slots_of
@@ -48,7 +49,7 @@ def writes_apart(unit: Unit) -> bool:
 
 def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, str], directs: list[Direct], walk: Walk) -> str:
     """The encoder; ``walk`` has printed what takes an object apart."""
-    lanes, encode = parts.lanes, parts.printed["encode"]
+    lanes, encode, size = parts.lanes, parts.printed["encode"], parts.printed["size"].attempts[0]
     is_straight, memory, row = is_local(walk, encode.hidden), "written_" if writes_apart(unit) else "memory_", lanes.type(0)
     begun = (f"    holder->{lanes.rows(lane)}.reset();" for lane in _copied(parts, directs, walk))
     measure = Template(known["measure"]).substitute(no_room=str(len(encode.sites)), memory=memory) if encode.hidden else ""
@@ -62,10 +63,17 @@ def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, st
         clear="" if _is_collected(unit) else "    row = {};",
         reset="\n".join(begun),
         bind="\n".join(_read(lanes.rows(each.lane), each) for each in directs),
-        size=run(parts.printed["size"].attempts[0], "failure"),
+        size=run(size, "failure"),
+        unmeasured=unset(size),
         run=run(encode.attempts[0], "failure"),
+        unset=unset(encode.attempts[0]),
         measure=measure,
     )
+
+
+def unset(attempt: Attempt) -> str:
+    """What a failure is at first where the function that would set it cannot fail, which not every compiler sees; else nothing."""
+    return "" if "failure" in attempt.parameters else " = {0, 0, {0, 0, 0, 0}}"
 
 
 def _copied(parts: Parts, directs: list[Direct], walk: Walk) -> list[int]:

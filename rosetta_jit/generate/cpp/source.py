@@ -20,7 +20,16 @@ from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
 from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
 from rosetta_jit.generate.cpp.packed import packed_structs
 from rosetta_jit.generate.cpp.read_in_place import is_local
-from rosetta_jit.generate.cpp.reading import addressed_in, container_type, directs_of, encoder, source_struct, viewed_in, writes_apart
+from rosetta_jit.generate.cpp.reading import (
+    addressed_in,
+    container_type,
+    directs_of,
+    encoder,
+    source_struct,
+    unset,
+    viewed_in,
+    writes_apart,
+)
 from rosetta_jit.generate.cpp.set_in_place import straight_numbers
 from rosetta_jit.generate.cpp.spots import Direct, Spot
 from rosetta_jit.generate.cpp.walk import Walk
@@ -250,6 +259,7 @@ def _methods(
                 begin="\n".join(_told(asks)),
                 bind="\n".join(f"    {FILLED}->{lanes.rows(each.lane)}.fill({each.spot.at});" for each in directs["decode"]),
                 reset=reset,
+                unset=unset(first),
                 first=run(first, "failure", FILLED),
                 others="".join(Template(known["other"]).substitute(call=run(each, "other", FILLED)) for each in others),
                 finish="\n".join(finish),
@@ -278,6 +288,7 @@ def _of_wire(unit: Unit, parts: Parts, known: dict[str, str], role: Role) -> str
         name=unit.name,
         wire=wire_of(role),
         kept=f"    {FILLED}->state = &kept;",
+        unset=unset(first),
         first=run(first, "failure", FILLED),
         others="".join(Template(known["other"]).substitute(call=run(each, "other", FILLED)) for each in others),
         save="\n".join(each.format("save") for each in changed),

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import builtins
 import keyword
-import re
 import sys
 from collections.abc import Mapping
 from typing import assert_never
 
-from rosetta_jit.backends.printing import Namespace
+from rosetta_jit.backends.printing import Namespace, class_name
 from rosetta_jit.generate.inner_types import reached_types
 from rosetta_jit.generate.unit import Unit, wire_of
 from rosetta_jit.model.layout import scalar_of
@@ -69,8 +68,7 @@ def names_of(unit: Unit) -> dict[str, str]:
     of_wires = (f"{verb}_{wire_of(role)}" for role in unit.kernels if wire_of(role) for verb in ("decode", "age"))
     scope, found = Namespace(TAKEN.union(of_wires)), dict[str, str]()
     for name in reached_types(unit):
-        simple = re.split(r"[./:]+", name)[-1]
-        found[name] = scope.identifier(simple if simple not in scope.identifiers else "_".join(re.split(r"[./:]+", name)))
+        found[name] = class_name(scope, name)
     return found
 
 

@@ -11,6 +11,7 @@ from collections.abc import Callable, Set
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from rosetta_jit.backends.printing import joined
 from rosetta_jit.generate.python.classes import NUMPY
 from rosetta_jit.generate.python.descents import Visit
 from rosetta_jit.generate.python.direct import Direct
@@ -135,7 +136,7 @@ class Scope:
     def own(self, lane: int, offset: int, scalar: str) -> str:
         """The local for a field of the row that a loop fills."""
         path = self.lanes.field(lane, "", offset, scalar)
-        return self.locals.identifier(f"{self.lanes.rows(lane)}\0{offset}" if path is None else re.sub(r"\W+", "_", path).strip("_"))
+        return self.locals.identifier(f"{self.lanes.rows(lane)}\0{offset}" if path is None else re.sub(r"\W+", ".", path).strip("."))
 
     def text(self, lane: int, offset: int) -> str:
         """The local for a text that is decoded where it is checked, or the attribute."""
@@ -199,7 +200,7 @@ def view_name(lanes: Lanes, lane: int, code: str) -> str:
 def flat_name(lanes: Lanes, offset: int, scalar: str) -> str:
     """The local for a field of the message's row."""
     path = lanes.field(0, "0", offset, scalar)
-    return f"m_{offset}" if path is None else "m_" + re.sub(r"\W+", "_", path.partition("->")[2]).strip("_")
+    return f"m_{offset}" if path is None else f"m_{lanes.renamed.get(offset) or joined(path.partition('->')[2])}"
 
 
 def scaled(row: str, times: int, offset: int) -> str:

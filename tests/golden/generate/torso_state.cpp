@@ -480,7 +480,7 @@ void gather(const ::torso_state::holder &source, torso_state_source *holder, tor
 /* The bytes of the message. Where parts of it have lengths, these are left in the scratch memory. */
 rosetta_jit::result<std::size_t> measured(torso_state_source *holder, const torso_state_JointAngles &given_row, const torso_state_holder &memory)
 {
-    struct failure failure;
+    struct failure failure = {0, 0, {0, 0, 0, 0}};
     const int64_t end = INT64_MAX;
     static_cast<void>(end);
     static_cast<void>(holder);

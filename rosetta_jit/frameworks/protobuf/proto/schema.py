@@ -61,7 +61,14 @@ class _Builder:
         message = entry.message
         own = tuple(self.member(entry, member) for member in message.members)
         added = tuple(self.extension(extension) for extension in self.extensions.get(entry.full, ()))
-        return model.Struct(entry.full, own + added, doc=message.doc, span=message.name.span, options=KEEPS_UNKNOWN)
+        options = (*self.nested(entry.full), *KEEPS_UNKNOWN)
+        return model.Struct(entry.full, own + added, doc=message.doc, span=message.name.span, options=options)
+
+    def nested(self, full: str) -> tuple[tuple[str, Constant], ...]:
+        """How many messages a message is declared in, if in any: the names before theirs are the package's, however they are written."""
+        outer = full.split(".")[:-1]
+        depth = sum(".".join(outer[:end]) in self.declared.messages for end in range(1, len(outer) + 1))
+        return (("nested", depth),) if depth else ()
 
     def member(self, entry: DeclaredMessage, member: Field | Oneof) -> model.Field:
         match member:

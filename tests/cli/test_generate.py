@@ -1,0 +1,70 @@
+"""`rosetta-jit generate`: where files go, and what is refused instead of being left out in silence."""
+
+from __future__ import annotations
+
+import pytest
+
+from rosetta_jit.cli import main
+
+HEADER = ["generate", "std_msgs/Header", "--encoding", "ros1"]
+MACHINES = [
+    (["--target", "x86_64-linux-gnu", "--cpu", "cortex-m7"], "LLVM knows no processor `cortex-m7` of it"),
+    (["--target", "thumbv7em-none-eabihf", "--cpu", "cortex-m99"], "LLVM knows no processor `cortex-m99` of it"),
+    (["--target", "spirv64"], "LLVM ERROR"),
+    (["--target", "nvptx64-nvidia-cuda"], "can't emit a file of this type"),
+    (["--target", "msp430"], "LLVM has failed"),
+    (["--target", "\udcff"], "can't encode"),
+]
+REFUSED = [
+    (["--freestanding", "--language", "cpp"], "needless-option"),
+    (["--freestanding", "--language", "python"], "needless-option"),
+    (["--include", "a.h"], "needless-option"),
+    (["--include", "a.h", "--language", "lisp"], "needless-option"),
+    (["--include", "a.h", "--language", "cpp"], "needless-option"),
+    (["--include", "a.h", "--language", "cpp", "--holder", "yarp"], "needless-option"),
+    (["--include", "a.h>\nint x;", "--language", "cpp", "--holder", "ros1"], "unusable-header"),
+    (["--name", ""], "unusable-name"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "why"), MACHINES)
+def test_machines_without_objects_do_not_end_the_command(arguments, why, tmp_path, capfd):
+    """LLVM would end the process, or go on with another processor than the one that was named."""
+    assert main([*HEADER, "--emit", "object", *arguments, "-o", str(tmp_path)]) == 1
+    said = capfd.readouterr().err
+    assert "error[no-target]: there are no objects for " in said
+    assert why in said
+    assert said.count("\n") == 2
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("arguments", "kind"), REFUSED)
+def test_what_says_nothing_is_refused(arguments, kind, tmp_path, capsys):
+    assert main([*HEADER, *arguments, "-o", str(tmp_path)]) == 1
+    assert f"error[{kind}]" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_with_the_name_of_a_file_leaves_everything_as_it_was(tmp_path, capsys):
+    (tmp_path / "header.h").mkdir()
+    assert main([*HEADER, "-o", str(tmp_path)]) == 1
+    assert capsys.readouterr().err == f"error: [Errno 21] Is a directory: '{tmp_path}/header.h'\n"
+    assert [each.name for each in tmp_path.iterdir()] == ["header.h"]
+
+
+@pytest.mark.parametrize("below", ["", "/inner"])
+def test_a_file_is_no_folder(below, tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert main([*HEADER, "-o", f"{tmp_path}/file{below}"]) == 1
+    assert capsys.readouterr().err == f"error: [Errno 20] Not a directory: '{tmp_path}/file{below}'\n"
+
+
+def test_links_are_replaced_not_followed(tmp_path, capsys):
+    (tmp_path / "elsewhere").write_text("x")
+    (tmp_path / "header.h").symlink_to("elsewhere")
+    for _ in range(2):
+        assert main([*HEADER, "-o", str(tmp_path)]) == 0
+    assert (tmp_path / "elsewhere").read_text() == "x"
+    assert (tmp_path / "header.h").read_text().startswith("/*")
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["elsewhere", "header.c", "header.h"]
+    assert capsys.readouterr().out.count("wrote") == 4
