@@ -19,7 +19,7 @@ from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import wires_of
 from rosetta_jit.model.layout import Number, Row, Slot, Span
 from rosetta_jit.model.types import Array, Bytes, Ref, String, Struct, Type
-from rosetta_jit.startup.dataclass import dataclass, field
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 HOLDER = "std::declval<holder &>()"
 """An object, for types."""
@@ -124,7 +124,7 @@ def _list(walk: Walk, opened: Opened, type_: Type, span: Span, place: _Place) ->
         words = {"lane": rows, "index": "$index", "start": "$start", "size": "$size"}
         opened.fields[span.lane, 0] = Straight(walk.text("text of a list", place.spot, **words), text=True)
         return True
-    opened.fields[place.lane, span.offset] = _opening(walk, "open", span, place)
+    opened.fields[place.lane, span.offset] = replace(_opening(walk, "open", span, place), first=walk.text("first", place.spot))
     opened.structs[span.lane] = resolved.element
     element = f"std::declval<rosetta_jit::detail::element_type<decltype({container})> &>()"
     return _value(walk, opened, resolved.element, layout.element, _Place(Spot(f"{rows}[$index]"), Spot(element), span.lane))
