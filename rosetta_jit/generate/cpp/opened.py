@@ -23,8 +23,11 @@ from rosetta_jit.kernel.nodes import (
     Copy,
     Expr,
     For,
+    Get,
     HostCall,
     If,
+    Let,
+    Load,
     Place,
     Require,
     Reserve,
@@ -98,6 +101,15 @@ def _used(stmt: Stmt) -> set[int]:
     return {each.lane for each in named if isinstance(each, Place)}
 
 
+def _read_from_message(stmt: Stmt, before: Stmt | None) -> Stmt:
+    """A local that is a number which has just been set: it is read where that was, as in LCM the count of a list that follows."""
+    match stmt, before:
+        case Let(_, Get(type_, place)), SetField(same, Load(read) as number) if place == same and type_ == read:
+            return replace(stmt, value=number)
+        case _:
+            return stmt
+
+
 def _set(stmt: Stmt) -> set[int]:
     return {stmt.place.lane} if isinstance(stmt, SetField) else set()
 
@@ -117,7 +129,7 @@ class _Body:
 
     def block(self, block: Block, opened: dict[int, Expr]) -> Block:
         """A block; ``opened`` are the lists that are open in it, and the first row of each."""
-        rest, found = iter(block), list[Stmt]()
+        rest, found = iter(map(_read_from_message, block, (None, *block))), list[Stmt]()
         for stmt in rest:
             if isinstance(stmt, Copy) and self._is_copied(stmt.target) and isinstance(stmt.source, Wire):
                 found.append(replace(stmt, target=self._placed(stmt.target, opened)))

@@ -869,6 +869,16 @@ inline std::int64_t read_flags(std::uint8_t *rows, const unsigned char *bytes, s
         }
         std::memcpy(rows + done, eight, 32);
     }
+    if (count >= 4 && count < 8) {
+        std::uint32_t four[2];
+        std::memcpy(&four[0], bytes, 4);
+        std::memcpy(&four[1], bytes + count - 4, 4);
+        if (((four[0] | four[1]) & static_cast<std::uint32_t>(others)) == 0) {
+            std::memcpy(rows, &four[0], 4);
+            std::memcpy(rows + count - 4, &four[1], 4);
+            return count;
+        }
+    }
     while (count >= 8 && done < count) {
         const std::int64_t at = std::min(done, count - 8); /* of the last ones some may be set twice */
         std::memcpy(eight, bytes + at, 8);
