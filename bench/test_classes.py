@@ -22,7 +22,7 @@ JOBS = {
 """What is done, what each makes, and the target."""
 WRITTEN_AS_QUICKLY = frozenset({*SEVERAL_VARINTS, *LISTS})
 """What has a target for encoding, too."""
-WITHOUT_TARGET = frozenset({"Float64", "Bool", "JoyFeedbackArray, 4 elements"})
+WITHOUT_TARGET = frozenset({"Float64", "Bool"})
 """What has none for decoding, as it takes as long in both, or longer: docs/cpp.md says why."""
 ROS = ("Imu", "JointState, 32 joints", "LaserScan 1080", "PoseArray 1000", "Image 640x480")
 STATUSES = "DiagnosticArray, 20 statuses"

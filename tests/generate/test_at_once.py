@@ -13,6 +13,10 @@ from tests.generate.driver import answers, harmed
 from tests.generate.test_cpp import BOTH, same
 
 NUMBERS = "bool flag\nfloat64 x\nint8 small\nuint16 medium\nfloat64[36] covariance\nint32[3] three\nfloat32 y\n"
+SEPARATOR = "=" * 80
+GAP, POINT = "MSG: rj/Gap\nuint8 kind\nfloat32 value\n", "MSG: rj/Point\nfloat32 x\nfloat32 y\nfloat32 z\n"
+GAPS = [{"kind": each, "value": 0.5 * each} for each in range(18)]
+POINTS = [{"x": each, "y": -each, "z": 0.25 * each} for each in range(18)]
 TYPES = {
     "numbers": (NUMBERS, {"flag": True, "x": 1.5, "small": -3, "covariance": [0.5 * i for i in range(36)], "three": [1, -2, 3], "y": 2.5}),
     "text": ("string data\n", {"data": "as it is"}),
@@ -25,6 +29,9 @@ TYPES = {
         "string[] names\nuint32 offset\nstring text\nfloat64[] many\nint8[2] two\nuint8[] last\n",
         {"offset": 3, "text": "t" * 70, "many": [1.0, 2.0], "two": [1, -2]},
     ),
+    "lists of numbers": (f"Gap[] gaps\nPoint[] points\n{SEPARATOR}\n{GAP}\n{SEPARATOR}\n{POINT}", {"gaps": GAPS[:3], "points": POINTS[:2]}),
+    "a list of numbers": (f"Point[] points\n{SEPARATOR}\n{POINT}", {"points": POINTS[:4]}),
+    "a list of flags": (f"Flag[] flags\n{SEPARATOR}\nMSG: rj/Flag\nbool set\nuint8 rest\n", {"flags": [{"set": True, "rest": 2}] * 3}),
     "arrays": ("string name\nfloat64[] many\nint16[] few\nuint8 last\n", {"name": "n", "many": [1.0, 2.0, 3.0], "few": [-1, 2], "last": 4}),
 }
 OTHERS = {
@@ -32,10 +39,13 @@ OTHERS = {
     "text behind numbers": {"frame": "\U0001f916 and more"},
     "arrays": {"name": ""},
     "lists before arrays": {"names": ["one", "another"]},
+    "lists of numbers": {"gaps": GAPS[:16], "points": POINTS[:17]},
+    "a list of numbers": {"points": POINTS},
+    "a list of flags": {"flags": [{"set": False, "rest": 1}] * 2},
 }
-"""What the source file reads, or texts that have nothing."""
+"""What the source file reads, as lists that have many elements, or texts that have nothing."""
 WRITTEN = {*TYPES}
-IN_HEADER = {"numbers", "text", "text behind numbers", "arrays", "lists before arrays"}
+IN_HEADER = {*TYPES} - {"numbers behind bytes", "a list of flags"}
 
 
 def encoders(type_, encoding):

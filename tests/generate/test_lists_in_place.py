@@ -92,12 +92,12 @@ def test_lists_within_lists_are_set_as_they_are_read(header, encoding, tmp_path)
     name = cpp.write(tmp_path, generated(type_request("decode", "rj/Parts", options), "cpp", BOTH, "unit", wishes))
     text = (tmp_path / "unit.cpp").read_text()
     for opened in (
-        "parts.open(given_object.parts",
-        "parts_leaves.open(parts[i].leaves",
+        "parts = rosetta_jit::detail::opened(given_object.parts",
+        "parts_leaves = rosetta_jit::detail::opened(parts[i].leaves",
         "tags.put(",
         "parts_leaves_words.put(",
-        "weights.open(",
-        "corner.open(",
+        "weights = rosetta_jit::detail::opened(",
+        "corner = rosetta_jit::detail::opened(",
     ):
         assert opened in text, opened
     decode, encode = (of("rj/Parts", **options) for of in (rj.Decoder.of, rj.Encoder.of))
@@ -116,7 +116,7 @@ def test_a_list_is_opened_only_if_all_of_it_can_be(element):
     schema = TYPE.replace("int64 number\n", f"int64 number\n{element}\n") + f"{SEPARATOR}\nMSG: rj/Pair\nfloat64 x\nfloat64 y\n"
     text = generated(type_request("decode", "rj/Parts", {"encoding": "ros1", "schema": schema}), "cpp", BOTH, "unit")["unit.cpp"]
     assert ".open(given_object.tags" in text
-    assert ".open(given_object.parts" not in text
+    assert "opened(given_object.parts" not in text
     assert "resize_to(target.parts" in text
 
 
@@ -126,6 +126,7 @@ def test_lists_that_protobuf_writes_element_by_element_keep_rows():
     request = type_request("decode", "t.M", {"encoding": "protobuf", "schema": {"t.proto": schema}})
     text = generated(request, "cpp", BOTH, "unit")["unit.cpp"]
     assert ".open(" not in text
+    assert "::opened(" not in text
     assert ".text.count = (-1) - " in text
 
 

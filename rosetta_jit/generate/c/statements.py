@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.c.aligned import aligned
 from rosetta_jit.generate.c.expressions import expression, location, store, written
+from rosetta_jit.generate.c.flag_loops import flags_done, flags_of
 from rosetta_jit.generate.c.positions import (
     NONE,
     Positions,
@@ -264,7 +265,13 @@ def _loop(function: Function, stmt: nodes.For | nodes.While) -> None:
             if not isinstance(count, nodes.Const | nodes.Local):
                 function.line(f"const int64_t {(before := scope.locals.identifier(f'{variable} count'))} = {bound};")
                 bound = before
-            with _unless_copied(function, stmt, bound), function.block(f"for (int64_t {name} = 0; {name} < {bound}; {name}++)"):
+            flags = flags_of(stmt)
+            done = None if flags is None else flags_done(scope, flags, bound)
+            if flags is not None and done is not None and not flags.is_read:
+                function.line(f"{done};")
+                return
+            begin = f"int64_t {name} = {done or 0}"
+            with _unless_copied(function, stmt, bound), function.block(f"for ({begin}; {name} < {bound}; {name}++)"):
                 print_block(function, body)
         case nodes.While(condition, body):
             rounds = rounds_of(stmt) if scope.lanes.dialect == "c++" else None

@@ -1,22 +1,23 @@
 """Decoders that stand in the header, where a compiler sees the object, too, and makes no call: of messages that take a few statements.
 
-It is the first body of the kernel for messages whose lists are empty, as one that has nothing to do where something is wrong with a
-message: it says that it has not read it, and the decoder in the source file begins anew. So all checks come first, and branches that set
-nothing count as something wrong.
+It is the first body of the kernel for messages whose lists are empty, or have few elements where messages have nothing else. It has
+nothing to do where something is wrong with a message: it says that it has not read it, and the decoder in the source file begins anew.
+So all checks come first, and branches that set nothing count as something wrong.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.c.expressions import expression
+from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.positions import after_binding, after_require
 from rosetta_jit.generate.c.scope import Scope
 from rosetta_jit.generate.c.statements import Function, lacks, print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.cpp.checks import fewer
 from rosetta_jit.generate.cpp.empty_lists import lanes_of_empty_lists, of_empty_lists
+from rosetta_jit.generate.cpp.few_elements import lanes_of_few_elements, of_few_elements
+from rosetta_jit.generate.cpp.opened import without_asking
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.reachable import read_names
 from rosetta_jit.generate.roundings import two_roundings
@@ -25,9 +26,6 @@ from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.passes.fold import folded
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import replace
-
-if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
 
 SHARED = "rosetta_jit::detail::"
 """Where the header that all units share has what such decoders call."""
@@ -41,13 +39,13 @@ PARAMETERS = frozenset({"given_object", "bytes", "end"})
 
 def at_once(kernel: Kernel, lanes: Lanes) -> str:
     """The statements of such a decoder, empty where there is none; ``lanes`` say how the kernel reaches the object."""
-    found = _straightened(of_empty_lists(kernel.bodies[0], lanes))
+    found = _reached(kernel, lanes)
     if found is None or two_roundings((kernel,)):
         return ""
-    checks, effects = found
+    checks, effects, lanes = found
     checks = fewer(checks, is_sized=not any(_has_length(lanes, each) for each in effects))
     words = lanes.words() | function_names() | {"data"}
-    scope = Scope(Namespace(words), replace(lanes_of_empty_lists(lanes), shared=SHARED), set(), set(), set())
+    scope = Scope(Namespace(words), replace(lanes, shared=SHARED), set(), set(), set())
     function = Function(scope, kernel.sites, {}, read=read_names((*checks, *effects)))
     function.writer.depth = 2
     many = are_many(checks)
@@ -56,6 +54,17 @@ def at_once(kernel: Kernel, lanes: Lanes) -> str:
     _print_effects(function, effects)
     is_free = scope.parameters <= PARAMETERS and all(map(is_shared, scope.support)) and not scope.tables
     return function.writer.text() if is_free and "given_object" in scope.parameters else ""
+
+
+def _reached(kernel: Kernel, lanes: Lanes) -> tuple[nodes.Block, nodes.Block, Lanes] | None:
+    """What the decoder checks and what it sets, of lists that are empty or have few elements, and how it reaches the object."""
+    body = without_asking(kernel, lanes.opened).bodies[0]
+    ways = (
+        (of_empty_lists(kernel.bodies[0], lanes), lanes_of_empty_lists(lanes)),
+        (of_few_elements(body, lanes), lanes_of_few_elements(lanes)),
+    )
+    found = ((straightened, reached) for each, reached in ways if (straightened := _straightened(each)) is not None)
+    return next(((*parts, reached) for parts, reached in found), None)
 
 
 def is_shared(function: str) -> bool:
@@ -74,6 +83,8 @@ def _straightened(body: nodes.Block) -> tuple[nodes.Block, nodes.Block] | None:
             case nodes.SetField() | nodes.Copy(nodes.Place(), nodes.Wire()) | nodes.Advance():
                 effects.append(stmt)
             case nodes.If(_, (nodes.Copy(nodes.Place(), nodes.Wire()),), ()):
+                effects.append(stmt)
+            case nodes.For() if all(isinstance(each, nodes.Let | nodes.SetField) for each in stmt.body):
                 effects.append(stmt)
             case nodes.If(condition, then, ()) if _only_checks(then):
                 failure = nodes.Failure(0, nodes.Const("i64", 0))
@@ -148,6 +159,11 @@ def _print_effects(function: Function, effects: nodes.Block) -> None:
     before, scope = len(lines), function.scope
     print_block(function, effects)
     lines[before:before] = [
-        f"        {lanes.type(lane)} *{'' if lane in scope.moved else 'const '}{lanes.rows(lane)} = {lanes.member(lane)};"
+        f"        {_rows(lanes, lane)} *{'' if lane in scope.moved else 'const '}{lanes.rows(lane)} = {lanes.member(lane)};"
         for lane in sorted(scope.touched)
     ]
+
+
+def _rows(lanes: Lanes, lane: int) -> str:
+    """The type of rows, which may be elements."""
+    return "auto" if lane in lanes.opened else lanes.type(lane)

@@ -1,8 +1,9 @@
 """Lists whose elements a decoder sets where the object has them, and texts: no rows keep them meanwhile.
 
 A list is *opened* where the decoder knows how many elements it has: the container gets as many, and their fields are set as they are read.
-That is so where every field of an element is a number, an array of these, a text or bytes left in the message, or such a list, and the
-decoder opens a list before it sets its elements, which it never reads. Lists that lie in memory as rows do are copied instead (`lists`).
+That is so where elements have fields, and each of these is a number, an array of these, a text or bytes left in the message, or such a
+list, and the decoder opens a list before it sets its elements, which it never reads. Lists that lie in memory as rows do are copied
+instead (`lists`).
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import wires_of
 from rosetta_jit.model.layout import Number, Row, Slot, Span
 from rosetta_jit.model.types import Array, Bytes, Ref, String, Struct, Type
-from rosetta_jit.startup.dataclass import dataclass, field
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 HOLDER = "std::declval<holder &>()"
 """An object, for types."""
@@ -116,7 +117,7 @@ def _list(walk: Walk, opened: Opened, type_: Type, span: Span, place: _Place) ->
     opened.containers[span.lane] = container
     if isinstance(layout.element, Number):
         return _numbers(walk, opened, resolved, span, place)
-    if resolved.length is not None:
+    if resolved.fixed is not None:
         return False
     if isinstance(walk.unit.schema.resolve(resolved.element), String | Bytes):
         opened.texts.add(span.lane)
@@ -124,10 +125,11 @@ def _list(walk: Walk, opened: Opened, type_: Type, span: Span, place: _Place) ->
         words = {"lane": rows, "index": "$index", "start": "$start", "size": "$size"}
         opened.fields[span.lane, 0] = Straight(walk.text("text of a list", place.spot, **words), text=True)
         return True
-    opened.fields[place.lane, span.offset] = _opening(walk, "open", span, place)
+    opened.fields[place.lane, span.offset] = replace(_opening(walk, "open", span, place), first=walk.text("first", place.spot))
     opened.structs[span.lane] = resolved.element
     element = f"std::declval<rosetta_jit::detail::element_type<decltype({container})> &>()"
-    return _value(walk, opened, resolved.element, layout.element, _Place(Spot(f"{rows}[$index]"), Spot(element), span.lane))
+    place = _Place(Spot(f"{rows}[$index]"), Spot(element), span.lane)
+    return _value(walk, opened, resolved.element, layout.element, place) and any(lane == span.lane for lane, _ in opened.fields)
 
 
 def _opening(walk: Walk, text: str, span: Span, place: _Place) -> Straight:
@@ -139,7 +141,7 @@ def _opening(walk: Walk, text: str, span: Span, place: _Place) -> Straight:
 def _numbers(walk: Walk, opened: Opened, type_: Array, span: Span, place: _Place) -> bool:
     """The same of numbers that an element of a list has; those of the message itself are lanes as they are."""
     rows = walk.lanes.rows(span.lane)
-    if place.lane == 0 or not is_plain(walk, type_, span.lane) or not (type_.length is None or type_.fixed):
+    if place.lane == 0 or not is_plain(walk, type_, span.lane):
         return False
     opened.numbers[span.lane] = f"{walk.lanes.type(span.lane)}, {type_.fixed or 0}"
     opened.fields[place.lane, span.offset] = _opening(walk, "open", span, place)

@@ -11,7 +11,7 @@ from typing import TypeGuard
 
 from rosetta_jit.generate.c.aligned import as_printed
 from rosetta_jit.generate.c.lanes import Straight
-from rosetta_jit.generate.c.positions import difference
+from rosetta_jit.generate.c.positions import bound_in, difference
 from rosetta_jit.generate.c.straight import size_left
 from rosetta_jit.generate.cleared import settled
 from rosetta_jit.generate.reachable import read_names
@@ -26,13 +26,17 @@ from rosetta_jit.kernel.nodes import (
     Copy,
     Expr,
     For,
+    Get,
     HostCall,
+    If,
     Let,
+    Load,
     Place,
     Require,
     Reserve,
     SetField,
     Stmt,
+    Switch,
     Used,
     Var,
     Wire,
@@ -62,10 +66,17 @@ def in_place(kernel: Kernel, fields: Fields) -> Kernel | None:
 def without_asking(kernel: Kernel, lanes: frozenset[int]) -> Kernel:
     """A decoder that asks for no room for lists whose elements are known to be in the message: these are never too many."""
 
-    def kept(block: Block) -> Block:
-        asked = zip(block, (None, *block), strict=False)
-        rest = (stmt for stmt, before in asked if not (isinstance(stmt, Reserve) and stmt.lane in lanes and _is_there(stmt.count, before)))
-        return tuple(with_blocks(stmt, kept) for stmt in rest)
+    def kept(block: Block, sure: int = 0) -> Block:
+        """A block that is done for an element of so many bytes, which are there."""
+        there, found = dict[Expr, int](), list[Stmt]()
+        for stmt in block:
+            bound = bound_in(stmt)
+            there = {count: size for count, size in there.items() if bound.isdisjoint(locals_in(count))} | _made_sure(stmt)
+            if isinstance(stmt, Reserve) and stmt.lane in lanes and (stmt.count in there or _is_within(stmt.count, sure)):
+                continue
+            each = there.get(stmt.count, 0) if isinstance(stmt, For) else sure if isinstance(stmt, If | Switch) else 0
+            found.append(with_blocks(stmt, lambda inner, each=each: kept(inner, each)))
+        return tuple(found)
 
     return with_bodies(kernel, tuple(map(kept, kernel.bodies)))
 
@@ -95,15 +106,20 @@ def _asked(block: Block) -> Iterator[int]:
             yield from (part.lane for expr in expressions_of(stmt) for part in subexpressions(expr) if isinstance(part, Used))
 
 
-def _is_there(count: Expr, before: Stmt | None) -> bool:
-    """Whether a statement has made sure of so many elements in the message."""
-    match before:
-        case Require(_, Binary("mul", each, Const(_, size))):
-            return each == count and isinstance(size, int) and size > 0
-        case Require(_, size):
-            return size == count
+def _made_sure(stmt: Stmt) -> dict[Expr, int]:
+    """How many elements a statement makes sure of in the message, and how many bytes each has."""
+    match stmt:
+        case Require(_, Binary("mul", count, Const(_, int(size)))) if size > 0:
+            return {count: size}
+        case Require(_, count):
+            return {count: 1}
         case _:
-            return False
+            return {}
+
+
+def _is_within(count: Expr, size: int) -> bool:
+    """Whether so many elements may lie in so many bytes."""
+    return isinstance(count, Const) and count.value <= size
 
 
 def _used(stmt: Stmt) -> set[int]:
@@ -113,6 +129,15 @@ def _used(stmt: Stmt) -> set[int]:
     for part in (part for expr in expressions_of(stmt) for part in subexpressions(expr)):
         named += [getattr(part, name, None) for name in ("place", "address")]
     return {each.lane for each in named if isinstance(each, Place)}
+
+
+def _read_from_message(stmt: Stmt, before: Stmt | None) -> Stmt:
+    """A local that is a number which has just been set: it is read where that was, as in LCM the count of a list that follows."""
+    match stmt, before:
+        case Let(_, Get(type_, place)), SetField(same, Load(read) as number) if place == same and type_ == read:
+            return replace(stmt, value=number)
+        case _:
+            return stmt
 
 
 def _set(stmt: Stmt) -> set[int]:
@@ -134,7 +159,7 @@ class _Body:
 
     def block(self, block: Block, opened: dict[int, Expr]) -> Block:
         """A block; ``opened`` are the lists that are open in it, and the first row of each."""
-        rest, found = iter(block), list[Stmt]()
+        rest, found = iter(map(_read_from_message, block, (None, *block))), list[Stmt]()
         for stmt in rest:
             if isinstance(stmt, Copy) and self._is_copied(stmt.target) and isinstance(stmt.source, Wire):
                 found.append(replace(stmt, target=self._placed(stmt.target, opened)))

@@ -262,7 +262,10 @@ class Walk:
         elif recursive:
             self.writer.line(f"collect_{rows}({target}, to, {self.local('at')});")
         else:
+            before = len(self.writer.lines)
             self.value(type_, slot, element, known, Spot(target))
+            for unused in (known, target) if len(self.writer.lines) == before else ():
+                self.writer.line(f"static_cast<void>({unused});")
         self.in_rows -= 1
 
     def _begin_row(self, lane: int, row: str, index: str) -> str:

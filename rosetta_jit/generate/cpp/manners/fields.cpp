@@ -42,7 +42,10 @@ rosetta_jit::detail::rows_of<$row, $count>($at)
 rosetta_jit::detail::sized<$row>($at, $count)
 
 /* == open == */
-$lane = holder->$lane.open($at, $count);
+$lane = rosetta_jit::detail::opened($at, $count);
+
+/* == first == */
+rosetta_jit::detail::data_of($at)
 
 /* == open texts == */
 holder->$lane.open($at, $count);
@@ -60,7 +63,7 @@ rosetta_jit::detail::assign($at, bytes + ($start), $size);
 rosetta_jit::detail::element($at, $index)
 
 /* == begin encode == */
-const auto $first = $at.begin();
+const auto $first = std::begin($at);
 
 /* == element encode == */
 $at[$index]

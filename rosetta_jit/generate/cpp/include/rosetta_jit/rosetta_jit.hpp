@@ -151,11 +151,24 @@ private:
     std::shared_ptr<const rosetta_jit::error> found_;
 };
 
-/* A value or an error, as std::expected of C++23. */
+/* A value or an error, as std::expected of C++23. It is moved, not copied; what it was moved from has a value. */
 template <class Value> class [[nodiscard]] result {
 public:
     result(Value value) : value_(std::move(value)) {}
     result(rosetta_jit::error found) : error_(new rosetta_jit::error(std::move(found))) {}
+    ROSETTA_JIT_INLINE result(result &&other) noexcept : value_(std::move(other.value_)), error_(other.error_) { other.error_ = nullptr; }
+    result &operator=(result &&other) noexcept
+    {
+        std::swap(value_, other.value_);
+        std::swap(error_, other.error_);
+        return *this;
+    }
+    ROSETTA_JIT_INLINE ~result()
+    {
+        if (ROSETTA_JIT_UNLIKELY(error_ != nullptr)) {
+            forget(error_);
+        }
+    }
 
     bool has_value() const noexcept { return error_ == nullptr; }
     explicit operator bool() const noexcept { return has_value(); }
@@ -172,11 +185,10 @@ public:
     const Value &operator*() const { return value_; }
 
 private:
-    struct forget {
-        ROSETTA_JIT_COLD void operator()(const rosetta_jit::error *found) const noexcept { delete found; }
-    };
+    ROSETTA_JIT_COLD static void forget(const rosetta_jit::error *found) noexcept { delete found; }
+
     Value value_{};
-    std::unique_ptr<const rosetta_jit::error, forget> error_;
+    const rosetta_jit::error *error_ = nullptr;
 };
 
 /* What nothing but its success can be said of. */
@@ -276,14 +288,33 @@ template <class Number> Number load_le(const unsigned char *at) noexcept
     return number;
 }
 
+/* Bytes in the other order. */
+#if defined(__GNUC__)
+inline std::uint16_t turned(std::uint16_t bytes) noexcept { return __builtin_bswap16(bytes); }
+inline std::uint32_t turned(std::uint32_t bytes) noexcept { return __builtin_bswap32(bytes); }
+inline std::uint64_t turned(std::uint64_t bytes) noexcept { return __builtin_bswap64(bytes); }
+#else
+template <class Bytes> Bytes turned(Bytes bytes) noexcept
+{
+    Bytes found = 0;
+    for (std::size_t byte = 0; byte < sizeof bytes; byte++) {
+        found = static_cast<Bytes>(found << 8 | (bytes >> 8 * byte & 255u));
+    }
+    return found;
+}
+#endif
+
+template <class Number>
+using bytes_of = std::conditional_t<sizeof(Number) == 2, std::uint16_t, std::conditional_t<sizeof(Number) == 4, std::uint32_t, std::uint64_t>>;
+
 /* One with its high byte first. */
 template <class Number> Number load_be(const unsigned char *at) noexcept
 {
-    unsigned char bytes[sizeof(Number)];
-    for (std::size_t byte = 0; byte < sizeof bytes; byte++) {
-        bytes[byte] = at[sizeof bytes - 1 - byte];
-    }
-    return load_le<Number>(bytes);
+    const bytes_of<Number> bytes = turned(load_le<bytes_of<Number>>(at));
+    Number number;
+    static_assert(sizeof number == sizeof bytes, "numbers have two, four or eight bytes");
+    std::memcpy(&number, &bytes, sizeof number);
+    return number;
 }
 
 inline bool load_bool(const unsigned char *at) noexcept { return *at != 0; }
@@ -310,11 +341,10 @@ inline double load_f64_be(const unsigned char *at) noexcept { return load_be<dou
 template <class Number> void store_le(unsigned char *at, Number number) noexcept { std::memcpy(at, &number, sizeof number); }
 template <class Number> void store_be(unsigned char *at, Number number) noexcept
 {
-    unsigned char bytes[sizeof(Number)];
-    std::memcpy(bytes, &number, sizeof number);
-    for (std::size_t byte = 0; byte < sizeof bytes; byte++) {
-        at[byte] = bytes[sizeof bytes - 1 - byte];
-    }
+    bytes_of<Number> bytes;
+    static_assert(sizeof number == sizeof bytes, "numbers have two, four or eight bytes");
+    std::memcpy(&bytes, &number, sizeof number);
+    store_le(at, turned(bytes));
 }
 
 inline void store_bool(unsigned char *at, bool holds) noexcept { *at = holds ? 1 : 0; }
@@ -824,6 +854,41 @@ inline void copy_flags(void *target, const void *rows, std::int64_t count) noexc
     for (; done < count; done++) {
         to[done] = from[done] != 0 ? 1 : 0;
     }
+}
+
+/* Bools of a message, up to one that is neither 0 nor 1, or some before it: says how many they are. */
+inline std::int64_t read_flags(std::uint8_t *rows, const unsigned char *bytes, std::int64_t count) noexcept
+{
+    const std::uint64_t others = ~UINT64_C(0x0101010101010101);
+    std::uint64_t eight[4];
+    std::int64_t done = 0;
+    for (; count - done >= 32; done += 32) {
+        std::memcpy(eight, bytes + done, 32);
+        if (((eight[0] | eight[1] | eight[2] | eight[3]) & others) != 0) {
+            break;
+        }
+        std::memcpy(rows + done, eight, 32);
+    }
+    if (count >= 4 && count < 8) {
+        std::uint32_t four[2];
+        std::memcpy(&four[0], bytes, 4);
+        std::memcpy(&four[1], bytes + count - 4, 4);
+        if (((four[0] | four[1]) & static_cast<std::uint32_t>(others)) == 0) {
+            std::memcpy(rows, &four[0], 4);
+            std::memcpy(rows + count - 4, &four[1], 4);
+            return count;
+        }
+    }
+    while (count >= 8 && done < count) {
+        const std::int64_t at = std::min(done, count - 8); /* of the last ones some may be set twice */
+        std::memcpy(eight, bytes + at, 8);
+        if ((eight[0] & others) != 0) {
+            break;
+        }
+        std::memcpy(rows + at, eight, 8);
+        done = at + 8;
+    }
+    return done;
 }
 
 /* Writes bools as long as there is room. */
@@ -1533,24 +1598,23 @@ template <class Container> struct open_lane {
     }
 
     bool grow(std::int64_t, std::int64_t) const noexcept { return false; }
+};
 
-    /* Gives a list as many elements as follow in the message. */
-    Element *open(Container &target, std::int64_t count)
-    {
-        if constexpr (std::is_constructible_v<Element, without_values>) {
-            const std::size_t wanted = static_cast<std::size_t>(count);
-            if (wanted > target.size()) {
-                target.reserve(wanted);
-                while (target.size() < wanted) {
-                    target.emplace_back(without_values{});
-                }
+/* Gives a list as many elements as follow in the message. */
+template <class Container> element_type<Container> *opened(Container &target, std::int64_t count)
+{
+    if constexpr (std::is_constructible_v<element_type<Container>, without_values>) {
+        const std::size_t wanted = static_cast<std::size_t>(count);
+        if (wanted > target.size()) {
+            target.reserve(wanted);
+            while (target.size() < wanted) {
+                target.emplace_back(without_values{});
             }
         }
-        resize_to(target, count);
-        rows = data_of(target);
-        return rows;
     }
-};
+    resize_to(target, count);
+    return data_of(target);
+}
 
 /* The same of numbers, of which there may be a fixed count. */
 template <class Container, class Row, std::size_t Fixed> struct number_lane : open_lane<Container> {
