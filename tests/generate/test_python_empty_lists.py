@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import random
 
 import pytest
@@ -52,6 +54,76 @@ def test_rows_have_some_of_their_lists(wishes):
     pieces = [bytes(programs[1](programs[1].holder_type.from_dict({"row": {name: value}}))) for name, value in FIELDS.items()]
     messages += [b"".join(chance.sample(pieces, 4)) for _ in range(8)]
     answers_as_the_library(unit, programs, harmed(messages, 12, "empty"))
+
+
+MANY = " ".join(f"repeated {('string', 'double', 'sint32', 'Leaf')[number % 4]} l{number} = {number};" for number in range(1, 21))
+OF_MANY = f"""
+    message Leaf {{ repeated string texts = 1; }}
+    message Inner {{ {MANY} }}
+    message Row {{
+        {MANY} map<int32, string> names = 30; int32 number = 31; string text = 32; optional bool said = 33; repeated Inner in = 34;
+    }}
+    message Other {{ {MANY} oneof which {{ Inner case = 35; string word = 36; int32 number = 37; }} Inner one = 38; }}
+    message M {{ repeated Row rows = 1; repeated Row row = 2; repeated Other others = 3; }}
+"""
+OF_ROWS = {"l1": [0.5], "l2": [1], "l4": ["ä"], "l20": [""], "l3": [{"texts": ["a"]}], "names": {1: "one"}, "in": [{"l8": ["a"]}, {}]}
+BESIDES = {"number": 7, "text": "ä", "said": True}
+OF_OTHERS = [
+    {},
+    {"word": "ä"},
+    {"number": 0},
+    {"case": {"l1": [0.5]}},
+    {"one": {}},
+    {"l4": ["a"], "number": 1},
+    {"l20": [""], "one": {"l2": [1]}},
+]
+
+
+@pytest.fixture(scope="module", params=[NO_WISHES, Wishes(numpy=True)], ids=["lists", "arrays"])
+def unit(request):
+    return module(type_request("decode", "t.M", protobuf(OF_MANY)), BOTH, request.param)
+
+
+def test_rows_with_many_lists(unit):
+    """Rows that bring none of their lists beside such that do; lists that come without elements; unknown fields; and broken."""
+    given, chance, messages = protobuf(OF_MANY), random.Random("many"), [b"", b"\x0a\x00", b"\x0a\x02\x0a\x00", b"\x0a\x02\x70\x05\x0a\x00"]
+    programs = rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given)
+
+    def row():
+        lists = chance.sample([*OF_ROWS], chance.randrange(3))
+        return {name: value for name, value in (OF_ROWS | BESIDES).items() if name in lists or (name in BESIDES and chance.random() < 0.5)}
+
+    for _ in range(12):
+        values = {name: [row() for _ in range(chance.randrange(4))] for name in ("rows", "row")}
+        values["others"] = chance.sample(OF_OTHERS, chance.randrange(4))
+        messages.append(bytes(programs[1](programs[1].holder_type.from_dict(values))))
+    answers_as_the_library(unit, programs, harmed(messages, 12, "many"))
+
+
+def test_rows_get_their_lists_when_somebody_asks(unit):
+    message = unit.encode(unit.M(rows=[unit.Row(number=7, text="ä"), unit.Row(l4=["a"]), unit.Row(said=False)]))
+    found = unit.decode(message)
+    assert [type(each) is unit.Row for each in found.rows] == [False, True, False]
+    assert (found.rows[0].number, found.rows[0].text, found.rows[2].said) == (7, "ä", False)
+    assert unit.encode(found) == message
+    assert [type(each) is unit.Row for each in found.rows] == [False, True, False]
+    found.rows[0].l4.append("b")
+    found.rows[2].names[1] = "one"
+    assert [each.l4 for each in found.rows] == [["b"], ["a"], []]
+    assert found.rows == [unit.Row(number=7, text="ä", l4=["b"]), unit.Row(l4=["a"]), unit.Row(said=False, names={1: "one"})]
+    assert unit.decode(unit.encode(found)) == found
+    assert pickle.loads(pickle.dumps(unit.decode(message))) == copy.deepcopy(unit.decode(message)) == unit.decode(message)  # noqa: S301 - of ourselves
+    assert repr(unit.decode(message)) == repr(copy.copy(unit.decode(message)))
+
+
+def test_rows_without_lists_may_be_anywhere():
+    """An object of a row is what any other one of its class is, wherever a program puts it."""
+    body = OF_MANY.replace("message M {", "message M { Row one = 6; map<int32, Row> named = 7;")
+    unit = module(type_request("decode", "t.M", protobuf(body)))
+    (row,) = unit.decode(b"\x0a\x00").rows
+    assert unit.encode(unit.M(one=row)) == b"\x32\x00"
+    (row,) = unit.decode(b"\x0a\x00").rows
+    assert unit.decode(unit.encode(unit.M(named={1: row}))) == unit.M(named={1: unit.Row()})
 
 
 def test_rows_say_nothing_of_lists_that_stay_empty():

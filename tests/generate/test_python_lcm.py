@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from typing import Any
 
+import numpy as np
 import pytest
 
 import rosetta_jit as rj
@@ -134,3 +135,15 @@ def test_arrays_are_called_otherwise_than_what_generated_source_has_beside_other
     more = {"v": -2, name: [[1.0, 2.0], [3.0, 4.0]]}
     element = {"n": 1, "a": "x", name: [1.5], "c": -3, "more": [more]}
     compare(given, {"n": 2, "u": [element, element]})
+
+
+def test_an_array_without_numbers_is_a_new_one():
+    given = lcm("struct m { int32_t n; double a[n]; int16_t b[n]; byte c[n]; }")
+    compare(given, {"n": 0}, {"n": 1, "a": [0.5], "b": [-1], "c": b"x"})
+    unit = module(type_request("decode", "t.m", given), BOTH, Wishes(numpy=True))
+    first, second = (unit.decode(unit.encode(unit.m())) for _ in range(2))
+    for one, other, type_ in ((first.a, second.a, np.float64), (first.b, second.b, np.int16)):
+        assert one is not other
+        assert (one.dtype, one.shape, one.flags.writeable, one.flags.owndata) == (type_, (0,), True, True)
+        one.resize(2, refcheck=False)
+    assert second == unit.m()

@@ -9,7 +9,9 @@ from rosetta_jit.generate.python.borrowed import borrowed
 from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.generate.python.functions import is_flat, print_kernel
 from rosetta_jit.generate.python.late_lists import class_without_lists
+from rosetta_jit.generate.python.late_rows import late_rows
 from rosetta_jit.generate.python.making import Make, arrays_of
+from rosetta_jit.generate.python.making_late_rows import MakeLate
 from rosetta_jit.generate.python.printed import Attempt, Objects
 from rosetta_jit.generate.python.scope import Scope
 from rosetta_jit.generate.python.sparse import OBJECT, attributes_of, begun, settings
@@ -32,7 +34,7 @@ class _Decoder:
     beside: dict[str, str] | None
 
     def make(self, scope: Scope, beside: dict[str, str] | None = None) -> Make:
-        return Make(self.unit, scope, self.names, taken_lanes(self.kernel), beside)
+        return MakeLate(self.unit, scope, self.names, taken_lanes(self.kernel), beside)
 
     def made(self, scope: Scope, _: str) -> str:
         """The object of the message."""
@@ -74,7 +76,7 @@ class _Decoder:
         blobs = frozenset(lane for lane, type_ in in_all.items() if isinstance(self.unit.schema.resolve(type_), Bytes))
         lists = frozenset(arrays_of(self.unit)), frozenset(in_all), blobs
         made = self.made, self.attributes, self.begun, self.settings, self.without_lists, self.row, self.inner, self.inner_names
-        return Objects(*made, self.unit.layout, *lists, numpy, frozenset(self.names.values()))
+        return Objects(*made, self.unit.layout, *lists, numpy, frozenset(self.names.values()), late_rows(self.unit))
 
 
 def taken_lanes(kernel: Kernel) -> frozenset[int]:

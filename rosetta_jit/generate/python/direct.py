@@ -6,8 +6,18 @@ from rosetta_jit.generate.python.descents import Visit
 from rosetta_jit.generate.python.late_fields import LateField
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
-from rosetta_jit.model.layout import Slot
+from rosetta_jit.model.layout import Row, Slot, Span
+from rosetta_jit.model.types import Struct
 from rosetta_jit.startup.dataclass import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class LateRow:
+    """The type of the rows of a lane that has many lists, which an object of such a row gets when somebody asks for one."""
+
+    struct: Struct
+    slot: Row
+    lists: tuple[Span, ...]
 
 
 @dataclass(slots=True)
@@ -21,7 +31,8 @@ class Direct:
     ``gathered`` are lanes of texts and of bytes, with the place and size of one in the message: it is appended where a statement sets where
     it starts. ``listed`` are the lanes of texts that are appended where they are checked.
     ``visits`` are the calls of `Descents` by name, whose rows become lists; of messages within others ``left`` has the lanes
-    that all of them share, by number: a list says how many more rows each may have.
+    that all of them share, by number: a list says how many more rows each may have. ``late_rows`` are the rows, by lane, that say whether
+    they have any list.
     """
 
     whole: set[int] = field(default_factory=set[int])
@@ -47,6 +58,7 @@ class Direct:
         default_factory=dict[tuple[int, int], "tuple[nodes.Expr, nodes.Expr]"]
     )
     fields: tuple[LateField, ...] = ()
+    late_rows: dict[int, LateRow] = field(default_factory=dict[int, LateRow])
 
     def read(self) -> set[str]:
         """The locals that say where texts and bytes are, which no statement may say any more."""

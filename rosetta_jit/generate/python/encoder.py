@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Writer
@@ -11,7 +11,6 @@ from rosetta_jit.generate.python.bools import with_stored_bools
 from rosetta_jit.generate.python.counted import counted
 from rosetta_jit.generate.python.descents import Descents, NotNested, descended
 from rosetta_jit.generate.python.functions import words_of
-from rosetta_jit.generate.python.late_lists import lists_of
 from rosetta_jit.generate.python.local_names import Locals
 from rosetta_jit.generate.python.object_rows import ObjectScope
 from rosetta_jit.generate.python.parts import Parts
@@ -47,8 +46,8 @@ class InParts:
     from_call: frozenset[str]
 
 
-def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], without_lists: str = "") -> InParts:
-    """The encoder of a unit, whose object may be of a class ``without_lists``; raises NotInParts where it cannot be printed so."""
+def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], lists: Mapping[tuple[int, int], str]) -> InParts:
+    """The encoder of a unit; raises NotInParts where it cannot be printed so. ``lists`` are what `Parts` knows of objects without lists."""
     if len(kernel.bodies) != 1:
         raise NotInParts
     loads, written = set[str](), dict(KNOWN)
@@ -62,7 +61,7 @@ def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str,
     parts = _parts(unit, kernel, scope, body, written, depth=2)
     parts.has_long = bool(rows)
     parts.visits = {} if descents is None else descents.visits
-    parts.lists, parts.without_lists = lists_of(unit) if without_lists else (), without_lists
+    parts.lists = lists
     parts.binder.bind(0, index(0), "target", Ref(unit.type), unit.layout.root)
     parts.block(parts.body)
     called, pending, inner = set[str](), set(parts.called), dict[int, str]()

@@ -20,6 +20,7 @@ from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.groups import not_negative
 from rosetta_jit.generate.python.late_fields import late_fields
 from rosetta_jit.generate.python.late_lists import said_to_come
+from rosetta_jit.generate.python.late_rows import with_late_rows
 from rosetta_jit.generate.python.local_names import Locals
 from rosetta_jit.generate.python.mentions import blocks_within
 from rosetta_jit.generate.python.printed import Attempt, Function, Objects
@@ -156,6 +157,7 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
         body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, objects.blobs, few=0 if scope.numpy else FEW)
         known = {*scope.direct.whole, *scope.direct.appended, *scope.direct.elements, *scope.direct.rows}
         body = without_empty_spans(ends_first(body), kernel.strides, known)
+        body, scope.direct.late_rows = with_late_rows(body, kernel, objects.layout, objects.late_rows)
         body, scope.direct.fields = late_fields(body, kernel, objects.layout, known) if descents is None else (body, ())
     behind = frozenset[str]()
     if descents is not None:

@@ -15,7 +15,7 @@ from rosetta_jit.generate.python.collecting import Collect
 from rosetta_jit.generate.python.decoder import print_decoder, taken_lanes
 from rosetta_jit.generate.python.encoder import encoder_in_parts
 from rosetta_jit.generate.python.functions import Attempt, beside_lanes, is_flat, print_kernel
-from rosetta_jit.generate.python.late_lists import name_without_lists
+from rosetta_jit.generate.python.late_rows import Late, late_objects
 from rosetta_jit.generate.python.making import Make
 from rosetta_jit.generate.python.positions import NotInParts
 from rosetta_jit.generate.python.printed import Objects
@@ -61,7 +61,7 @@ class _Module:
         self.lanes = named_lanes(unit, reserved | beside_lanes(named_lanes(unit, reserved)(())))
         self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.loads, self.structs = set[str](), dict[str, str]()
-        self.root, self.guesses, self.without_lists = self.names[unit.type], False, ""
+        self.root, self.guesses, self.late = self.names[unit.type], False, Late()
 
     def text(self) -> str:
         """All of it."""
@@ -75,7 +75,7 @@ class _Module:
             decimals = (RUNTIME / "decimals.py").read_text("utf-8")
             runtime += f"\n\n\n{decimals[decimals.index('def ') :].rstrip()}"
         for use, (file, begin) in MORE.items():
-            if any(use in part for part in parts):
+            if any(use in part for part in (*parts, *self.late.lines)):
                 more = (RUNTIME / file).read_text("utf-8")
                 if "BytesIO" in more:
                     runtime = runtime.replace("from itertools", "from io import BytesIO\nfrom itertools", 1)
@@ -102,8 +102,10 @@ class _Module:
         lines: list[str] = []
         for name in sorted(self.loads):
             _, verb, code, *order = name.split("_")
-            if verb in ("dtype", "type"):
+            if verb == "dtype":
                 lines.append(f'{name} = np.dtype("{">" if order else "<"}{code}")')
+            elif verb == "none":
+                lines.append(f'{name} = np.empty(0, "<{code}").copy')
             elif verb == "EMPTY":
                 lines.append(f'{name} = memoryview(b"").cast("{code}")')
             else:
@@ -114,8 +116,7 @@ class _Module:
             lines += ["_room = [256]", '"""The room that messages took."""']
         if any(asks_host([kernel]) for kernel in self.unit.kernels.values()):
             lines.append("_numbers = _count()")
-        if self.without_lists:
-            lines.append(f"{self.without_lists} = _without_lists({self.root})")
+        lines += self.late.lines
         if self.unit.state:
             words = "".join(f"    {word},  # {name}\n" for name, word in self.unit.state)
             lines += ["# What is kept from one message to the next: integers as they are, floats by their bits.", f"_INITIAL = (\n{words})"]
@@ -149,7 +150,7 @@ class _Module:
 
     def _decoder(self) -> str:
         text, attempts = print_decoder(self.unit, self.names, self.lanes, self.loads, self.paths)
-        self.without_lists = name_without_lists(self.root) if "_set_class(" in text else ""
+        self.late = late_objects(self.unit, self.names, text)
         return "\n\n".join([self._sites("borrow"), text, f"\n{self._decode(attempts)}"])
 
     def _decoder_of(self, wire: str, role: Role) -> str:
@@ -210,7 +211,7 @@ class _Module:
 
     def _encoder_in_parts(self) -> str:
         kernel = self.unit.kernels["encode"]
-        made = encoder_in_parts(self.unit, kernel, self._lanes(kernel), self.paths, self.without_lists)
+        made = encoder_in_parts(self.unit, kernel, self._lanes(kernel), self.paths, self.late.lists)
         self.loads |= made.loads
         writer = Writer()
         writer.line(f"def encode(target: {self.root}) -> bytes:")

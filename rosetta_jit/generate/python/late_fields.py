@@ -16,10 +16,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 
-from rosetta_jit.generate.python.mentions import blocks_within, counted_lanes, places_of
+from rosetta_jit.generate.python.mentions import blocks_within, lanes_of, places_of
 from rosetta_jit.generate.python.slots import lanes_within, offsets_within
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.nodes import Assign, Binary, Block, Const, Expr, Let, Local, Place, SetField, Stmt, Switch, Used, While
+from rosetta_jit.kernel.nodes import Assign, Binary, Block, Const, Expr, Let, Local, Place, SetField, Stmt, Switch, Used
 from rosetta_jit.kernel.passes.fold import folded
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
 from rosetta_jit.kernel.terms import index
@@ -55,7 +55,7 @@ def late_fields(block: Block, kernel: Kernel, layout: Layout, known: Collection[
     """A decoder's body that neither begins nor ends its late fields, and these; those of ``known`` lanes are objects at once."""
     if kernel.kept or not isinstance(layout.root, Row):
         return block, ()
-    taken = {*known, *(lane for routine in kernel.routines for stmt, _ in statements(routine.body) for lane in _lanes(stmt))}
+    taken = {*known, *(lane for routine in kernel.routines for stmt, _ in statements(routine.body) for lane in lanes_of(stmt))}
     wanted = [each for each in _candidates(layout.root, layout) if not each.lanes & taken]
     firsts = {stmt.value.lane: stmt.name for stmt in block if isinstance(stmt, Let) and isinstance(stmt.value, Used)}
     cases = _Cases(wanted)
@@ -87,12 +87,6 @@ def _candidates(root: Row, layout: Layout) -> Iterator[LateField]:
             yield LateField(each.name, each.slot, frozenset(lanes_within(each.slot, layout)), frozenset(offsets_within(each.slot)))
 
 
-def _lanes(stmt: Stmt) -> set[int]:
-    """The lanes that a statement, without the blocks within it, has to do with."""
-    own = replace(stmt, invariant=()) if isinstance(stmt, While) else stmt
-    return counted_lanes(own) | {place.lane for place in places_of(own)}
-
-
 class _Cases:
     """Finds the cases, of the outermost switch around them, in which statements have to do with fields.
 
@@ -108,7 +102,7 @@ class _Cases:
     def block(self, block: Block, case: int) -> None:
         """Look at the statements of a block, which are those of a case."""
         for stmt in block:
-            for lane in _lanes(stmt) & {*self.by_lane}:
+            for lane in lanes_of(stmt) & {*self.by_lane}:
                 self.found[self.by_lane[lane]].add(case)
             for offset in {place.offset for place in places_of(stmt) if place.lane == 0 and place != Place(0, index(0))}:
                 if offset in self.by_offset:

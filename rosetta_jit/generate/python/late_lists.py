@@ -10,17 +10,17 @@ else:                                                       if len(target.number
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from itertools import groupby
 
+from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.python.asked import asked_count
-from rosetta_jit.generate.python.classes import numpy_scalar
+from rosetta_jit.generate.python.classes import TAKEN, member_names, numpy_scalar
+from rosetta_jit.generate.python.direct import LateRow
 from rosetta_jit.generate.python.late_fields import UNKNOWN
 from rosetta_jit.generate.python.scope import Scope
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.nodes import Block, If, Place, Stmt, Var
-from rosetta_jit.kernel.terms import index
-from rosetta_jit.model.layout import Row, Span
-from rosetta_jit.model.types import Array, Map, Struct
+from rosetta_jit.model.layout import Member, Row, Span
+from rosetta_jit.model.types import Array, Field, Map, Struct
 
 PRICE_OF_ARRAY = 3
 """How many lists take as much time to make as an array of numpy."""
@@ -28,12 +28,17 @@ LEAST = 24
 """Lists of a type from which on it takes less time to make none of them."""
 
 
-def lists_of(unit: Unit) -> tuple[Span, ...]:
+def lists_of_message(unit: Unit) -> tuple[Span, ...]:
     """The lists and maps of the message, if it has many, and nothing else that is made for each object."""
     root, slot = unit.schema.types[unit.type], unit.layout.root
     assert isinstance(root, Struct)
+    return lists_of(root, slot, unit, LEAST) if isinstance(slot, Row) else ()
+
+
+def lists_of(struct: Struct, slot: Row, unit: Unit, least: int) -> tuple[Span, ...]:
+    """The lists and maps of a struct, if it has as many as ``least``, and nothing else that is made for each object."""
     found, price = list[Span](), 0
-    for each, member in zip(root.fields, slot.members if isinstance(slot, Row) else (), strict=isinstance(slot, Row)):
+    for each, member in zip(struct.fields, slot.members, strict=True):
         match each.type, member.slot:
             case Array(element, length), Span() as span if not isinstance(length, int):
                 found.append(span)
@@ -45,12 +50,12 @@ def lists_of(unit: Unit) -> tuple[Span, ...]:
                 return ()
             case _:
                 pass
-    return tuple(found) if price >= LEAST else ()
+    return tuple(found) if price >= least else ()
 
 
 def class_without_lists(unit: Unit, scope: Scope, identifier: str) -> str:
     """The class of objects of which no list has come; nothing where their lists are made whatever comes."""
-    lists = lists_of(unit)
+    lists = lists_of_message(unit)
     is_late = bool(lists) and scope.attributes is not None and all(scope.direct.late_at(each) is not None for each in lists)
     return name_without_lists(identifier) if is_late else ""
 
@@ -67,22 +72,49 @@ def said_to_come(scope: Scope, number: int) -> list[str]:
     return [scope.has_field(late.name), *([scope.any_lists()] if scope.without_lists and is_list else [])]
 
 
-def runs_of_lists(block: Block, lists: Collection[Span], read: Collection[str]) -> Iterator[tuple[bool, Block]]:
-    """The statements of a block, in runs: those that do nothing where a message has none of some lists, and others.
+def maker_without_lists(identifier: str) -> str:
+    """What the function is called that makes an object of a class, of which no list has come."""
+    return f"_new_{identifier}"
 
-    ``read`` are the locals that are printed.
+
+def print_maker(late: LateRow, identifier: str) -> str:
+    """The function that makes the object of a row, of which it gets all but the lists."""
+    scope = Namespace(TAKEN | {identifier})
+    names = [name for name, *_ in fields_besides(late)]
+    names += ["unknown_fields"] if late.slot.unknown is not None else []
+    return "\n".join(
+        [
+            f"def {maker_without_lists(identifier)}({', '.join(map(scope.identifier, names))}):",
+            f"    made = _new({identifier})",
+            *(f"    made.{name} = {scope.identifier(name)}" for name in names),
+            f"    _set_class(made, {name_without_lists(identifier)})",
+            "    return made",
+        ]
+    )
+
+
+def fields_besides(late: LateRow) -> Iterator[tuple[str, Field, Member]]:
+    """The fields of rows that are no lists, by their attributes."""
+    rows = zip(member_names(late.struct), late.struct.fields, late.slot.members, strict=True)
+    yield from (each for each in rows if each[2].slot not in late.lists)
+
+
+def runs_of_lists(block: Block, lists: Collection[tuple[int, int]], read: Collection[str]) -> Iterator[tuple[Place | None, Block]]:
+    """The statements of a block, in runs: those that do nothing where a row has none of some lists, with that row, and others.
+
+    ``lists`` are the fields for their numbers of elements, by lane and offset, ``read`` the locals that are printed.
     """
-    places = {Place(0, index(0), each.offset + 8) for each in lists}
-
-    def is_of_lists(stmt: Stmt) -> bool:
+    row: Place | None = None
+    runs: list[tuple[Place | None, list[Stmt]]] = []
+    for stmt in block:
         match stmt:
-            case If(condition, _, ()):
-                return asked_count(condition) in places
-            case Var(name, _):
-                return name not in read
+            case If(condition, _, ()) if (count := asked_count(condition)) and (count.lane, count.offset) in lists:
+                row = Place(count.lane, count.row)
+            case Var(name, _) if name not in read:
+                pass
             case _:
-                return False
-
-    for are_of_lists, run in groupby(block, is_of_lists):
-        stmts = tuple(run)
-        yield are_of_lists and any(isinstance(each, If) for each in stmts), stmts
+                row = None
+        if not runs or runs[-1][0] != row:
+            runs.append((row, []))
+        runs[-1][1].append(stmt)
+    yield from ((row, tuple(run)) for row, run in runs)

@@ -60,14 +60,14 @@ class Make:
 
     def linked(self, type_: Type, slot: Span, lane: int, row: str, instead: str) -> str:
         """A message of a type that contains itself; ``instead`` where it has no row: as the value of a map's entry that gives none."""
-        return f"{self.row(type_, slot.lane, self._start(slot, lane, row))} if {self._count(slot, lane, row)} else {instead}"
+        return f"{self.row(type_, slot.lane, self.start_of(slot, lane, row))} if {self.count_of(slot, lane, row)} else {instead}"
 
-    def _start(self, slot: Span, lane: int, row: str) -> str:
+    def start_of(self, slot: Span, lane: int, row: str) -> str:
         if self.scope.direct.late_at(slot) is not None:
             return "0"
         return self.scope.field(lane, row, slot.offset, "i64")
 
-    def _count(self, slot: Span, lane: int, row: str) -> str:
+    def count_of(self, slot: Span, lane: int, row: str) -> str:
         if self.scope.direct.late_at(slot) is not None:
             return self.scope.used(slot.lane)
         return self.scope.field(lane, row, slot.offset + 8, "i64")
@@ -80,13 +80,13 @@ class Make:
         known = {*direct.whole, *direct.appended, *direct.elements, *direct.rows}
         places = {*direct.pieces, *direct.texts}
         is_known = slot.lane in known or (0, slot.offset) in places or direct.visit_at(0, slot.offset) is not None
-        return "" if is_known else self._count(slot, 0, "0")
+        return "" if is_known else self.count_of(slot, 0, "0")
 
     def unknown(self, slot: Span, lane: int, row: str) -> str:
         """The fields that the schema does not know."""
-        late, count = self.scope.direct.late_at(slot), self._count(slot, lane, row)
+        late, count = self.scope.direct.late_at(slot), self.count_of(slot, lane, row)
         there = count if late is None else self.scope.has_field(late.name)
-        return f'{self._text("_bytes", slot, self._start(slot, lane, row), count)} if {there} else b""'
+        return f'{self._text("_bytes", slot, self.start_of(slot, lane, row), count)} if {there} else b""'
 
     def first(self, each: Field) -> str:
         """The value of a field that nothing has set."""
@@ -143,7 +143,7 @@ class Make:
         known = self._direct(type_, slot, lane, row)
         if known is not None:
             return known
-        start, count = self._start(slot, lane, row), self._count(slot, lane, row)
+        start, count = self.start_of(slot, lane, row), self.count_of(slot, lane, row)
         if slot.lane in self.scope.direct.gathered:
             elements = f"{self.scope.lanes.rows(slot.lane)}[{start} : {start} + {count}]"
         elif lane == 0 and self.functions is not None:
@@ -158,10 +158,13 @@ class Make:
     def _by_function(self, functions: dict[str, str], type_: String | Bytes | Array | Map, slot: Span, start: str, count: str) -> str:
         """A sequence of the message, by a function where that takes a comprehension."""
         inner = replace(self.scope, views=set[tuple[int, str]]())
-        text = replace(self, scope=inner, functions=None).elements(type_, slot, 0, start, count)
-        self.scope.views |= inner.views
+        make = replace(self, scope=inner, functions=None)
+        text = make.elements(type_, slot, 0, start, count)
         if " for " not in text:
+            self.scope.views |= inner.views
             return text
+        text = make.one_by_one(type_, slot.lane, count) or f"    return {text}\n"
+        self.scope.views |= inner.views
         lanes, direct = lanes_within(slot, self.unit.layout), self.scope.direct
         needs = {view_name(self.scope.lanes, *view) for view in inner.views}
         needs |= {self.scope.lanes.rows(each) for each in lanes & direct.gathered.keys()}
@@ -170,7 +173,7 @@ class Make:
         arguments = ", ".join([*(["data"] if re.search(r"\bdata\b", text) else []), *sorted(needs)])
         own = f"_made_{self.scope.lanes.rows(slot.lane)}"
         own = own if own not in functions.values() else f"{own}_{len(functions)}"
-        name = functions.setdefault(f"({arguments}):\n    return {text}\n", own)
+        name = functions.setdefault(f"({arguments}):\n{text}", own)
         return f"{name}({arguments})"
 
     def elements(self, type_: String | Bytes | Array | Map, slot: Span, lane: int, start: str, count: str) -> str:
@@ -219,17 +222,22 @@ class Make:
         """The text of each element by the name of its index, in a comprehension."""
         self.depth += 1
         index = f"i_{self.depth}"
-        fields = self.scope.unpacked[lane, index] = dict[int, str]()
-        found = text(index)
-        del self.scope.unpacked[lane, index]
-        if (codes := row_codes(fields, self.scope.lanes.stride(lane))) and not re.search(rf"\b{index}\b", found):
-            names = ", ".join(self.scope.own(lane, offset, fields[offset]) for offset in sorted(fields))
+        found, names, codes = self.unpacked(text, lane, index)
+        if codes and not re.search(rf"\b{index}\b", found):
             rows = f"{self.scope.view(lane, '')}[{_rows(start, count, self.scope.lanes.stride(lane))}]"
             self.depth -= 1
             return f'{found} for {names} in _unpack_each("{codes}", {rows})'
         found = f"{text(index)} for {index} in range({count if start == '0' else f'{start}, {start} + {count}'})"
         self.depth -= 1
         return found
+
+    def unpacked(self, text: Callable[[str], str], lane: int, index: str) -> tuple[str, str, str]:
+        """The text of an element whose numbers are locals, these in their order, and their codes: none if they are not read by one call."""
+        fields = self.scope.unpacked[lane, index] = dict[int, str]()
+        found = text(index)
+        del self.scope.unpacked[lane, index]
+        names = ", ".join(self.scope.own(lane, offset, fields[offset]) for offset in sorted(fields))
+        return found, names, row_codes(fields, self.scope.lanes.stride(lane))
 
     def _numbers(self, numbers: str, scalar: str, *, is_few: bool = False) -> str:
         """An array of a list, or of a view of memory; numpy sees by itself what ``is_few`` floats are."""
@@ -254,7 +262,7 @@ class Make:
             rows = self.scope.lanes.rows(slot.lane)
             return self._numbers(rows, element.scalar) if isinstance(element, Number) else rows
         if (lane, slot.offset) in known.placed:
-            return f'{self.scope.placed(lane, slot.offset)}.get({self._start(slot, lane, row)}, "")'
+            return f'{self.scope.placed(lane, slot.offset)}.get({self.start_of(slot, lane, row)}, "")'
         if slot.lane in known.rows:
             return f"[{', '.join(self.scope.element(slot.lane, number) for number in range(len(known.rows[slot.lane])))}]"
         if slot.lane in known.elements and isinstance(element, Number):
@@ -279,6 +287,10 @@ class Make:
         if self.unit.layout.lanes[lane].links is not None:
             return f"made_{self.scope.lanes.rows(lane)}({index})"
         return self.value(type_, self.unit.layout.lanes[lane].element, lane, index)
+
+    def one_by_one(self, type_: String | Bytes | Array | Map, lane: int, count: str) -> str:  # noqa: ARG002 - of others
+        """The body of a function that makes the first rows of a lane in a loop; nothing where a comprehension does."""
+        return ""
 
 
 def row_codes(fields: Mapping[int, str], stride: int) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
+from rosetta_jit.startup.dataclass import replace
 
 
 def places_of(stmt: nodes.Stmt) -> Iterator[nodes.Place]:
@@ -65,6 +66,12 @@ def counted_lanes(stmt: nodes.Stmt) -> set[int]:
     found = {stmt.lane} if isinstance(stmt, nodes.Reserve | nodes.Advance) else set[int]()
     parts = (part for expr in expressions_of(stmt) for part in subexpressions(expr))
     return found | {part.lane for part in parts if isinstance(part, nodes.Used)}
+
+
+def lanes_of(stmt: nodes.Stmt) -> set[int]:
+    """The lanes that a statement, without the blocks within it, has to do with."""
+    own = replace(stmt, invariant=()) if isinstance(stmt, nodes.While) else stmt
+    return counted_lanes(own) | {place.lane for place in places_of(own)}
 
 
 def reads_behind(block: nodes.Block, readers: set[int], row: nodes.Place) -> bool:

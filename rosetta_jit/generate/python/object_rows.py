@@ -73,7 +73,7 @@ class ObjectScope(Scope):
     or number of it. ``messages`` are the locals that hold messages of types that contain themselves, by lane and row, ``linked`` those
     which are fields, by lane. ``keeps_long``: long texts stay what they are until all parts are joined. ``integers`` are the
     lanes of arrays whose elements are known to be integers that fit; ``asked`` are sequences by the
-    fields that say how many elements they have.
+    fields that say how many elements they have; ``holders`` are the locals that hold the objects of rows.
     """
 
     objects: dict[tuple[int, Expr], dict[int, str]] = field(default_factory=dict[tuple[int, "Expr"], dict[int, str]])
@@ -88,6 +88,7 @@ class ObjectScope(Scope):
     keeps_long: bool = False
     integers: set[int] = field(default_factory=set[int])
     asked: dict[Place, Asked] = field(default_factory=dict[Place, "Asked"])
+    holders: dict[tuple[int, Expr], str] = field(default_factory=dict[tuple[int, "Expr"], str])
 
     def place(self, place: Place, scalar: str, row: Callable[[], str]) -> str:  # noqa: ARG002 - of a scope
         """A scalar of a row of an object."""
@@ -194,6 +195,7 @@ class Binder:
         """The fields of a row that anything reads, from an object."""
         found: dict[int, str] = {}
         self.row = row
+        self.scope.holders |= {(lane, row): at} if at.isidentifier() else {}
         self.value(lane, at, type_, slot, found)
         self.scope.objects[lane, row] = found
 

@@ -30,7 +30,7 @@ from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import expressions_of, statements
-from rosetta_jit.model.layout import Number, Span
+from rosetta_jit.model.layout import Number
 
 
 class Parts(Loops):
@@ -38,7 +38,8 @@ class Parts(Loops):
 
     ``routines`` are the functions that give the bytes which routines write, ``called`` those of them that are. ``lengths`` are the locals
     of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has: ``tested`` are
-    those of them of which nothing but single bits is asked for. ``lists`` are those that an object of a class ``without_lists`` has not.
+    those of them of which nothing but single bits is asked for. ``lists`` are the fields for the numbers of elements of lists that an
+    object has not, by lane and offset, if it is of the class that they name.
     """
 
     def __init__(self, unit: Unit, function: Function, scope: ObjectScope, body: nodes.Block, routines: Mapping[str, str]) -> None:
@@ -51,16 +52,17 @@ class Parts(Loops):
         self.lengths, self.words = set[str](), dict[str, nodes.Place]()
         self.reads = reads_of(body)
         self.binder.late = taken_late(body)
-        self.lists, self.without_lists = tuple[Span, ...](), ""
+        self.lists: Mapping[tuple[int, int], str] = {}
 
     # --- statements ------------------------------------------------------------------------------------------------------------------
 
     def block(self, block: nodes.Block) -> None:
         stmts = asked_first(block, self.reads, self.scope.is_number)
-        for are_of_lists, run in runs_of_lists(tuple(stmts), self.lists, self.function.read):
-            if are_of_lists:
+        for row, run in runs_of_lists(tuple(stmts), self.lists, self.function.read):
+            if row is not None and (holder := self.scope.holders.get((row.lane, row.row))) is not None:
                 self.flush()
-                with self.function.writer.indented(f"if type(target) is not {self.without_lists}:"):
+                without_lists = next(name for (lane, _), name in self.lists.items() if lane == row.lane)
+                with self.function.writer.indented(f"if type({holder}) is not {without_lists}:"):
                     self._statements(run)
             else:
                 self._statements(run)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.python.direct import Direct
+from rosetta_jit.generate.python.direct import Direct, LateRow
 from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.scope import Scope
 from rosetta_jit.kernel import ir, nodes
@@ -41,7 +41,7 @@ class Objects:
     """How a function comes to objects: ``result`` is what a return of success gives at a position.
 
     Where a body sets ``attributes`` of the object (`sparse`), ``begun`` makes it, and ``settings`` are the lines before a return;
-    it is of a class ``without_lists`` where none has come, if there is one.
+    it is of a class ``without_lists`` where none has come, if there is one. ``late_rows`` are the lanes whose rows may be so, too.
 
     Of decoders ``row`` is the object of a lane's row, ``inner`` are the lines of functions for rows that contain rows of their own type,
     ``inner_names`` what these are called: they refer to themselves, and to all rows, which would stay in memory for a while.
@@ -63,6 +63,7 @@ class Objects:
     blobs: frozenset[int] = frozenset()
     numpy: bool = False
     classes: frozenset[str] = frozenset()
+    late_rows: Mapping[int, LateRow] = field(default_factory=dict[int, LateRow])
 
 
 @dataclass(slots=True)

@@ -42,7 +42,8 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
         count = Const("i64", int(size.value) // stride) if isinstance(size, Const) else _divided(size, stride)
         dtype, number = scope.dtype(slot.scalar, order), bare(expression(scope, count))
         if order == ">" and stride > 1:
-            return f"_numbers_in(data, {dtype}, {number}, {begin}).astype({scope.dtype(slot.scalar)})"
+            turned = f"_numbers_in(data, {dtype}, {number}, {begin}).astype({scope.dtype(slot.scalar)})"
+            return turned if isinstance(count, Const) else f"{turned} if {number} else {scope.no_numbers(slot.scalar)}"
         if slot.scalar == "bool":
             return f"_numbers_in(data, {dtype}, {number}, {begin}) != 0"
         scope.from_call.add("copy")

@@ -115,9 +115,9 @@ class Scope:
 
     def no_numbers(self, scalar: str) -> str:
         """An array of numpy without elements."""
-        name = f"_type_{'b1' if scalar == 'bool' else NUMPY[scalar][1]}"
+        name = f"_none_{'b1' if scalar == 'bool' else NUMPY[scalar][1]}"
         self.loads.add(name)
-        return f"_empty(0, {name})"
+        return f"{name}()"
 
     def place(self, place: nodes.Place, scalar: str, row: Callable[[], str]) -> str:
         """A scalar at a place of a kernel; ``row`` is the text of its row."""

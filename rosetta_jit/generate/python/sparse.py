@@ -17,7 +17,7 @@ from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.python.classes import member_names
 from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.generate.python.late_fields import says_presence
-from rosetta_jit.generate.python.late_lists import lists_of
+from rosetta_jit.generate.python.late_lists import lists_of_message
 from rosetta_jit.generate.python.making import Make
 from rosetta_jit.generate.python.mentions import blocks_within
 from rosetta_jit.generate.unit import Unit
@@ -113,7 +113,7 @@ def settings(make: Make) -> Iterator[str]:
     """The lines that set the other fields of the object, which is made."""
     unit, slot, lists = make.unit, make.unit.layout.root, list[str]()
     assert isinstance(slot, Row)
-    late = lists_of(unit) if make.scope.without_lists else ()
+    late = lists_of_message(unit) if make.scope.without_lists else ()
     for field, member, name in _fields(make):
         if _is_attribute(member, make):
             continue

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-_Array, _empty, _numbers_in = np.ndarray, np.empty, np.frombuffer
+_Array, _numbers_in = np.ndarray, np.frombuffer
 _PLAIN = frozenset(map(np.dtype, "?bBhHiIlLqQfd"))
 """The types of arrays of numbers as this machine has them."""
 

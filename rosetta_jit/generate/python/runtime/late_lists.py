@@ -4,8 +4,10 @@ import dataclasses as _dataclasses
 import threading as _threading
 from typing import Any
 
-_set_class, _usual_set = object.__dict__["__class__"].__set__, object.__setattr__
+_set_class = object.__dict__["__class__"].__set__
 _lists_lock = _threading.RLock()
+_lists_of: dict[Any, Any] = {}
+"""The usual class, and what sets each list and map and what makes it, by the classes of objects that have none yet."""
 
 
 class _WithoutLists:
@@ -39,15 +41,17 @@ def _without_lists(usual: Any) -> Any:  # pyright: ignore[reportUnusedFunction]
     names = {"__module__": usual.__module__, "__qualname__": usual.__qualname__, "__doc__": usual.__doc__}
     late: Any = type(usual.__name__, (_WithoutLists, usual), {"__slots__": (), **names})
     late.__slots__ = usual.__slots__
+    lists = (each for each in _dataclasses.fields(usual) if each.default_factory is not _dataclasses.MISSING)
+    _lists_of[late] = usual, tuple((usual.__dict__[each.name].__set__, each.default_factory) for each in lists)
     return late
 
 
 def _with_lists(message: Any) -> Any:
     """An object with its lists and maps; where two threads ask at once, one of them makes these."""
     with _lists_lock:
-        if type(message) is not message.__class__:
-            for each in _dataclasses.fields(message):
-                if each.default_factory is not _dataclasses.MISSING:
-                    _usual_set(message, each.name, each.default_factory())
-            _set_class(message, message.__class__)
+        if (late := _lists_of.get(type(message))) is not None:
+            usual, lists = late
+            for set_list, make in lists:
+                set_list(message, make())
+            _set_class(message, usual)
     return message

@@ -1,0 +1,162 @@
+"""Rows with many lists and maps (see `late_lists`): one that brings none sets nothing of them, and becomes an object without lists.
+
+any_rows_lists = False
+while at < stop:
+    match case:
+        case 10:
+            any_rows_lists = True
+            ...
+if any_rows_lists:                                      without it there is a statement for each list
+    rows_q[start * 42] = 1                              where the first list starts is not 0 in rows that have any
+    if rows_texts_used > first: ...
+
+[Row(...) if rows_texts_start or rows_texts_count else _new_Row(...) for ... in _unpack_each(...)]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Set
+
+from rosetta_jit.generate.python.direct import LateRow
+from rosetta_jit.generate.python.late_lists import lists_of, lists_of_message, maker_without_lists, name_without_lists, print_maker
+from rosetta_jit.generate.python.making import arrays_of
+from rosetta_jit.generate.python.mentions import blocks_within, lanes_of, places_of
+from rosetta_jit.generate.unit import Unit
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.kernel.nodes import Assign, Block, Compare, Const, Fill, If, Let, Local, Place, SetField, Stmt, Switch, Used, Var
+from rosetta_jit.kernel.passes.fold import FALSE, TRUE
+from rosetta_jit.kernel.rewrite import with_blocks
+from rosetta_jit.kernel.terms import index
+from rosetta_jit.kernel.walk import blocks_of, statements
+from rosetta_jit.model.layout import Layout, Row
+from rosetta_jit.model.types import Struct
+from rosetta_jit.startup.dataclass import dataclass, field, replace
+
+LEAST = 10
+"""Lists of a type from which on rows of it that have none take less time."""
+
+
+def late_rows(unit: Unit) -> dict[int, LateRow]:
+    """The types of rows with many lists, by the lanes of arrays of them."""
+    found: dict[int, LateRow] = {}
+    for lane, type_ in arrays_of(unit).items():
+        struct, slot = unit.schema.resolve(type_), unit.layout.lanes[lane].element
+        if isinstance(struct, Struct) and isinstance(slot, Row) and (lists := lists_of(struct, slot, unit, LEAST)):
+            found[lane] = LateRow(struct, slot, lists)
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Late:
+    """Classes of objects without lists in a module: the ``lines`` that define them, and their names by the ``lists`` that objects have not.
+
+    These are the fields for their numbers of elements, by lane and offset.
+    """
+
+    lines: tuple[str, ...] = ()
+    lists: Mapping[tuple[int, int], str] = field(default_factory=dict[tuple[int, int], str])
+
+
+def late_objects(unit: Unit, names: Mapping[str, str], decoder: str) -> Late:
+    """The classes of objects without lists that the text of a decoder makes."""
+    lines, lists = dict[str, None](), dict[tuple[int, int], str]()
+    classes = [(0, names[unit.type], lists_of_message(unit), "")]
+    classes += [
+        (lane, names[each.struct.name], each.lists, print_maker(each, names[each.struct.name])) for lane, each in late_rows(unit).items()
+    ]
+    for lane, identifier, spans, maker in classes:
+        without_lists = name_without_lists(identifier)
+        if (f"{maker_without_lists(identifier)}(" if maker else f", {without_lists})") in decoder:
+            lines |= {f"{without_lists} = _without_lists({identifier})": None, **({f"\n\n{maker}\n": None} if maker else {})}
+            lists |= {(lane, each.offset + 8): without_lists for each in spans}
+    return Late(tuple(lines), lists)
+
+
+def with_late_rows(body: Block, kernel: Kernel, layout: Layout, rows: Mapping[int, LateRow]) -> tuple[Block, dict[int, LateRow]]:
+    """A decoder's body whose rows say whether they have any list, and those that do."""
+    in_routines = {lane for routine in kernel.routines for stmt, _ in statements(routine.body) for lane in lanes_of(stmt)}
+    found: dict[int, LateRow] = {}
+    for lane, late in rows.items():
+        if not {lane, *(each.lane for each in late.lists)} & in_routines:
+            changed = _with_late(body, lane, late, layout.lanes[lane].name)
+            found |= {lane: late} if changed is not body else {}
+            body = changed
+    return body, found
+
+
+def _with_late(body: Block, lane: int, late: LateRow, name: str) -> Block:
+    """A body with the block that fills the rows of a lane changed, if nothing else has to do with their lists."""
+    offsets = {each.offset + behind for each in late.lists for behind in (0, 8)}
+    mentions = [place for stmt, _ in statements(body) for place in places_of(stmt) if place.lane == lane and place.offset in offsets]
+    blocks = [block for block in blocks_within(body) if any(_row_cleared(stmt, lane) for stmt in block)]
+    filled = _filled(blocks[0], lane, late, f"any\0{name}\0lists") if len(blocks) == 1 and len(mentions) == len(offsets) else None
+    return body if filled is None else _put(body, blocks[0], filled)
+
+
+def _put(block: Block, old: Block, new: Block) -> Block:
+    """A block with another one in place of one within it."""
+    return new if block is old else tuple(with_blocks(stmt, lambda inner: _put(inner, old, new)) for stmt in block)
+
+
+def _filled(block: Block, lane: int, late: LateRow, flag: str) -> Block | None:
+    """The block that fills a row, with what says which lists it has in one statement; nothing where it fills lists in another way."""
+    begin = next(number for number, stmt in enumerate(block) if _row_cleared(stmt, lane))
+    ends = [number for number, stmt in enumerate(block) if _list_set(stmt, lane, late)]
+    lanes = {each.lane for each in late.lists}
+    between = block[begin + 1 : ends[0]] if len(ends) == len(late.lists) else ()
+    if (
+        not between
+        or any(_fills_outside(stmt, lanes) for stmt in between)
+        or not all(isinstance(each, If) for each in block[ends[0] : ends[-1]])
+    ):
+        return None
+    row = _row_cleared(block[begin], lane)
+    assert row is not None
+    sets = (SetField(replace(row, offset=late.lists[0].offset), index(1)), *(block[number] for number in ends))
+    others = tuple(stmt for number, stmt in enumerate(block[ends[0] :], ends[0]) if number not in ends)
+    return (
+        *block[: begin + 1],
+        Var(flag, FALSE),
+        *(_flagged(stmt, lanes, flag) for stmt in between),
+        If(Local("bool", flag), sets),
+        *others,
+    )
+
+
+def _row_cleared(stmt: Stmt, lane: int) -> Place | None:
+    """The row of a lane that a statement clears."""
+    match stmt:
+        case Fill(Place(of, _, 0) as row, Const(), 0) if of == lane:
+            return row
+        case _:
+            return None
+
+
+def _list_set(stmt: Stmt, lane: int, late: LateRow) -> bool:
+    """Whether a statement says which rows a list of a row has, if it has any."""
+    match stmt:
+        case If(Compare("gt", Used(), Local()), (SetField(Place(of, _, offset)), SetField(Place())), ()):
+            return of == lane and offset in {each.offset for each in late.lists}
+        case _:
+            return False
+
+
+def _fills_outside(stmt: Stmt, lanes: Set[int]) -> bool:
+    """Whether a statement has to do with some lanes in no case of a switch, but for asking where their next row is."""
+    if isinstance(stmt, Switch):
+        return False
+    is_first = isinstance(stmt, Let) and isinstance(stmt.value, Used)
+    inner = any(_fills_outside(each, lanes) for block in blocks_of(stmt) for each in block)
+    return inner or (bool(lanes_of(stmt) & lanes) and not is_first)
+
+
+def _flagged(stmt: Stmt, lanes: Set[int], flag: str) -> Stmt:
+    """A statement whose outermost switches say in which of their cases rows of some lanes come."""
+
+    def inside(block: Block) -> Block:
+        if not isinstance(stmt, Switch):
+            return tuple(_flagged(each, lanes, flag) for each in block)
+        fills = any(lanes_of(each) & lanes for each, _ in statements(block))
+        return (Assign(flag, TRUE), *block) if fills else block
+
+    return with_blocks(stmt, inside)
