@@ -32,8 +32,8 @@ from rosetta_jit.model.layout import Layout, Row
 from rosetta_jit.model.types import Struct
 from rosetta_jit.startup.dataclass import dataclass, field, replace
 
-LEAST = 10
-"""Lists of a type from which on rows of it that have none take less time."""
+LEAST = 16
+"""Lists of a type from which on rows that have none get them late: half of the time is saved, and who asks for a list pays a sixth more."""
 
 
 def late_rows(unit: Unit) -> dict[int, LateRow]:

@@ -7,7 +7,7 @@ from typing import Any
 _set_class = object.__dict__["__class__"].__set__
 _lists_lock = _threading.RLock()
 _lists_of: dict[Any, Any] = {}
-"""The usual class, and what sets each list and map and what makes it, by the classes of objects that have none yet."""
+"""By the classes of objects that have none yet: the usual class, what sets each list, and what sets each map or array and what makes it."""
 
 
 class _WithoutLists:
@@ -41,8 +41,9 @@ def _without_lists(usual: Any) -> Any:  # pyright: ignore[reportUnusedFunction]
     names = {"__module__": usual.__module__, "__qualname__": usual.__qualname__, "__doc__": usual.__doc__}
     late: Any = type(usual.__name__, (_WithoutLists, usual), {"__slots__": (), **names})
     late.__slots__ = usual.__slots__
-    lists = (each for each in _dataclasses.fields(usual) if each.default_factory is not _dataclasses.MISSING)
-    _lists_of[late] = usual, tuple((usual.__dict__[each.name].__set__, each.default_factory) for each in lists)
+    made = [(usual.__dict__[each.name].__set__, each.default_factory) for each in _dataclasses.fields(usual)]
+    lists = [put for put, make in made if make is list]
+    _lists_of[late] = usual, lists, [(put, make) for put, make in made if make not in (list, _dataclasses.MISSING)]
     return late
 
 
@@ -50,8 +51,10 @@ def _with_lists(message: Any) -> Any:
     """An object with its lists and maps; where two threads ask at once, one of them makes these."""
     with _lists_lock:
         if (late := _lists_of.get(type(message))) is not None:
-            usual, lists = late
-            for set_list, make in lists:
-                set_list(message, make())
+            usual, lists, others = late
+            for put in lists:
+                put(message, [])
+            for put, make in others:
+                put(message, make())
             _set_class(message, usual)
     return message
