@@ -98,6 +98,7 @@ DIFFERENT = {
     "Imu": lambda: varied.imu(1),
     "JointState, 32 joints": lambda: varied.joint_state(1),
     "protobuf, 200 fields": varied.many_fields,
+    "protobuf, 1,000 optional fields": varied.very_many_fields,
 }
 
 

@@ -29,6 +29,11 @@ PROTO = {
     "message Texts { repeated string texts = 1; }\n"
     f"message Fields {{ {' '.join(f'{KINDS[each % 4]} f{each} = {each + 1};' for each in range(FIELDS))} }}\n"
 }
+WIDE = 1000
+WIDE_PROTO = {
+    "wide.proto": 'syntax = "proto2";\npackage touched;\n'
+    f"message Wide {{ {' '.join(f'optional int64 f{each} = {each + 1};' for each in range(WIDE))} }}\n"
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,6 +198,16 @@ def many_fields() -> Varied:
     return varied(
         "touched.Fields", "protobuf", lambda random: {name: _field(random, kind) for name, kind in kinds.items()}, 200, schema=PROTO
     )
+
+
+@cache
+def very_many_fields() -> Varied:
+    """protobuf: a thousand optional integers, of which nine of ten are there."""
+
+    def make(random: Generator) -> dict[str, Any]:
+        return {f"f{number}": int(random.integers(1, 5000)) for number in range(WIDE) if random.random() < 0.9}
+
+    return varied("touched.Wide", "protobuf", make, 50, schema=WIDE_PROTO)
 
 
 @cache
