@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
-from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
+from importlib.machinery import BuiltinImporter, FrozenImporter, ModuleSpec, PathFinder, SourceFileLoader
 from importlib.util import MAGIC_NUMBER, cache_from_source
 from marshal import loads
 from stat import S_ISREG
@@ -29,7 +29,10 @@ def install() -> None:
     Finders that others have put before Python's own are asked before ours, too: they may change what they find.
     """
     if sys.platform == "linux" and PathFinder in sys.meta_path:
-        sys.meta_path.insert(sys.meta_path.index(PathFinder), _Finder())
+        place = sys.meta_path.index(PathFinder)
+        while place and sys.meta_path[place - 1] in (BuiltinImporter, FrozenImporter):  # who would be asked in vain for each of ours
+            place -= 1
+        sys.meta_path.insert(place, _Finder())
 
 
 class _Finder:

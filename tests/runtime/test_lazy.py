@@ -14,7 +14,7 @@ from rosetta_jit.runtime.attributes.groups import GROUPS
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.assembler import assembled
-from rosetta_jit.runtime.code.lazy import Stubs, is_supported, stubs_text
+from rosetta_jit.runtime.code.lazy import Stubs, is_supported
 from rosetta_jit.runtime.code.parts import part_of
 
 pytestmark = pytest.mark.skipif(not is_supported() or not is_native(), reason="no stubs for this machine, or no accessors for this Python")
@@ -41,7 +41,7 @@ def sum_code():
 
 def test_the_first_call_finds_the_function_and_passes_on_its_arguments(sum_code):
     found = []
-    stubs = Stubs(assembled(stubs_text(("one", "two")), ()), {"one": lambda: find("one"), "two": lambda: find("two")}, {})
+    stubs = Stubs({"one": lambda: find("one"), "two": lambda: find("two")}, {})
 
     def find(name):
         found.append(name)
@@ -52,16 +52,16 @@ def test_the_first_call_finds_the_function_and_passes_on_its_arguments(sum_code)
     assert found == ["two", "one"]
 
 
-def test_stubs_of_one_image_are_apart(sum_code):
+def test_stubs_of_the_same_names_are_apart(sum_code):
     """Each has tables of its own, which refer to what ends with it."""
-    image, found = assembled(stubs_text(("sum",)), ()), list[str]()
+    found = list[str]()
 
     def stubs(name):
         def find():
             found.append(name)
             made.bind("sum", sum_code["sum"])
 
-        made = Stubs(image, {"sum": find}, {})
+        made = Stubs({"sum": find}, {})
         return made
 
     kept, gone = stubs("kept"), stubs("gone")
@@ -79,7 +79,7 @@ def test_a_function_that_is_not_found_fails_and_is_looked_for_again(sum_code):
             raise errors.pop(0)
         stubs.bind("set", sum_code["sum"])
 
-    stubs = Stubs(assembled(stubs_text(("set",)), ()), {"set": find}, {"set": -1})
+    stubs = Stubs({"set": find}, {"set": -1})
     answers, call = [], CALL(stubs["set"])
     for error in (ValueError, KeyboardInterrupt):
         with pytest.raises(error):

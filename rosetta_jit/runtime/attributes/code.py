@@ -15,7 +15,7 @@ from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.allowed import ForeignCodeError
-from rosetta_jit.runtime.code.lazy import Stubs, is_supported, stubs_text
+from rosetta_jit.runtime.code.lazy import Stubs, is_supported
 from rosetta_jit.runtime.code.native import Library
 from rosetta_jit.runtime.type_specs import function_of, read_word, size_with_weak_list, weak_list_offset
 
@@ -86,8 +86,7 @@ class Accessors:
         self._direct: dict[str, int] = {}
         self._first_end = 0
         finders = {symbol: partial(self.make, group_of(symbol)) for symbol in SYMBOLS if symbol != END}
-        stubs = kept("accessors", "stubs of accessors", lambda: assembled(stubs_text(tuple(finders)), ()))
-        self._stubs = Stubs(stubs, finders, {name: -1 for name in finders if name.startswith("set_") or name == "length"})
+        self._stubs = Stubs(finders, {name: -1 for name in finders if name.startswith("set_") or name == "length"})
 
     def __getitem__(self, symbol: str) -> int:
         if symbol not in self._direct:

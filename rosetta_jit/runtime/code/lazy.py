@@ -1,23 +1,56 @@
-"""Lazy binding, as dynamic linkers do it: a function has an address before there is code for it, and its first call finds the code."""
+"""Lazy binding, as dynamic linkers do it: a function has an address before there is code for it, and its first call finds the code.
+
+For x86-64 (System V ABI). A function jumps to where its slot says. At first that is its own second half: it calls the function's finder, a
+Python object without arguments, which writes the slot, and then jumps there with the arguments as they were. A finder that fails has set
+Python's error: then the caller is given the function's failure. Functions have up to four arguments, all of them integers or pointers.
+
+The instructions are so few that they stand here as bytes: LLVM, to assemble them, would take longer than all else that a process does with
+accessors before it calls one.
+"""
 
 from __future__ import annotations
 
 import ctypes
 import os
+import struct
 import sys
 from collections.abc import Callable, Mapping, Sequence
 
 from rosetta_jit.runtime.code import native
+from rosetta_jit.runtime.code.prelinked import Prelinked, data_offset, to_bytes
 
 TABLES = ("slots", "finders", "failures")
-STUB = """.globl {name}
-.p2align 4
-{name}:
-jmpq *slots+{offset}(%rip)
-movl ${number}, %eax
-jmp find"""
+"""Numbers of 8 bytes, one for each function. Python fills them when the code is loaded."""
+
+CALLS = ("PyObject_CallNoArgs", "Py_DecRef")
+
+STUB = struct.Struct("<2siBIBi")
+"""``jmp *slot(%rip)``, ``mov $number, %eax``, ``jmp find``."""
+
 JUMP_BYTES = 6
 """Of the first instruction of a stub; behind it is what an unbound one does."""
+
+FIND = (
+    ("57 56 52 51 50", ""),  # push %rdi, %rsi, %rdx, %rcx, %rax: now the stack is aligned as calls want it
+    ("48 8d 3d", "finders"),  # lea finders(%rip), %rdi
+    ("48 8b 3c c7", ""),  # mov (%rdi,%rax,8), %rdi
+    ("ff 15", "PyObject_CallNoArgs"),  # call *PyObject_CallNoArgs(%rip)
+    ("48 85 c0", ""),  # test %rax, %rax
+    ("0f 84", "failed"),  # je failed
+    ("48 89 c7", ""),  # mov %rax, %rdi
+    ("ff 15", "Py_DecRef"),  # call *Py_DecRef(%rip)
+    ("58 59 5a 5e 5f", ""),  # pop %rax, %rcx, %rdx, %rsi, %rdi
+    ("4c 8d 15", "slots"),  # lea slots(%rip), %r10
+    ("41 ff 24 c2", ""),  # jmp *(%r10,%rax,8)
+)
+FAILED = (
+    ("58", ""),  # pop %rax
+    ("48 83 c4 20", ""),  # add $32, %rsp
+    ("4c 8d 15", "failures"),  # lea failures(%rip), %r10
+    ("49 8b 04 c2", ""),  # mov (%r10,%rax,8), %rax
+    ("c3", ""),  # ret
+)
+"""Instructions, and what they refer to: its distance from their end is their last four bytes."""
 
 
 def is_supported() -> bool:
@@ -25,15 +58,38 @@ def is_supported() -> bool:
     return sys.platform == "linux" and os.uname().machine == "x86_64"
 
 
-def stubs_text(names: Sequence[str]) -> str:
-    """Stubs of functions as an LLVM module."""
-    from pathlib import Path
-    from string import Template  # both are slow to import
+def stubs_of(names: Sequence[str]) -> bytes:
+    """Stubs of functions, as `runtime.code.native` loads them."""
+    find = STUB.size * len(names)
+    failed = find + _size(FIND)
+    calls = -(-(failed + _size(FAILED)) // 8) * 8
+    size = 8 * len(names)
+    begin = data_offset(bytes(calls + 8 * len(CALLS)))
+    tables = {name: begin + number * size for number, name in enumerate(TABLES)}
+    places = {**tables, "failed": failed} | {name: calls + 8 * number for number, name in enumerate(CALLS)}
+    stubs = b"".join(_stub(number, tables["slots"], find) for number in range(len(names)))
+    code = b"".join((stubs, _assembled(FIND, find, places), _assembled(FAILED, failed, places)))
+    gives = {name: STUB.size * number for number, name in enumerate(names)} | tables
+    return to_bytes(Prelinked(code.ljust(calls + 8 * len(CALLS), b"\0"), bytes(size * len(TABLES)), calls, CALLS, gives))
 
-    stubs = "\n".join(STUB.format(name=name, offset=8 * number, number=number) for number, name in enumerate(names))
-    template = Template(Path(__file__).with_name("lazy_x86_64.s").read_text("utf-8"))
-    lines = template.substitute(stubs=stubs, size=8 * len(names), functions=f"{len(names)} functions").splitlines()
-    return "\n".join(f'module asm "{line}"' for line in lines if not line.startswith("#"))
+
+def _stub(number: int, slots: int, find: int) -> bytes:
+    begin = STUB.size * number
+    return STUB.pack(b"\xff\x25", slots + 8 * number - (begin + JUMP_BYTES), 0xB8, number, 0xE9, find - (begin + STUB.size))
+
+
+def _size(instructions: Sequence[tuple[str, str]]) -> int:
+    return len(_assembled(instructions, 0, None))
+
+
+def _assembled(instructions: Sequence[tuple[str, str]], begin: int, places: Mapping[str, int] | None) -> bytes:
+    """The bytes of instructions from a place on; without places, with distances that mean nothing."""
+    code = bytearray()
+    for opcode, operand in instructions:
+        code += bytes.fromhex(opcode)
+        if operand:
+            code += struct.pack("<i", places[operand] - (begin + len(code) + 4) if places else 0)
+    return bytes(code)
 
 
 class Stubs:
@@ -41,17 +97,15 @@ class Stubs:
 
     Parameters
     ----------
-    image
-        What `stubs_text` of the names is assembled to.
     finders
-        By name, in the order of the stubs, what is called when a function is first called. It calls `bind`, or raises an error.
+        By name, what is called when a function is first called. It calls `bind`, or raises an error.
     failures
         What a function gives its caller when its finder has failed, where that is not 0, the null pointer.
     """
 
-    def __init__(self, image: bytes, finders: Mapping[str, Callable[[], object]], failures: Mapping[str, int]) -> None:
+    def __init__(self, finders: Mapping[str, Callable[[], object]], failures: Mapping[str, int]) -> None:
         own = f"stubs {id(self)}"  # the tables are filled for these stubs alone, and what they refer to ends with them
-        self._code = native.load(image, (*finders, *TABLES), program=own)
+        self._code = native.load(stubs_of((*finders,)), (*finders, *TABLES), program=own)
         self._numbers = {name: number for number, name in enumerate(finders)}
         self._finders = tuple(finders.values())  # the table has no references of its own
         self._slots, called, when_failed = (self._table(name) for name in TABLES)
