@@ -11,6 +11,6 @@ go.on:
   ret ptr %found
 slow:
   %context = call ptr @context(ptr %self)
-  %answer = call ptr @slow(ptr %context, ptr %args, i64 %nargsf, ptr %names)
+  %answer = tail call ptr @slow(ptr %context, ptr %args, i64 %nargsf, ptr %names)
   ret ptr %answer
 }

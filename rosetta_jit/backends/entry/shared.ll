@@ -63,7 +63,7 @@ define internal i1 @is_alone(i64 %nargsf, ptr %names) alwaysinline {
 define internal ptr @slow(ptr %context, ptr %args, i64 %nargsf, ptr %names) alwaysinline {
   %at = getelementptr ptr, ptr %context, i64 2
   %callable = load ptr, ptr %at
-  %answer = call ptr @PyObject_Vectorcall(ptr %callable, ptr %args, i64 %nargsf, ptr %names)
+  %answer = tail call ptr @PyObject_Vectorcall(ptr %callable, ptr %args, i64 %nargsf, ptr %names)
   ret ptr %answer
 }
 
