@@ -36,8 +36,9 @@ from rosetta_jit.startup import modules
 
 if TYPE_CHECKING:
     from rosetta_jit.api.bridges import Bridge
+    from rosetta_jit.api.decoder import Decoder
+    from rosetta_jit.api.encoder import Encoder
     from rosetta_jit.api.options import Options
-    from rosetta_jit.api.programs import Decoder, Encoder
     from rosetta_jit.api.wires import Decoders, Encoders
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.log import Log
@@ -85,8 +86,8 @@ __all__ = [
 ]
 
 _LAZY = {
-    "Decoder": "rosetta_jit.api.programs",
-    "Encoder": "rosetta_jit.api.programs",
+    "Decoder": "rosetta_jit.api.decoder",
+    "Encoder": "rosetta_jit.api.encoder",
     "Decoders": "rosetta_jit.api.wires",
     "Encoders": "rosetta_jit.api.wires",
     "Bridge": "rosetta_jit.api.bridges",

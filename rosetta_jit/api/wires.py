@@ -6,8 +6,10 @@ import os
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack
 
+from rosetta_jit.api.decoder import Decoder
+from rosetta_jit.api.encoder import Encoder
 from rosetta_jit.api.options import Options, request_of
-from rosetta_jit.api.programs import Decoder, Encoder, program_of
+from rosetta_jit.api.programs import program_of
 from rosetta_jit.kernel.state import VALID
 from rosetta_jit.pipeline.request import Direction, Request
 from rosetta_jit.runtime.arrivals import ages

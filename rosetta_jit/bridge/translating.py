@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 if TYPE_CHECKING:
     from rosetta_jit.api.bridges import Bridge
-    from rosetta_jit.api.programs import Encoder
+    from rosetta_jit.api.encoder import Encoder
     from rosetta_jit.api.wires import Decoders
     from rosetta_jit.bridge.configuration import Route, Translation
 
@@ -218,7 +218,7 @@ def translator_of(route: Route, search_path: tuple[str, ...]) -> Translator:
     """The translator that a file describes for a route. Raises what `translator` raises."""
     if not route.sources:
         return translator(route.translation, search_path)
-    from rosetta_jit.api.programs import Encoder
+    from rosetta_jit.api.encoder import Encoder
     from rosetta_jit.api.wires import Decoders
 
     arguments: dict[str, Any] = json.loads(route.translation.text)

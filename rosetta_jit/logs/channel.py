@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.api.bridges import Bridge
+    from rosetta_jit.api.decoder import Decoder
+    from rosetta_jit.api.encoder import Encoder
     from rosetta_jit.api.options import Options
-    from rosetta_jit.api.programs import Decoder, Encoder
     from rosetta_jit.logs.file import LogFile
     from rosetta_jit.logs.moments import Moment
     from rosetta_jit.logs.reading.walking import Rows
@@ -91,7 +92,7 @@ class Channel:
     @cached_property
     def decoder(self) -> Decoder:
         """What decodes the messages; raises as `program` does."""
-        from rosetta_jit.api.programs import Decoder
+        from rosetta_jit.api.decoder import Decoder
 
         return self.program(Decoder)
 

@@ -18,7 +18,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rosetta_jit.api.programs import Decoder
+    from rosetta_jit.api.decoder import Decoder
     from rosetta_jit.logs.base import Block
     from rosetta_jit.logs.reading.walking import Rows
     from rosetta_jit.runtime.batch import Batch

@@ -15,9 +15,13 @@ from importlib.util import MAGIC_NUMBER, cache_from_source
 from marshal import loads
 from stat import S_ISREG
 from types import CodeType, ModuleType
+from typing import Any
 
 _FOLDER = os.path.dirname(os.path.dirname(__file__))
 _PREFIX = f"{__name__.partition('.')[0]}."
+
+_IN_VAIN: tuple[Any, ...] = (BuiltinImporter, FrozenImporter)
+"""Python's own finders that need not be asked for a module of ours."""
 
 _COMPARED_BY_TIME = MAGIC_NUMBER + bytes(4)
 """How a compiled file of this Python begins that is as new as its source if the time and the size which follow are those of the source."""
@@ -30,7 +34,7 @@ def install() -> None:
     """
     if sys.platform == "linux" and PathFinder in sys.meta_path:
         place = sys.meta_path.index(PathFinder)
-        while place and sys.meta_path[place - 1] in (BuiltinImporter, FrozenImporter):  # who would be asked in vain for each of ours
+        while place and sys.meta_path[place - 1] in _IN_VAIN:
             place -= 1
         sys.meta_path.insert(place, _Finder())
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.api.programs import _build
+from rosetta_jit.api.programs import build_of
 from rosetta_jit.backends.entry.program import Program
 
 FILES = {
@@ -35,7 +35,7 @@ unpack-rules:
 @pytest.fixture(scope="module")
 def made():
     decode = rj.Decoder("m.mapping", schema=FILES, encoding="cdr")
-    assert Program(_build(decode._request).kernels, "decode", {"with_numba": False}).has_own_many
+    assert Program(build_of(decode._request).kernels, "decode", {"with_numba": False}).has_own_many
     writers = [
         rj.Encoder.of("lab/msg/Joint", schema=FILES, imports=["lab/msg/Joint.msg"], encoding="cdr", byte_order=order)
         for order in ("little", "big")

@@ -7,7 +7,8 @@ from concurrent.futures.process import BrokenProcessPool
 
 import pytest
 
-from rosetta_jit.api.programs import Decoder, Encoder
+from rosetta_jit.api.decoder import Decoder
+from rosetta_jit.api.encoder import Encoder
 from rosetta_jit.api.warm import programs_of, warm
 from rosetta_jit.cli import main
 from rosetta_jit.errors import CacheWarning

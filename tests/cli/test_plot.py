@@ -11,7 +11,7 @@ import pytest
 from mcap.writer import Writer
 
 import rosetta_jit as rj
-from rosetta_jit.api.programs import Encoder
+from rosetta_jit.api.encoder import Encoder
 from rosetta_jit.cli import main
 from rosetta_jit.cli.drawing import drawn
 from rosetta_jit.logs import curves

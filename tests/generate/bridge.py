@@ -234,7 +234,7 @@ class InC:
 
 def loaded_in_c(request) -> Loaded:
     """A program that runs in C."""
-    build = programs._build(request)
+    build = programs.build_of(request)
     header = build.header
     if header["host"] or build.functions:
         raise NotImplementedError("functions of the host")

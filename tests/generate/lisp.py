@@ -74,7 +74,7 @@ class Shown:
     """The values of the library's holders, in the form that the driver prints."""
 
     def __init__(self, request) -> None:
-        build = programs._build(request)
+        build = programs.build_of(request)
         self.layout, self.schema, self.root = build.layout, build.types.schema, Ref(build.types.holder.name)
 
     def of(self, holder) -> str:

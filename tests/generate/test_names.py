@@ -169,7 +169,7 @@ def case(role: str, some: list[str]) -> Case:
     options: Any = {"encoding": "protobuf", "schema": {"h.proto": text}}
     request = type_request("decode", "h.Outer", options)
     decode, encode = rj.Decoder.of("h.Outer", **options), rj.Encoder.of("h.Outer", **options)
-    rng, model = random.Random(role), programs._build(request).types
+    rng, model = random.Random(role), programs.build_of(request).types
     if role == "maps":
         values: list[Any] = [{each: {"k": 1, "": 2} for each in some}, {some[0]: {}}]
     else:

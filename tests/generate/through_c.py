@@ -10,7 +10,7 @@ from collections import Counter
 from rosetta_jit.api import programs
 from tests.generate.bridge import loaded_in_c
 
-ORIGINAL = programs._loaded
+ORIGINAL = programs.loaded_of
 COUNTS: Counter[str] = Counter()
 
 
@@ -25,7 +25,7 @@ def _loaded(request):
 
 
 def pytest_configure():
-    programs._loaded = _loaded
+    programs.loaded_of = _loaded
 
 
 def pytest_terminal_summary(terminalreporter):
