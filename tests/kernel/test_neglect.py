@@ -9,7 +9,7 @@ import pytest
 from rosetta_jit.api.options import type_request
 from rosetta_jit.kernel.nodes import If, Let
 from rosetta_jit.kernel.passes import order
-from rosetta_jit.kernel.passes.neglect import neglect
+from rosetta_jit.kernel.passes.seldom_needed import neglect
 from rosetta_jit.kernel.proof.verify import verify
 from rosetta_jit.kernel.walk import flat
 from rosetta_jit.pipeline.build import Build

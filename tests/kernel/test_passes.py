@@ -40,11 +40,11 @@ from rosetta_jit.kernel.nodes import (
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.passes.collect import collect
 from rosetta_jit.kernel.passes.drop import drop
-from rosetta_jit.kernel.passes.forget import forget
 from rosetta_jit.kernel.passes.gather import gather
 from rosetta_jit.kernel.passes.hoist import hoist
 from rosetta_jit.kernel.passes.join import join
 from rosetta_jit.kernel.passes.merge import merge
+from rosetta_jit.kernel.passes.seldom_needed import forget
 from rosetta_jit.kernel.passes.simplify import simplify
 from rosetta_jit.kernel.passes.unroll import unroll
 from rosetta_jit.kernel.printer import to_text

@@ -61,7 +61,7 @@ class _Read:
 
 def forget(kernel: Kernel) -> Kernel:
     """The kernel without what it writes and never reads. What a size kernel writes the encoder reads, which runs on the same lanes."""
-    if not kernel.hidden or kernel.direction == "size":
+    if kernel.direction == "size":
         return kernel
     detail_lanes = {site.detail_lane for site in kernel.sites if site.detail_lane is not None}
     shared = [stmt for routine in kernel.routines for stmt, _ in statements(routine.body)]

@@ -18,8 +18,8 @@ READS = 2
 
 
 def neglect(kernel: Kernel) -> Kernel:
-    """The kernel without starts that nothing but their checks reads."""
-    return with_bodies(kernel, tuple(map(_body, kernel.bodies))) if kernel.direction == "size" else kernel
+    """A size kernel without starts that nothing but their checks reads."""
+    return with_bodies(kernel, tuple(map(_body, kernel.bodies)))
 
 
 def _body(body: Block) -> Block:

@@ -9,13 +9,11 @@ from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Block, Copy, For, Require, SetField, Stmt, Store
 from rosetta_jit.kernel.passes.collect import collect
 from rosetta_jit.kernel.passes.drop import drop, without
-from rosetta_jit.kernel.passes.forget import forget
 from rosetta_jit.kernel.passes.gather import gather
 from rosetta_jit.kernel.passes.join import join
-from rosetta_jit.kernel.passes.loops import bulk, bulk_of_bytes, group, hoist, sink, unroll
 from rosetta_jit.kernel.passes.merge import merge
-from rosetta_jit.kernel.passes.neglect import neglect
 from rosetta_jit.kernel.passes.reuse import reuse
+from rosetta_jit.kernel.passes.seldom_needed import bulk, bulk_of_bytes, forget, group, hoist, neglect, sink, unroll
 from rosetta_jit.kernel.passes.simplify import simplify
 from rosetta_jit.kernel.proof.verify import VerificationError, check_shape, settled, verify
 from rosetta_jit.kernel.proof.without_checks import is_less

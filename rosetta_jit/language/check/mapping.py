@@ -32,7 +32,6 @@ from rosetta_jit.language.resolve.rules import Resolved, TypedRules, resolve
 from rosetta_jit.language.scope import Message
 from rosetta_jit.language.typed import Rule, StateVariable
 from rosetta_jit.language.units.hand_factors import wrong_factors
-from rosetta_jit.language.units.side_files import annotated
 from rosetta_jit.language.uses import Signature, UsableMappings, Use
 from rosetta_jit.model.expr import Side
 from rosetta_jit.model.mapping import Mapping
@@ -41,12 +40,14 @@ from rosetta_jit.parsing.idl import FrontEnds
 from rosetta_jit.parsing.search import Reading, SearchPath
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass, replace
-from rosetta_jit.startup.late import late
+from rosetta_jit.startup.late import Late, late
 
 if TYPE_CHECKING:
     from rosetta_jit.catalogue.check import Block
     from rosetta_jit.language.check import wire_shares, wires
+    from rosetta_jit.language.units import side_files
 else:
+    side_files = Late("rosetta_jit.language.units.side_files")
     wire_shares, wires = late("rosetta_jit.language.check", "wire_shares", "wires")
 
 SIDES: tuple[Side, ...] = ("holder", "wire")
@@ -148,7 +149,8 @@ def _read(mapping: Mapping, imports: Imports, parameters: Dictionary[str, object
     problems += [] if _errors(problems) else underived_there  # what could not be turned round follows from what is wrong there
     complete = not _errors(problems)
     problems += [*_without_handed_on(bound, mapping, usable), *(underived if complete else ())]
-    schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
+    units = [file for each in (*imported, *theirs) for file in each.units]
+    schema = side_files.annotated(merged, units, imports.has, problems) if units else merged
     state = declared(derived_mapping, problems)
     return _Texts(written, derived_mapping, usable, imports, imported, schema, state, complete, underived, problems)
 

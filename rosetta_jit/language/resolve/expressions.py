@@ -17,7 +17,6 @@ from rosetta_jit.language.arrays.parts import is_reduction
 from rosetta_jit.language.constants import constant_of
 from rosetta_jit.language.conversions import FLOAT64, as_int64, as_single, convert, describe, in_single, is_single, is_textual
 from rosetta_jit.language.functions.calls import type_call
-from rosetta_jit.language.functions.user_functions import type_host_call
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.installed import written
 from rosetta_jit.language.resolve.defaults import length_there, text_there
@@ -29,16 +28,15 @@ from rosetta_jit.model.mapping import OF_WIRES
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, Optional, String, Union
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import replace
-from rosetta_jit.startup.late import Late, late
+from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
-    from rosetta_jit.language.functions import decisions, texts
+    from rosetta_jit.language.functions import decisions, texts, user_functions
     from rosetta_jit.language.resolve import coerced_values, groups, key_search, list_items, reductions
 else:
-    decisions = Late("rosetta_jit.language.functions.decisions")
+    decisions, texts, user_functions = late("rosetta_jit.language.functions", "decisions", "texts", "user_functions")
     coerced_values, groups = late("rosetta_jit.language.resolve", "coerced_values", "groups")
     key_search, list_items, reductions = late("rosetta_jit.language.resolve", "key_search", "list_items", "reductions")
-    texts = Late("rosetta_jit.language.functions.texts")
 
 CONSTANTS = {"pi": math.pi}
 SUMS = frozenset("+-%")
@@ -70,7 +68,7 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
         case model.Binary():
             return _binary(expr, scope)
         case model.Call(function) if function in scope.functions:
-            return type_host_call(expr, scope.functions[function], scope, type_expr)
+            return user_functions.type_host_call(expr, scope.functions[function], scope, type_expr)
         case model.Call("has" | "index" as function, (model.Path() as path,)):
             return _presence(path, expr.span, scope) if function == "has" else _number_of(path, expr.span, scope)
         case model.Call():

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from rosetta_jit.catalogue import pipeline
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.language.constants import constants_of
-from rosetta_jit.language.functions.user_functions import signatures
 from rosetta_jit.language.scope import Message, Scope, enums_of
 from rosetta_jit.language.uses import UsableMappings
 from rosetta_jit.model.expansion import excess
@@ -14,6 +15,12 @@ from rosetta_jit.model.expr import Side
 from rosetta_jit.model.mapping import Mapping
 from rosetta_jit.model.types import Schema, Struct, Type, same_name
 from rosetta_jit.source import Span
+from rosetta_jit.startup.late import Late
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.functions import user_functions
+else:
+    user_functions = Late("rosetta_jit.language.functions.user_functions")
 
 
 def message_named(schema: Schema, name: str) -> Message | None:
@@ -40,7 +47,8 @@ def scope_between(messages: dict[Side, Message], mapping: Mapping, usable: Usabl
     """What the rules of a mapping that unpack can name."""
     holder, wire = (messages[side].schema for side in ("holder", "wire"))
     constants = constants_of(*((holder,) if holder is wire else (holder, wire)))
-    functions = signatures((mapping, *usable.mappings()), problems)
+    every = (mapping, *usable.mappings())
+    functions = user_functions.signatures(every, problems) if any(each.functions for each in every) else {}
     enums, rounds = enums_of(holder, wire), mapping.rounds
     return Scope(messages, enums, constants, "holder", (), problems, set(), functions, usable, rounds=rounds, is_old=mapping.is_old)
 

@@ -37,8 +37,6 @@ def annotated(schema: Schema, files: Sequence[UnitFile], is_elsewhere: Callable[
     is_elsewhere
         Whether a type that the schema lacks is one that could have been imported: then nothing is wrong with what is said of it.
     """
-    if not files:
-        return schema
     adding = _Adding(schema, is_elsewhere)
     for file in files:
         adding.file(file)

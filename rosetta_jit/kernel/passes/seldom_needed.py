@@ -1,4 +1,4 @@
-"""The passes that look at loops. Most kernels have none, and none of these is imported for them."""
+"""The passes that look at loops, at hidden lanes, or at kernels that measure: most kernels do without, and import none of them."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.passes import bulk as bulk_passes
+    from rosetta_jit.kernel.passes import forget as forgetting
     from rosetta_jit.kernel.passes import hoist as hoisting
+    from rosetta_jit.kernel.passes import neglect as neglecting
     from rosetta_jit.kernel.passes import sink as sinking
     from rosetta_jit.kernel.passes import unroll as unrolling
 else:
     bulk_passes, hoisting, sinking, unrolling = late("rosetta_jit.kernel.passes", "bulk", "hoist", "sink", "unroll")
+    forgetting, neglecting = late("rosetta_jit.kernel.passes", "forget", "neglect")
 
 
 def group(kernel: Kernel) -> Kernel:
@@ -44,3 +47,13 @@ def unroll(kernel: Kernel) -> Kernel:
 def sink(kernel: Kernel) -> Kernel:
     """`rosetta_jit.kernel.passes.sink.sink`."""
     return sinking.sink(kernel)
+
+
+def forget(kernel: Kernel) -> Kernel:
+    """`rosetta_jit.kernel.passes.forget.forget`."""
+    return forgetting.forget(kernel) if kernel.hidden else kernel
+
+
+def neglect(kernel: Kernel) -> Kernel:
+    """`rosetta_jit.kernel.passes.neglect.neglect`."""
+    return neglecting.neglect(kernel) if kernel.direction == "size" else kernel
