@@ -209,7 +209,7 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
             _turn(function, count, found, decodes=isinstance(stmt.body[-1], nodes.SetField))
         case nodes.For(variable, count, _) if (bools := bools_read(stmt)) is not None and bools.first.lane in scope.direct.whole:
             _bools(function, variable, count, bools)
-        case nodes.For(variable) if (rows := rows_read(scope, stmt)) is not None:
+        case nodes.For(variable) if (rows := _rows_read(function, stmt)) is not None:
             function.line(f"{scope.lanes.rows(scope.direct.loops[variable])} += {rows}")
         case nodes.For(variable, count, body):
             with function.writer.indented(f"for {scope.locals.identifier(variable)} in range({function.text(count)}):"):
@@ -234,6 +234,14 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
                         print_block(function, body)
         case _:
             assert_never(stmt)
+
+
+def _rows_read(function: Function, loop: nodes.For) -> str | None:
+    """The rows that a loop takes from the message, if these are read by one call."""
+    scope, layout = function.scope, function.objects.layout
+    if layout is None:
+        return None
+    return rows_read(scope, loop, lambda lane: layout.lanes[lane].element, lambda lane: function.objects.row(scope, lane))
 
 
 def _bools(function: Function, variable: str, count: nodes.Expr, bools: Bools) -> None:
