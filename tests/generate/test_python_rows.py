@@ -97,3 +97,20 @@ def test_lists_of_structs_that_are_one_array(encoding, arrays):
         assert found == made
         assert_said(found, unit.T, {**vars(unit), "np": np})
     answers_as_the_library(unit, programs, harmed(good, 24, encoding))
+
+
+@pytest.mark.parametrize("arrays", ["", "numpy"])
+def test_structs_that_are_one_array_and_are_wrong(arrays):
+    """The first of them that is wrong is named, also where numpy joins the arrays of all."""
+    unit = module(type_request("decode", "t/T", {"encoding": "ros1", "schema": ROS}), BOTH, Wishes(numpy=bool(arrays)))
+    wrong = {
+        ("count", ".rows[2].numbers"): [unit.R(numbers=[1, 2]), 7],
+        ("range", ""): [7, unit.R(numbers=[1, 2])],
+    }
+    for (kind, path), rows in wrong.items():
+        with pytest.raises(unit.EncodeError) as caught:
+            unit.encode(unit.T(rows=[unit.R(), unit.R(), *rows, unit.R()]))
+        assert (caught.value.kind, caught.value.path) == (kind, path)
+    for numbers in ([1, 2, 40000], [1.5, 2, 3], ["1", 2, 3]):
+        with pytest.raises(unit.EncodeError, match="range"):
+            unit.encode(unit.T(rows=[*(unit.R() for _ in range(5)), unit.R(numbers=numbers)]))

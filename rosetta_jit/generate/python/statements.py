@@ -209,13 +209,10 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
             _turn(function, count, found, decodes=isinstance(stmt.body[-1], nodes.SetField))
         case nodes.For(variable, count, _) if (bools := bools_read(stmt)) is not None and bools.first.lane in scope.direct.whole:
             _bools(function, variable, count, bools)
-        case nodes.For(variable) if (rows := _rows_read(function, stmt)) is not None:
-            function.line(f"{scope.lanes.rows(scope.direct.loops[variable])} += {rows}")
-        case nodes.For(variable, count, body):
-            with function.writer.indented(f"for {scope.locals.identifier(variable)} in range({function.text(count)}):"):
-                print_block(function, body)
-                if (lane := scope.direct.loops.get(variable)) is not None and lane not in scope.direct.listed:
-                    function.line(f"{scope.lanes.rows(lane)}.append({function.objects.row(scope, lane)})")
+        case nodes.For(_, count) if (rows := _rows_read(function, stmt)) is not None:
+            _rows(function, stmt, "" if isinstance(count, nodes.Const) else function.text(count), *rows)
+        case nodes.For():
+            _loop(function, stmt)
         case nodes.While(condition, body):
             with function.writer.indented(f"while {function.text(condition)}:"):
                 print_block(function, body)
@@ -236,12 +233,32 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
             assert_never(stmt)
 
 
-def _rows_read(function: Function, loop: nodes.For) -> str | None:
+def _loop(function: Function, loop: nodes.For) -> None:
+    scope = function.scope
+    with function.writer.indented(f"for {scope.locals.identifier(loop.variable)} in range({function.text(loop.count)}):"):
+        print_block(function, loop.body)
+        if (lane := scope.direct.loops.get(loop.variable)) is not None and lane not in scope.direct.listed:
+            function.line(f"{scope.lanes.rows(lane)}.append({function.objects.row(scope, lane)})")
+
+
+def _rows_read(function: Function, loop: nodes.For) -> tuple[str, int] | None:
     """The rows that a loop takes from the message, if these are read by one call."""
     scope, layout = function.scope, function.objects.layout
     if layout is None:
         return None
     return rows_read(scope, loop, lambda lane: layout.lanes[lane].element, lambda lane: function.objects.row(scope, lane))
+
+
+def _rows(function: Function, loop: nodes.For, count: str, rows: str, least: int) -> None:
+    """Rows that are read by one call, which fewer than the ``least`` are not."""
+    line = f"{function.scope.lanes.rows(function.scope.direct.loops[loop.variable])} += {rows}"
+    if not count or not least:
+        function.line(line)
+        return
+    with function.writer.indented(f"if {count} >= {least}:"):
+        function.line(line)
+    with function.writer.indented("else:"):
+        _loop(function, loop)
 
 
 def _bools(function: Function, variable: str, count: nodes.Expr, bools: Bools) -> None:
