@@ -85,6 +85,9 @@ TAGGED = {
     "100 lists that are not there": _subject(_lists(100), b""),
     "20 messages of six lists that are not there": _subject(f"message Row {{ {_lists(6)} }} repeated Row rows = 1;", _sized(10, b"") * 20),
     "20 messages of 40 lists that are not there": _subject(f"message Row {{ {_lists(40)} }} repeated Row rows = 1;", _sized(10, b"") * 20),
+    "20 messages of 100 lists that are not there": _subject(
+        f"message Row {{ {_lists(100)} }} repeated Row rows = 1;", _sized(10, b"") * 20
+    ),
     "20 messages of 20 lists, one of which is there": _subject(
         f"message Row {{ {_lists(20)} }} repeated Row rows = 1;", _sized(10, _sized(10, b"abc")) * 20
     ),
