@@ -23,6 +23,8 @@ D[5] few
 N[] nested
 H[] whole
 S[] texts
+L[] long
+Z[] bits
 ===
 MSG: t/R
 int16[3] numbers
@@ -44,11 +46,18 @@ uint8[1] byte
 ===
 MSG: t/S
 string text
+===
+MSG: t/L
+float64[20] numbers
+===
+MSG: t/Z
+bool[18] bits
 """
 LCM = """package t;
 struct R { int16_t numbers[3]; } struct B { byte data[4]; } struct W { R inner; } struct D { double numbers[2]; }
 struct N { R rows[2]; } struct H { byte one[1]; } struct S { string text; }
-struct T { int32_t n; R rows[n]; B raw[n]; W within[n]; D few[5]; N nested[n]; H whole[n]; S texts[n]; }
+struct L { double numbers[20]; } struct Z { boolean bits[18]; }
+struct T { int32_t n; R rows[n]; B raw[n]; W within[n]; D few[5]; N nested[n]; H whole[n]; S texts[n]; L long[n]; Z bits[n]; }
 """
 TYPES = {"ros1": ("t/T", ROS), "cdr": ("t/msg/T", ROS), "lcm": ("t.T", {"t.lcm": LCM})}
 
@@ -89,6 +98,8 @@ def test_lists_of_structs_that_are_one_array(encoding, arrays):
             nested=[unit.N(rows=[row, unit.R()]) for row in rows],
             texts=[unit.S(text=f"é{each}") for each in range(count)],
             whole=[unit.H(bytes([each])) for each in range(count)],
+            long=[unit.L(numbers=[each / 3 + number for number in range(20)]) for each in range(count)],
+            bits=[unit.Z(bits=[number % 3 == each for number in range(18)]) for each in range(count)],
         )
         if encoding == "lcm":
             made.n = count

@@ -114,7 +114,7 @@ def _size_of_numbers(scope: Scope, item: str, fills: list[Stmt]) -> int | None:
 def _size_of_array(scope: Scope, item: str, fills: list[Stmt]) -> int | None:
     """How many bytes rows have that are arrays of numpy, and lie in the message as in memory."""
     match fills:
-        case [Copy(Place(lane), Wire(Local(_, name)), Const(_, size))] if lane in scope.direct.whole and name == item:
+        case [Copy(Place(lane), Wire(Local(_, name)), Const(_, size))] if scope.numpy and lane in scope.direct.whole and name == item:
             return int(size) or None
         case _:
             return None
