@@ -15,6 +15,7 @@ from rosetta_jit.generate.python.mentions import assigned
 from rosetta_jit.generate.python.printed import Attempt, Function
 from rosetta_jit.generate.python.reading import numbers_read, rows_read, takes_text
 from rosetta_jit.generate.python.reserving import reserve, take
+from rosetta_jit.generate.python.rows_at_once import rows_at_once
 from rosetta_jit.generate.python.scope import CODES, view_name
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
@@ -212,7 +213,16 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
         case nodes.For(_, count) if (rows := _rows_read(function, stmt)) is not None:
             _rows(function, stmt, "" if isinstance(count, nodes.Const) else function.text(count), *rows)
         case nodes.For():
-            _loop(function, stmt)
+            layout = function.objects.layout
+            at_once = None if layout is None or scope.numpy else rows_at_once(scope, stmt, layout)
+            if at_once is None:
+                _loop(function, stmt)
+                return
+            with function.writer.indented(f"if {at_once.condition}:"):
+                for line in at_once.lines:
+                    function.line(line)
+            with function.writer.indented("else:"):
+                _loop(function, stmt)
         case nodes.While(condition, body):
             with function.writer.indented(f"while {function.text(condition)}:"):
                 print_block(function, body)
