@@ -157,8 +157,9 @@ def test_arrays_of_arrays_whose_lengths_are_fields_are_read_at_once():
     )
     text = text_of(given)
     assert text.count("map(list, _unpack_each(") == 4
+    assert text_of(given, Wishes(numpy=True)).count(".reshape(-1, m_k)") == 3
     values: list[dict[str, Any]] = []
-    for n, k in ((0, 0), (0, 3), (1, 1), (3, 2), (2, 0), (2, 120)):
+    for n, k in ((0, 0), (0, 3), (1, 1), (5, 2), (2, 0), (4, 120)):
         inner = {"i": k % 100, "g": [[row + column / 2 for column in range(k % 100)] for row in range(k % 100)]}
         values.append(
             {

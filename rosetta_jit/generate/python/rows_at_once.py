@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.expressions import expression
 from rosetta_jit.generate.python.groups import turned
+from rosetta_jit.generate.python.nested_arrays import MANY
 from rosetta_jit.generate.python.scope import CODES, Scope
 from rosetta_jit.kernel.nodes import WIDTH, Assign, Binary, Compare, Const, Copy, Expect, Expr, For, Let, Local, Place, Require, Stmt, Wire
 from rosetta_jit.kernel.rewrite import locals_in, substituted
@@ -91,13 +92,21 @@ def _stays(loop: For, length: Expr) -> bool:
 
 
 def _printed(scope: Scope, rows: str, count: Expr, length: Expr, at: str, type_: str, order: str) -> RowsAtOnce:
+    """The rows of numbers at a local, which then says where they end."""
     begin, each = scope.locals.identifier(at), expression(scope, length)
     whole = expression(scope, mul(mul(count, length), WIDTH[type_]))
+    moved, fits = f"{begin} = {begin} + {whole}", f"{begin} + {whole} <= end"
+    if scope.numpy:
+        numbers = f"{_array(scope, type_, order, bare(expression(scope, mul(count, length))), begin)}.reshape(-1, {bare(each)})"
+        return RowsAtOnce(f"0 < {each} and {expression(scope, count)} >= {MANY} and {fits}", (f"{rows} += [*{numbers}]", moved))
     code = f'f"{order}{{{bare(each)}}}{CODES[type_]}"'
-    return RowsAtOnce(
-        f"0 < {each} < {MOST} and {begin} + {whole} <= end",
-        (
-            f"{rows} += map(list, _unpack_each({code}, data[{begin} : {begin} + {whole}]))",
-            f"{begin} = {begin} + {whole}",
-        ),
-    )
+    line = f"{rows} += map(list, _unpack_each({code}, data[{begin} : {begin} + {whole}]))"
+    return RowsAtOnce(f"0 < {each} < {MOST} and {fits}", (line, moved))
+
+
+def _array(scope: Scope, type_: str, order: str, numbers: str, begin: str) -> str:
+    """An array of numpy of so many numbers, with the byte order of this machine."""
+    if order == ">":
+        return f"_numbers_in(data, {scope.dtype(type_, order)}, {numbers}, {begin}).astype({scope.dtype(type_)})"
+    scope.from_call.add("copy")
+    return f"_array({scope.dtype(type_)}, data, {numbers}, {begin}, call_copy)"

@@ -214,7 +214,7 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
             _rows(function, stmt, "" if isinstance(count, nodes.Const) else function.text(count), *rows)
         case nodes.For():
             layout = function.objects.layout
-            at_once = None if layout is None or scope.numpy else rows_at_once(scope, stmt, layout)
+            at_once = None if layout is None else rows_at_once(scope, stmt, layout)
             if at_once is None:
                 _loop(function, stmt)
                 return
