@@ -7,16 +7,17 @@ from typing import assert_never
 from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.bools import Bools, bools_read
+from rosetta_jit.generate.python.calls import host_call, pass_on, tuple_of
 from rosetta_jit.generate.python.descents import Visit
 from rosetta_jit.generate.python.expressions import expression, is_small, location, slice_of
 from rosetta_jit.generate.python.failures import fail, fail_if, lacks
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
 from rosetta_jit.generate.python.mentions import assigned
-from rosetta_jit.generate.python.printed import Attempt, Function
+from rosetta_jit.generate.python.printed import Function
 from rosetta_jit.generate.python.reading import numbers_read, rows_read, takes_text
 from rosetta_jit.generate.python.reserving import reserve, take
 from rosetta_jit.generate.python.rows_at_once import rows_at_once
-from rosetta_jit.generate.python.scope import CODES, view_name
+from rosetta_jit.generate.python.scope import CODES
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import mul, type_of
@@ -102,7 +103,7 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
         case nodes.Call():
             _call(function, stmt)
         case nodes.HostCall():
-            _host_call(function, stmt)
+            host_call(function, stmt)
         case _:
             assert_never(stmt)
 
@@ -304,15 +305,15 @@ def _call(function: Function, call: nodes.Call) -> None:
         _visit(function, call, visit)
         return
     scope, routine = function.scope, function.routines[call.routine]
-    _pass_on(function, routine)
+    pass_on(function.scope, routine)
     results = [scope.locals.identifier(result.name) for result in call.results]
     called = next(each for each in function.kernel.routines if each.name == call.routine)
     for result, own in zip(call.results, called.results, strict=True):
         limits = (each.right for each in called.ensures if isinstance(each, nodes.Compare) and (each.op, each.left) == ("le", own))
         scope.note(result.name, is_small=own.type == "u64" and any(is_small(limit, ()) for limit in limits))
     sites = [f"sites[{each - 1}]" if function.is_routine else str(each) for each in call.sites]
-    indices = "indices" if function.is_routine else _tuple([function.text(each) for each in call.indices])
-    arguments = ", ".join(["data", "end", _tuple(sites), indices, *routine.needs, *(function.text(each) for each in call.arguments)])
+    indices = "indices" if function.is_routine else tuple_of([function.text(each) for each in call.indices])
+    arguments = ", ".join(["data", "end", tuple_of(sites), indices, *routine.needs, *(function.text(each) for each in call.arguments)])
     bound = f"{', '.join(results)}{',' if len(results) == 1 else ''} = " if results else ""
     if routine.is_mostly_a_byte:
         at, (value, after) = expression(scope, call.arguments[0]), results
@@ -340,28 +341,3 @@ def _visit(function: Function, call: nodes.Call, visit: Visit) -> None:
         with function.writer.indented(f"for _ in range({count}):"):
             function.line(f"element, {at} = {scope.reader(visit.lane)}(data, end, left, {at}, {function.text(visit.depth)}{COPY})")
             function.line(f"{name}.append(element)")
-
-
-def _pass_on(function: Function, routine: Attempt) -> None:
-    """What a routine needs its caller needs, too."""
-    scope = function.scope
-    for lane in range(len(scope.lanes.all)):
-        for code in ("", *set(CODES.values())):
-            if view_name(scope.lanes, lane, code) in routine.needs:
-                scope.views.add((lane, code))
-        if f"{scope.lanes.rows(lane)}_room" in routine.needs:
-            scope.rooms.add(lane)
-    scope.rows.update(each for each in routine.needs if each.startswith("m_"))
-
-
-def _tuple(texts: list[str]) -> str:
-    return f"({', '.join(texts)}{',' if len(texts) == 1 else ''})"
-
-
-def _host_call(function: Function, call: nodes.HostCall) -> None:
-    result = function.scope.locals.identifier(call.result.name)
-    arguments = ", ".join(function.text(each) for each in call.arguments)
-    with function.writer.indented("try:"):
-        function.line(f'{result} = functions["{call.function}"]({arguments})')
-    with function.writer.indented("except Refused:"):
-        fail(function, call.failure)
