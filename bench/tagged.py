@@ -22,6 +22,11 @@ def _tree(depth: int, width: int) -> bytes:
     return _sized(10, b"node%d" % depth) + b"\x10" + _varint(depth + 1) + children
 
 
+def _value(depth: int) -> bytes:
+    """A number, or an array of two values: what each of them is must be there."""
+    return b"\x08\x02\x10\x96\x01" if not depth else b"\x08\x07" + 2 * _sized(58, _value(depth - 1))
+
+
 def _chain(length: int) -> bytes:
     message = b""
     for number in range(1, length + 1):
@@ -69,6 +74,9 @@ TAGGED = {
     "300 packed sint32": _subject("repeated sint32 v = 1;", _sized(10, b"".join(map(_varint, _INTEGERS)))),
     "200 unpacked bools": _subject("repeated bool v = 1 [packed = false];", b"\x08\x01\x08\x00" * 100),
     "a tree of 121 messages": _subject("string name = 1; int32 n = 2; repeated M children = 3;", _tree(4, 3)),
+    "a dictionary of 20 values of RST": Subject(
+        "rst.generic.Dictionary", "protobuf", b"".join(_sized(10, _sized(10, b"key_%d" % n) + _sized(18, _value(n % 3))) for n in range(20))
+    ),
     "a chain of 30 messages": _subject("int32 n = 1; M next = 2;", _chain(30)),
     "60 messages with 10 KB of text": _subject("M next = 1; string text = 2;", _texts(60, 10_000)),
     "200 KB of text six messages deep": _subject(f"{_WITHIN} A in = 1;", _nested(6, _sized(58, b"x" * 200_000))),
@@ -77,6 +85,9 @@ TAGGED = {
     "100 lists that are not there": _subject(_lists(100), b""),
     "20 messages of six lists that are not there": _subject(f"message Row {{ {_lists(6)} }} repeated Row rows = 1;", _sized(10, b"") * 20),
     "20 messages of 40 lists that are not there": _subject(f"message Row {{ {_lists(40)} }} repeated Row rows = 1;", _sized(10, b"") * 20),
+    "20 messages of 100 lists that are not there": _subject(
+        f"message Row {{ {_lists(100)} }} repeated Row rows = 1;", _sized(10, b"") * 20
+    ),
     "20 messages of 20 lists, one of which is there": _subject(
         f"message Row {{ {_lists(20)} }} repeated Row rows = 1;", _sized(10, _sized(10, b"abc")) * 20
     ),

@@ -64,12 +64,28 @@ def diagnostics(statuses: int) -> bytes:
     return struct.pack("<III", 7, 1, 2) + text("") + struct.pack("<I", statuses) + statuses * status
 
 
+def mesh(triangles: int) -> bytes:
+    """A list of structs that are one array, and one of points."""
+    count = struct.pack("<I", triangles)
+    return (
+        count + struct.pack(f"<{3 * triangles}I", *range(3 * triangles)) + count + struct.pack(f"<{3 * triangles}d", *range(3 * triangles))
+    )
+
+
+def matrices(each: int) -> bytes:
+    """Arrays of arrays of arrays of numbers, and arrays of short texts."""
+    head, texts = struct.pack(">Q3i", 0x3C0248E7BD699F76, each, each, each), 2 * each * struct.pack(">i3s", 3, b"ab\0")
+    return head + struct.pack(f">{each**3}i", *range(each**3)) + texts
+
+
 EXAMPLE = struct.pack(">Qq7di", 3987159373929993494, 0, 1, 2, 3, 1, 0, 0, 0, 15) + struct.pack(">15h", *range(15))
 MESSAGES = {
     "Twist": Subject("geometry_msgs/Twist", "ros1", struct.pack("<6d", *range(6))),
     "JointState, 7 joints": Subject("sensor_msgs/JointState", "ros1", joint_state(7)),
     "DiagnosticArray, 20 statuses": Subject("diagnostic_msgs/DiagnosticArray", "ros1", diagnostics(20)),
+    "Mesh, 50 triangles": Subject("shape_msgs/Mesh", "ros1", mesh(50)),
     "LCM example_t": Subject("exlcm.example_t", "lcm", EXAMPLE + struct.pack(">i", 15) + b"example string\0\1"),
+    "LCM multidim_array_t, 10 x 10 x 10": Subject("lcmtest.multidim_array_t", "lcm", matrices(10)),
     **{
         name: SUBJECTS[name]
         for name in ("Imu", "JointState, 32 joints", "LaserScan 1080", "PoseArray 1000", "LCM, 1,000 big-endian doubles")

@@ -51,7 +51,7 @@ def message_class(subject: Subject) -> Any:
             (Path(folder) / name).write_text(text, "utf-8")
         # In a process of its own: it brings another libprotobuf than the C++ peer, and a process bears but one.
         protoc = [sys.executable, "-m", "grpc_tools.protoc", f"-I{folder}", f"-I{IDL}"]
-        subprocess.run([*protoc, f"--descriptor_set_out={target}", *files], check=True)
+        subprocess.run([*protoc, "--include_imports", f"--descriptor_set_out={target}", *files], check=True)
         found.ParseFromString(target.read_bytes())
     for file in found.file:
         pool.Add(file)

@@ -147,3 +147,37 @@ def test_an_array_without_numbers_is_a_new_one():
         assert (one.dtype, one.shape, one.flags.writeable, one.flags.owndata) == (type_, (0,), True, True)
         one.resize(2, refcheck=False)
     assert second == unit.m()
+
+
+def test_arrays_of_arrays_whose_lengths_are_fields_are_read_at_once():
+    """Short rows and long ones, none, rows that are no numbers; a length that is negative, or too much, is an error at its row."""
+    given = lcm(
+        "struct m { int32_t n; int32_t k; int32_t a[n][k]; int8_t b[n][k]; double c[2][n][k]; boolean d[n][k]; string e[n][k]; s f[n]; }"
+        " struct s { int32_t i; float g[i][i]; }"
+    )
+    text = text_of(given)
+    assert text.count("map(list, _unpack_each(") == 4
+    assert text_of(given, Wishes(numpy=True)).count(".reshape(-1, m_k)") == 3
+    values: list[dict[str, Any]] = []
+    for n, k in ((0, 0), (0, 3), (1, 1), (5, 2), (2, 0), (4, 120)):
+        inner = {"i": k % 100, "g": [[row + column / 2 for column in range(k % 100)] for row in range(k % 100)]}
+        values.append(
+            {
+                "n": n,
+                "k": k,
+                "a": [[row - column for column in range(k)] for row in range(n)],
+                "b": [[row - column for column in range(k)] for row in range(n)],
+                "c": [[[row / 3 for _ in range(k)] for row in range(n)] for _ in range(2)],
+                "d": [[row == column for column in range(k)] for row in range(n)],
+                "e": [["x" * column for column in range(k)] for _ in range(n)],
+                "f": [inner] * n,
+            }
+        )
+    compare(given, *values)
+    decode, encode = rj.Decoder.of("t.m", **given), rj.Encoder.of("t.m", **given)
+    unit = module(type_request("decode", "t.m", given))
+    good = bytes(encode(encode.holder_type.from_dict(values[3])))
+    found = unit.decode(good)
+    assert (found.a, found.b, found.c) == (values[3]["a"], values[3]["b"], values[3]["c"])
+    lengths = [good[:8] + struct.pack(">ii", n, k) + good[16:] for n in (-1, 0, 3, 65536, 65537) for k in (-1, 0, 1, 3, 99, 100, 2**31 - 1)]
+    answers_as_the_library(unit, (decode, encode), [*lengths, *(good[:end] for end in range(len(good)))])

@@ -166,8 +166,8 @@ def _row(unit: Unit, kernel: Kernel, scope: ObjectScope, of: tuple[int, str, Row
     scope.numpy, scope.keeps_long = unit.numpy, True
     parts = _parts(unit, kernel, scope, (*row.block, Return(row.end)), written, depth=1)
     parts.result = "_joined"
-    if any(isinstance(stmt, Expect) and not is_behind_message(stmt) for stmt, _ in statements(parts.body)):
-        raise NotInParts
+    if any(isinstance(stmt, Expect) and not is_behind_message(stmt) and stmt.failure.indices for stmt, _ in statements(parts.body)):
+        raise NotInParts  # the function knows of no loop around it
     parts.positions.at = parts.positions.values[row.begin] = Sum(0, frozenset({(row.begin, 1)}))
     element = parts.binder.local("element")
     parts.binder.bind(lane, row.row, element, Ref(struct), unit.layout.lanes[lane].element)

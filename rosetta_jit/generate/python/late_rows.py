@@ -1,5 +1,7 @@
 """Rows with many lists and maps (see `late_lists`): one that brings none sets nothing of them, and becomes an object without lists.
 
+rows_texts_first = 0
+...
 any_rows_lists = False
 while at < stop:
     match case:
@@ -8,7 +10,9 @@ while at < stop:
             ...
 if any_rows_lists:                                      without it there is a statement for each list
     rows_q[start * 42] = 1                              where the first list starts is not 0 in rows that have any
-    if rows_texts_used > first: ...
+    if rows_texts_used > rows_texts_first:
+        ...
+        rows_texts_first = rows_texts_used
 
 [Row(...) if rows_texts_start or rows_texts_count else _new_Row(...) for ... in _unpack_each(...)]
 """
@@ -90,7 +94,10 @@ def _with_late(body: Block, lane: int, late: LateRow, name: str) -> Block:
     mentions = [place for stmt, _ in statements(body) for place in places_of(stmt) if place.lane == lane and place.offset in offsets]
     blocks = [block for block in blocks_within(body) if any(_row_cleared(stmt, lane) for stmt in block)]
     filled = _filled(blocks[0], lane, late, f"any\0{name}\0lists") if len(blocks) == 1 and len(mentions) == len(offsets) else None
-    return body if filled is None else _put(body, blocks[0], filled)
+    if filled is None:
+        return body
+    block, firsts = filled
+    return (*(Var(first, index(0)) for first in firsts), *_put(body, blocks[0], block))
 
 
 def _put(block: Block, old: Block, new: Block) -> Block:
@@ -98,8 +105,11 @@ def _put(block: Block, old: Block, new: Block) -> Block:
     return new if block is old else tuple(with_blocks(stmt, lambda inner: _put(inner, old, new)) for stmt in block)
 
 
-def _filled(block: Block, lane: int, late: LateRow, flag: str) -> Block | None:
-    """The block that fills a row, with what says which lists it has in one statement; nothing where it fills lists in another way."""
+def _filled(block: Block, lane: int, late: LateRow, flag: str) -> tuple[Block, tuple[str, ...]] | None:
+    """The block that fills a row, with what says which lists it has in one statement; nothing where it fills lists in another way.
+
+    Besides, the locals that say where a row's lists start: a row that has none leaves them as they are.
+    """
     begin = next(number for number, stmt in enumerate(block) if _row_cleared(stmt, lane))
     ends = [number for number, stmt in enumerate(block) if _list_set(stmt, lane, late)]
     lanes = {each.lane for each in late.lists}
@@ -112,15 +122,24 @@ def _filled(block: Block, lane: int, late: LateRow, flag: str) -> Block | None:
         return None
     row = _row_cleared(block[begin], lane)
     assert row is not None
-    sets = (SetField(replace(row, offset=late.lists[0].offset), index(1)), *(block[number] for number in ends))
+    firsts = {
+        stmt.name: stmt.value for stmt in between if isinstance(stmt, Let) and isinstance(stmt.value, Used) and stmt.value.lane in lanes
+    }
+    between = tuple(stmt for stmt in between if not (isinstance(stmt, Let) and stmt.name in firsts))
+    told = [_with_next(block[number], firsts) for number in ends]
+    sets = (SetField(replace(row, offset=late.lists[0].offset), index(1)), *told)
     others = tuple(stmt for number, stmt in enumerate(block[ends[0] :], ends[0]) if number not in ends)
-    return (
-        *block[: begin + 1],
-        Var(flag, FALSE),
-        *(_flagged(stmt, lanes, flag) for stmt in between),
-        If(Local("bool", flag), sets),
-        *others,
-    )
+    flagged = (_flagged(stmt, lanes, flag) for stmt in between)
+    return (*block[: begin + 1], Var(flag, FALSE), *flagged, If(Local("bool", flag), sets), *others), tuple(firsts)
+
+
+def _with_next(stmt: Stmt, firsts: Mapping[str, Used]) -> Stmt:
+    """A statement that says which rows a list has, and then where that of the next row starts."""
+    match stmt:
+        case If(Compare(_, _, Local(_, name)) as any_, then, ()) if name in firsts:
+            return If(any_, (*then, Assign(name, firsts[name])), ())
+        case _:
+            raise AssertionError(stmt)
 
 
 def _row_cleared(stmt: Stmt, lane: int) -> Place | None:

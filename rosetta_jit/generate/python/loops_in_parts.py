@@ -6,6 +6,7 @@ import re
 from collections import Counter
 
 from rosetta_jit.generate.python.bools import Bools, bools_written
+from rosetta_jit.generate.python.classes import member_names
 from rosetta_jit.generate.python.flags import Flags, flags_of
 from rosetta_jit.generate.python.groups import turned
 from rosetta_jit.generate.python.messages_in_parts import Messages
@@ -17,6 +18,7 @@ from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.model.layout import Number
+from rosetta_jit.model.types import Array, Struct
 
 
 class Loops(Messages):
@@ -76,18 +78,32 @@ class Loops(Messages):
     def _nested(self, nested: Nested, scalar: str, loop: nodes.For, at: int) -> None:
         """Ask numpy for all numbers of a loop, whose lines begin ``at``, before it."""
         writer, sequence = self.function.writer, self._sequence_of(loop)
-        if sequence is None or self.scope.sequences[nested.lane].element is None:
+        rows = None if sequence is None else self._arrays_of(sequence)
+        if rows is None or self.scope.sequences[nested.lane].element is None:
             return
         lines, own = writer.lines[at:], self.binder.local("rows")
         del writer.lines[at:]
         shape = ", ".join(self.function.text(each) for each in nested.lengths)
         is_bool = ", is_bool=True" if scalar == "bool" else ""
         asked = "" if isinstance(loop.count, nodes.Const) else f" if {self.function.text(loop.count)} >= {MANY} else None"
-        self.line(f"{own} = _table({self.scope.dtype(scalar, nested.order)}, {sequence.local}, ({shape}){is_bool}){asked}")
+        self.line(f"{own} = _table({self.scope.dtype(scalar, nested.order)}, {rows}, ({shape}){is_bool}){asked}")
         with writer.indented(f"if {own} is not None:"):
             self.line(f"{self.list_name}.append({own})")
         self.line("else:")
         writer.lines += [f"    {line}" for line in lines]
+
+    def _arrays_of(self, sequence: Listed) -> str | None:
+        """The arrays of an array, if its elements are arrays, or structs that have one and nothing else; no array of structs within."""
+        assert sequence.element is not None
+        type_, path = self.unit.schema.resolve(sequence.element), ""
+        while isinstance(type_, Struct) and len(type_.fields) == 1:
+            path += f".{member_names(type_)[0]}"
+            type_ = self.unit.schema.resolve(type_.fields[0].type)
+        while isinstance(type_, Array):
+            type_ = self.unit.schema.resolve(type_.element)
+        if isinstance(type_, Struct):
+            return None
+        return f"(each{path} for each in {sequence.local})" if path else sequence.local
 
     def _without_count(self, loop: nodes.For, at: int) -> bool:
         """Leave out the line above a loop which says how many rounds it has, where nothing else needs that."""

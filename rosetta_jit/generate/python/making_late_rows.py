@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import re
 
+from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.python.classes import member_names
 from rosetta_jit.generate.python.direct import LateRow
 from rosetta_jit.generate.python.late_lists import fields_besides, maker_without_lists
 from rosetta_jit.generate.python.making import Make
 from rosetta_jit.model.types import Array, Bytes, Map, String, Type
+
+MADE = "each"
+"""The local for an object that is being made."""
 
 
 class MakeLate(Make):
@@ -30,12 +35,19 @@ class MakeLate(Make):
         values += [self.unknown(late.slot.unknown, lane, row)] if late.slot.unknown is not None else []
         return f"{maker_without_lists(self.names[late.struct.name])}({', '.join(values)})"
 
+    def _settings(self, late: LateRow, lane: int, row: str) -> str:
+        """The lines that set all fields of an object: a call of its class with many of them takes longer."""
+        rows = zip(member_names(late.struct), late.struct.fields, late.slot.members, strict=True)
+        values = [(name, self.member(each, member, late.slot, lane, row)) for name, each, member in rows]
+        values += [("unknown_fields", self.unknown(late.slot.unknown, lane, row))] if late.slot.unknown is not None else []
+        return "\n".join(f"{MADE}.{name} = {bare(value)}" for name, value in values)
+
     def one_by_one(self, type_: String | Bytes | Array | Map, lane: int, count: str) -> str:
         """One call reads all numbers of a row that has a list, and none those of others."""
         late, row = self.scope.direct.late_rows.get(lane), self.scope.locals.identifier("row\0index")
         if late is None or not isinstance(type_, Array):
             return ""
-        usual, names, numbers = self.unpacked(lambda row: self.value(type_.element, late.slot, lane, row), lane, row)
+        usual, names, numbers = self.unpacked(lambda row: self._settings(late, lane, row), lane, row)
         if not numbers or re.search(rf"\b{row}\b", usual):
             return ""
         size, rows = self.scope.lanes.stride(lane), self.scope.view(lane, "")
@@ -44,7 +56,9 @@ class MakeLate(Make):
             f"for {row} in range({count}):",
             f"    if {self._any_lists(late, lane, row)}:",
             f'        {names} = _unpack("{numbers}", {rows}, {row} * {size})',
-            f"        made.append({usual})",
+            f"        {MADE} = _new({self.names[late.struct.name]})",
+            *(f"        {line}" for line in usual.splitlines()),
+            f"        made.append({MADE})",
             "    else:",
             f"        made.append({self._without_lists(late, lane, row)})",
             "return made",

@@ -8,11 +8,12 @@ from itertools import groupby
 from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.expressions import expression, slice_of
+from rosetta_jit.generate.python.nested_arrays import MANY
 from rosetta_jit.generate.python.scope import CODES, Scope
-from rosetta_jit.kernel.nodes import WIDTH, Binary, Const, Expr, For, IsText, Let, Load, Local, Place, SetField, Stmt, Wire
+from rosetta_jit.kernel.nodes import WIDTH, Binary, Const, Copy, Expr, For, IsText, Let, Load, Local, Place, SetField, Stmt, Wire
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.terms import add, index, mul
-from rosetta_jit.model.layout import Number, Slot
+from rosetta_jit.model.layout import Number, Row, Slot
 from rosetta_jit.startup.dataclass import replace
 
 SOME = 100
@@ -61,25 +62,30 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
         return f"[*_unpack(f{few}, data, {begin})] if {expression(scope, count)} < {SOME} else {many}"
     numbers = sorted((each.offset, each.scalar) for each in slots_of(slot) if isinstance(each, Number))
     code = "".join(f"{len([*same])}{each}" for each, same in groupby(CODES[scalar] for _, scalar in numbers))
-    names = "".join(f"{scope.own(lane, offset, scalar)}, " for offset, scalar in numbers)
-    names = names.strip() if len(numbers) == 1 else names[:-2]
+    names = _targets([scope.own(lane, offset, scalar) for offset, scalar in numbers])
     found = f'[{row()} for {names} in _unpack_each("{order}{code}", {part})]'
     return found if isinstance(size, Const) else f"{found} if {expression(scope, _divided(size, stride))} else []"
 
 
-def rows_read(scope: Scope, loop: For) -> str | None:
-    """The rows, of as many bytes or numbers each, that a loop takes from the message one behind the other: a list of them."""
+def rows_read(scope: Scope, loop: For, slot_of: Callable[[int], Slot], row: Callable[[int], str]) -> tuple[str, int] | None:
+    """The rows, of as many bytes or numbers each, that a loop takes from the message one behind the other: a list of them.
+
+    The number is that of rows from which on the loop takes longer. A row of a lane has the slot that ``slot_of`` gives, and is a struct or
+    an array; ``row`` makes the struct.
+    """
     lane, round_ = scope.direct.loops.get(loop.variable), Local("i64", loop.variable)
     if isinstance(loop.count, Const) and loop.count.value <= FEW_ROWS:
         return None
     match loop.body:
         case (Let(item, Binary("add", one, other)), *fills) if lane is not None:
-            size = _size_of_bytes(scope, lane, item, fills) or _size_of_numbers(scope, item, fills)
+            size = _size_of_bytes(scope, lane, item, fills) or _size_of_numbers(scope, item, fills) or _size_of_array(scope, item, fills)
             steps = [each.right for each in (one, other) if isinstance(each, Binary) and (each.op, each.left) == ("mul", round_)]
             bases = [each for each in (one, other) if loop.variable not in locals_in(each)]
             if size is None or len(bases) != 1 or steps != [index(size)]:
                 return None
-            return _rows(scope, fills[0], bases[0], loop.count, size)
+            made = (lambda: row(lane)) if isinstance(slot_of(lane), Row) else None
+            table = _table(scope, fills[0], slot_of, bases[0], loop.count, size, made) if scope.numpy else None
+            return (_rows(scope, fills[0], bases[0], loop.count, size, made), 0) if table is None else (table, MANY)
         case _:
             return None
 
@@ -105,20 +111,58 @@ def _size_of_numbers(scope: Scope, item: str, fills: list[Stmt]) -> int | None:
             return None
 
 
-def _rows(scope: Scope, first: Stmt, base: Expr, count: Expr, size: int) -> str:
-    """A list of rows, by the statement that fills the first field of one."""
+def _size_of_array(scope: Scope, item: str, fills: list[Stmt]) -> int | None:
+    """How many bytes rows have that are arrays of numpy, and lie in the message as in memory."""
+    match fills:
+        case [Copy(Place(lane), Wire(Local(_, name)), Const(_, size))] if scope.numpy and lane in scope.direct.whole and name == item:
+            return int(size) or None
+        case _:
+            return None
+
+
+def _table(
+    scope: Scope, fill: Stmt, slot_of: Callable[[int], Slot], base: Expr, count: Expr, size: int, made: Callable[[], str] | None
+) -> str | None:
+    """A list of rows that are arrays of numpy, of which a statement fills one: numpy reads all of them, as rows of one array."""
+    begin, lane = bare(expression(scope, base)), 0
+    match fill:
+        case SetField(Place(lane), Load(type_, _, order)):
+            numbers = bare(expression(scope, mul(count, size // WIDTH[type_])))
+            dtype = scope.dtype(type_, "<" if WIDTH[type_] == 1 else order)
+            found = f"_numbers_in(data, {dtype}, {numbers}, {begin}).astype({scope.dtype(type_)})"
+        case Copy(Place(lane)) if isinstance(slot := slot_of(lane), Number):
+            type_ = slot.scalar
+            numbers = bare(expression(scope, mul(count, size // WIDTH[type_])))
+            scope.from_call.add("copy")
+            found = f"_array({scope.dtype(type_)}, data, {numbers}, {begin}, call_copy)"
+        case _:
+            return None
+    found += f".reshape(-1, {size // WIDTH[type_]})"
+    known, scope.direct.whole = scope.direct.whole, scope.direct.whole | {lane}
+    rows = f"[*{found}]" if made is None else f"[{made()} for {scope.lanes.rows(lane)} in {found}]"
+    scope.direct.whole = known
+    return rows
+
+
+def _rows(scope: Scope, first: Stmt, base: Expr, count: Expr, size: int, made: Callable[[], str] | None) -> str:
+    """A list of rows, by the statement that fills the first field of one; ``made`` are those that are structs."""
     begin, whole = bare(expression(scope, base)), expression(scope, mul(count, size))
     part = f"data[{begin} : {expression(scope, base)} + {whole}]"
     match first:
-        case SetField(_, Load(type_, _, order)):
+        case SetField(Place(lane), Load(type_, _, order)):
             number = size // WIDTH[type_]
-            order = "" if WIDTH[type_] == 1 else order
-            if not scope.numpy:
-                return f'[[*each] for each in _unpack_each("{order}{number}{CODES[type_]}", {part})]'
-            dtype, numbers = scope.dtype(type_, order or "<"), bare(expression(scope, mul(count, number)))
-            return f"[*_numbers_in(data, {dtype}, {numbers}, {begin}).astype({scope.dtype(type_)}).reshape(-1, {number})]"
+            each = f'_unpack_each("{"" if WIDTH[type_] == 1 else order}{number}{CODES[type_]}", {part})'
+            names = [scope.element(lane, place) for place in range(number)]
+            return f"[[*each] for each in {each}]" if made is None else f"[{made()} for {_targets(names)} in {each}]"
+        case SetField(Place(lane)) if made is not None:
+            return f'[{made()} for {_targets([scope.piece(lane, 0)])} in _unpack_each("{size}s", {part})]'
         case _:
             return f'[each for (each,) in _unpack_each("{size}s", {part})]'
+
+
+def _targets(names: list[str]) -> str:
+    """The locals that get what one call of the struct module gives."""
+    return f"{names[0]}," if len(names) == 1 else ", ".join(names)
 
 
 def _divided(size: Expr, stride: int) -> Expr:

@@ -7,15 +7,17 @@ from typing import assert_never
 from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.bools import Bools, bools_read
+from rosetta_jit.generate.python.calls import host_call, pass_on, tuple_of
 from rosetta_jit.generate.python.descents import Visit
 from rosetta_jit.generate.python.expressions import expression, is_small, location, slice_of
 from rosetta_jit.generate.python.failures import fail, fail_if, lacks
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
 from rosetta_jit.generate.python.mentions import assigned
-from rosetta_jit.generate.python.printed import Attempt, Function
+from rosetta_jit.generate.python.printed import Function
 from rosetta_jit.generate.python.reading import numbers_read, rows_read, takes_text
 from rosetta_jit.generate.python.reserving import reserve, take
-from rosetta_jit.generate.python.scope import CODES, view_name
+from rosetta_jit.generate.python.rows_at_once import rows_at_once
+from rosetta_jit.generate.python.scope import CODES
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import mul, type_of
@@ -101,7 +103,7 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
         case nodes.Call():
             _call(function, stmt)
         case nodes.HostCall():
-            _host_call(function, stmt)
+            host_call(function, stmt)
         case _:
             assert_never(stmt)
 
@@ -209,13 +211,19 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
             _turn(function, count, found, decodes=isinstance(stmt.body[-1], nodes.SetField))
         case nodes.For(variable, count, _) if (bools := bools_read(stmt)) is not None and bools.first.lane in scope.direct.whole:
             _bools(function, variable, count, bools)
-        case nodes.For(variable) if (rows := rows_read(scope, stmt)) is not None:
-            function.line(f"{scope.lanes.rows(scope.direct.loops[variable])} += {rows}")
-        case nodes.For(variable, count, body):
-            with function.writer.indented(f"for {scope.locals.identifier(variable)} in range({function.text(count)}):"):
-                print_block(function, body)
-                if (lane := scope.direct.loops.get(variable)) is not None and lane not in scope.direct.listed:
-                    function.line(f"{scope.lanes.rows(lane)}.append({function.objects.row(scope, lane)})")
+        case nodes.For(_, count) if (rows := _rows_read(function, stmt)) is not None:
+            _rows(function, stmt, "" if isinstance(count, nodes.Const) else function.text(count), *rows)
+        case nodes.For():
+            layout = function.objects.layout
+            at_once = None if layout is None else rows_at_once(scope, stmt, layout)
+            if at_once is None:
+                _loop(function, stmt)
+                return
+            with function.writer.indented(f"if {at_once.condition}:"):
+                for line in at_once.lines:
+                    function.line(line)
+            with function.writer.indented("else:"):
+                _loop(function, stmt)
         case nodes.While(condition, body):
             with function.writer.indented(f"while {function.text(condition)}:"):
                 print_block(function, body)
@@ -234,6 +242,34 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
                         print_block(function, body)
         case _:
             assert_never(stmt)
+
+
+def _loop(function: Function, loop: nodes.For) -> None:
+    scope = function.scope
+    with function.writer.indented(f"for {scope.locals.identifier(loop.variable)} in range({function.text(loop.count)}):"):
+        print_block(function, loop.body)
+        if (lane := scope.direct.loops.get(loop.variable)) is not None and lane not in scope.direct.listed:
+            function.line(f"{scope.lanes.rows(lane)}.append({function.objects.row(scope, lane)})")
+
+
+def _rows_read(function: Function, loop: nodes.For) -> tuple[str, int] | None:
+    """The rows that a loop takes from the message, if these are read by one call."""
+    scope, layout = function.scope, function.objects.layout
+    if layout is None:
+        return None
+    return rows_read(scope, loop, lambda lane: layout.lanes[lane].element, lambda lane: function.objects.row(scope, lane))
+
+
+def _rows(function: Function, loop: nodes.For, count: str, rows: str, least: int) -> None:
+    """Rows that are read by one call, which fewer than the ``least`` are not."""
+    line = f"{function.scope.lanes.rows(function.scope.direct.loops[loop.variable])} += {rows}"
+    if not count or not least:
+        function.line(line)
+        return
+    with function.writer.indented(f"if {count} >= {least}:"):
+        function.line(line)
+    with function.writer.indented("else:"):
+        _loop(function, loop)
 
 
 def _bools(function: Function, variable: str, count: nodes.Expr, bools: Bools) -> None:
@@ -269,15 +305,15 @@ def _call(function: Function, call: nodes.Call) -> None:
         _visit(function, call, visit)
         return
     scope, routine = function.scope, function.routines[call.routine]
-    _pass_on(function, routine)
+    pass_on(function.scope, routine)
     results = [scope.locals.identifier(result.name) for result in call.results]
     called = next(each for each in function.kernel.routines if each.name == call.routine)
     for result, own in zip(call.results, called.results, strict=True):
         limits = (each.right for each in called.ensures if isinstance(each, nodes.Compare) and (each.op, each.left) == ("le", own))
         scope.note(result.name, is_small=own.type == "u64" and any(is_small(limit, ()) for limit in limits))
     sites = [f"sites[{each - 1}]" if function.is_routine else str(each) for each in call.sites]
-    indices = "indices" if function.is_routine else _tuple([function.text(each) for each in call.indices])
-    arguments = ", ".join(["data", "end", _tuple(sites), indices, *routine.needs, *(function.text(each) for each in call.arguments)])
+    indices = "indices" if function.is_routine else tuple_of([function.text(each) for each in call.indices])
+    arguments = ", ".join(["data", "end", tuple_of(sites), indices, *routine.needs, *(function.text(each) for each in call.arguments)])
     bound = f"{', '.join(results)}{',' if len(results) == 1 else ''} = " if results else ""
     if routine.is_mostly_a_byte:
         at, (value, after) = expression(scope, call.arguments[0]), results
@@ -305,28 +341,3 @@ def _visit(function: Function, call: nodes.Call, visit: Visit) -> None:
         with function.writer.indented(f"for _ in range({count}):"):
             function.line(f"element, {at} = {scope.reader(visit.lane)}(data, end, left, {at}, {function.text(visit.depth)}{COPY})")
             function.line(f"{name}.append(element)")
-
-
-def _pass_on(function: Function, routine: Attempt) -> None:
-    """What a routine needs its caller needs, too."""
-    scope = function.scope
-    for lane in range(len(scope.lanes.all)):
-        for code in ("", *set(CODES.values())):
-            if view_name(scope.lanes, lane, code) in routine.needs:
-                scope.views.add((lane, code))
-        if f"{scope.lanes.rows(lane)}_room" in routine.needs:
-            scope.rooms.add(lane)
-    scope.rows.update(each for each in routine.needs if each.startswith("m_"))
-
-
-def _tuple(texts: list[str]) -> str:
-    return f"({', '.join(texts)}{',' if len(texts) == 1 else ''})"
-
-
-def _host_call(function: Function, call: nodes.HostCall) -> None:
-    result = function.scope.locals.identifier(call.result.name)
-    arguments = ", ".join(function.text(each) for each in call.arguments)
-    with function.writer.indented("try:"):
-        function.line(f'{result} = functions["{call.function}"]({arguments})')
-    with function.writer.indented("except Refused:"):
-        fail(function, call.failure)

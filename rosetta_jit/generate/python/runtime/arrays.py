@@ -81,8 +81,8 @@ def _raw(dtype: "np.dtype[Any]", numbers: Any, is_bool: bool = False) -> bytes:
 def _table(dtype: "np.dtype[Any]", rows: Any, shape: tuple[int, ...], is_bool: bool = False) -> bytes | None:
     """The bytes of arrays in arrays, of a shape; nothing where they have another one, or numbers of another type."""
     try:
-        found: npt.NDArray[Any] = np.asarray(rows)
-    except (TypeError, ValueError):
+        found: npt.NDArray[Any] = np.asarray(rows if isinstance(rows, list | _Array) else [*rows])
+    except (AttributeError, TypeError, ValueError):
         return None
     if found.shape != shape or found.dtype.type is not (np.bool_ if is_bool else dtype.type):
         return None
