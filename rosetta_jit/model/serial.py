@@ -22,6 +22,8 @@ Plain = dict[str, Any]
 
 LEFT_OUT = ("doc", "span")
 NO_VALUE = object()
+IS = "is"
+SCALARS = frozenset((type(None), bool, int, float, str))
 TYPES = {each.__name__: each for each in (*get_args(types.Type), types.Field, types.NamedConstant)}
 
 
@@ -43,6 +45,37 @@ def to_plain(type_: types.Type, schema: types.Schema) -> Plain:
     return {"declared": dict(sorted(declared.items())), "type": root}
 
 
+def declared_in(plain: Plain, name: str, known: dict[str, list[str]]) -> Plain:
+    """What `to_plain` gives for a declaration that a type reaches, out of the data of that type.
+
+    ``known`` are the names that its declarations refer to, of those that were looked at.
+    """
+    every, pending, declared = plain["declared"], [name], dict[str, object]()
+    while pending:
+        each = pending.pop()
+        if each not in declared:
+            declared[each] = every[each]
+            if each not in known:
+                known[each] = _referred(every[each])
+            pending += known[each]
+    return {"declared": dict(sorted(declared.items())), "type": {IS: types.Ref.__name__, "name": name}}
+
+
+def _referred(plain: object) -> list[str]:
+    """The names that a declaration refers to."""
+    names, pending = list[str](), [plain]
+    for each in pending:  # which grows
+        if isinstance(each, list):
+            pending += cast("list[object]", each)
+        elif isinstance(each, dict):
+            node = cast("Plain", each)
+            if node.get(IS) == types.Ref.__name__:
+                names.append(node["name"])
+            else:
+                pending += node.values()
+    return names
+
+
 def from_plain(plain: Plain) -> tuple[types.Type, types.Schema]:
     """The type, and a schema of the declarations that it reaches; raises ValueError if the data is not what `to_plain` makes."""
     try:
@@ -57,23 +90,27 @@ def from_plain(plain: Plain) -> tuple[types.Type, types.Schema]:
 
 def _plain(value: object, pending: list[str], depth: int) -> object:
     """A value of the model as plain data; to ``pending`` come the names that it refers to."""
-    match value:
-        case None | bool() | int() | float() | str():
-            return value
-        case bytes():
-            return {"hex": value.hex()}
-        case tuple():
-            return list(map(_plain, cast("tuple[object, ...]", value), repeat(pending), repeat(depth)))
-        case _:
-            inner = _deeper(depth, type(value))
+    kind = type(value)
+    if kind in SCALARS:
+        return value
+    if isinstance(value, int | float | str):
+        return value
+    if isinstance(value, bytes):
+        return {"hex": value.hex()}
+    if isinstance(value, tuple):
+        return list(map(_plain, cast("tuple[object, ...]", value), repeat(pending), repeat(depth)))
+    inner = _deeper(depth, kind)
     if isinstance(value, types.Ref):
         pending.append(value.name)
-    plain: dict[str, object] = {"is": type(value).__name__}
-    for name, default in _attributes(type(value)):
+    plain: dict[str, object] = {}
+    for name, default in _attributes(kind):
+        if name == IS:
+            plain[name] = kind.__name__
+            continue
         attribute = cast("object", getattr(value, name))
-        if attribute != default:
-            plain[name] = _plain(attribute, pending, inner)
-    return dict(sorted(plain.items()))
+        if attribute is not default and attribute != default:
+            plain[name] = attribute if type(attribute) in SCALARS else _plain(attribute, pending, inner)
+    return plain
 
 
 def _value(plain: Any, depth: int) -> Any:
@@ -85,10 +122,11 @@ def _value(plain: Any, depth: int) -> Any:
     attributes = cast("Plain", plain).copy()
     if "hex" in attributes:
         return bytes.fromhex(attributes["hex"])
-    node = _class(attributes.pop("is"))
+    node = _class(attributes.pop(IS))
     inner = _deeper(depth, node)
     for name, each in attributes.items():
-        attributes[name] = _value(each, inner)
+        if type(each) not in SCALARS:
+            attributes[name] = _value(each, inner)
     return node(**attributes)
 
 
@@ -101,11 +139,12 @@ def _deeper(depth: int, node: type) -> int:
 
 @cache
 def _attributes(node: Any) -> tuple[tuple[str, object], ...]:
-    """The names of what is kept of a class of the model, each with its default, or with what is no value of any."""
+    """The names of what is kept of a class of the model, each with its default, or with `NO_VALUE`; `IS` among them, in order."""
     names: tuple[str, ...] = node.__match_args__
     defaults: tuple[object, ...] = node.__init__.__defaults__ or ()
     required = len(names) - len(defaults)
-    return tuple((name, NO_VALUE if at < required else defaults[at - required]) for at, name in enumerate(names) if name not in LEFT_OUT)
+    kept = {name: NO_VALUE if at < required else defaults[at - required] for at, name in enumerate(names) if name not in LEFT_OUT}
+    return tuple(sorted({IS: NO_VALUE, **kept}.items()))
 
 
 @cache

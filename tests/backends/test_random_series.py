@@ -12,7 +12,7 @@ from random import Random
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.backends.llvm import alike, function, stretches
+from rosetta_jit.backends.llvm import alike, function, stretches, twins
 
 SEEDS, BLOCK, BLOCKS = 4, 50, 20
 WORDS = ("", "a", "some text", "é ü", "x" * 40)
@@ -133,6 +133,8 @@ def bodies(monkeypatch):
     monkeypatch.setattr(alike, "MANY", 16)
     monkeypatch.setattr(stretches, "MANY", 16)
     monkeypatch.setattr(stretches, "ROUNDS", 4)
+    monkeypatch.setattr(alike, "SEVERAL", 16)
+    monkeypatch.setattr(twins, "LEAST", 4)
     monkeypatch.setattr(function.stretches, "found", found)
     return seen
 

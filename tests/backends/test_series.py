@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from functools import reduce
 
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.backends.llvm import twins
 from rosetta_jit.backends.llvm.alike import Series
 from rosetta_jit.backends.llvm.stretches import found
 from rosetta_jit.kernel.nodes import (
@@ -155,6 +157,82 @@ def test_what_is_missing_in_it_is_told_in_the_same_words(where):
             encode(holder)
         told.append(str(error.value))
     assert told[0] == told[1]
+
+
+def with_parts(where):
+    """A message type that is a field of several others, in a list and singly, and what asks for it."""
+    numbers = " ".join(f"optional int64 number{number} = {number + 1};" for number in range(12))
+    part = f"message Part {{ {numbers} repeated string texts = 20; required int32 needed = 21; }}"
+    uses = " ".join(f"{label} Part {name} = {number};" for number, (label, name) in enumerate(where, 1))
+    every = "message All { repeated Outer outer = 1; optional Outer other = 2; }"
+    text = f'syntax = "proto2"; package a;\n{part}\nmessage Outer {{ {uses} }}\n{every}'
+    return "a.All", {"encoding": "protobuf", "schema": {"a.proto": text}}
+
+
+PARTS = (("optional", "left"), ("optional", "right"), ("optional", "middle"), ("repeated", "parts"), ("repeated", "more"))
+
+
+def parted(holder):
+    """A holder with parts of which each has other values."""
+    for number in range(3):
+        outer = holder.outer.add() if number else holder.other
+        for at, part in enumerate((outer.left, outer.middle, outer.parts.add(), outer.parts.add(), outer.more.add())):
+            part.needed = at
+            part.number3, part.number11 = 300 * at + number, -at
+            part.texts.extend([f"{number} {at}"] * at)
+    return holder
+
+
+def shared_blocks(direction, type_, options):
+    (name, text), *_ = options["schema"].items()
+    made = Build(Request(direction, type=type_, files=((name, text),), encoding="protobuf"))
+    for each in made.kernels:
+        places = [place for _, place in twins.places(each, each.bodies[0], ())]
+        yield Counter(id(place.shared) for place in places)
+
+
+def test_a_message_type_in_several_fields_is_printed_once():
+    type_, options = with_parts(PARTS)
+    for direction in ("decode", "encode"):
+        for places in shared_blocks(direction, type_, options):
+            assert max(places.values()) >= 2
+    (decode, encode), (reference, written) = (
+        [make.of(type_, **options, backend=backend) for make in (rj.Decoder, rj.Encoder)] for backend in ("llvm", "interpreter")
+    )
+    message = bytes(encode(parted(encode.new())))
+    assert message == bytes(written(parted(written.new())))
+    for size in range(0, len(message), 5):
+        told = []
+        for each in (decode, reference):
+            try:
+                told.append(each(message[:size]))
+            except rj.DecodeError as error:
+                told.append(str(error))
+        assert told[0] == told[1]
+    assert bytes(encode(decode(message))) == message
+
+
+def test_lanes_of_shared_blocks_grow():
+    type_, options = with_parts(PARTS)
+    decode, encode = (make.of(type_, **options) for make in (rj.Decoder, rj.Encoder))
+    made = parted(encode.new())
+    for outer in made.outer:
+        outer.more[0].texts.extend(f"text {number}" * 9 for number in range(500))
+        outer.left.texts.extend(f"text {number}" for number in range(300))
+    message = bytes(encode(made))
+    assert decode(message) == made
+    for row in decode.many([message, bytes(encode(parted(encode.new()))), message]):
+        assert row.outer[0].left.needed == 0
+
+
+def test_what_is_missing_in_a_shared_block_is_told_where_it_is():
+    type_, options = with_parts(PARTS)
+    decode, encode = (make.of(type_, **options) for make in (rj.Decoder, rj.Encoder))
+    made = parted(encode.new())
+    made.outer[1].parts[1].ClearField("needed")
+    with pytest.raises(rj.EncodeError, match=r"outer\[1\]\.parts\[1\]"):
+        encode(made)
+    assert decode(bytes(encode(parted(encode.new())))) == parted(encode.new())
 
 
 def test_two_large_messages_that_differ_are_no_series():

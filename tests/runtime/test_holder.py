@@ -18,7 +18,7 @@ import pytest
 from rosetta_jit.errors import EncodeError, InUse, InvalidHolder, ValuesError
 from rosetta_jit.kernel.state import CAPACITY, CLEAN, UNSETTLED, USED, VALID, lane_word
 from rosetta_jit.model.limits import MAX_SERIAL_DEPTH
-from rosetta_jit.model.serial import from_plain, to_plain
+from rosetta_jit.model.serial import declared_in, from_plain, to_plain
 from rosetta_jit.model.types import Array, Bytes, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Union
 from rosetta_jit.runtime.holder import holder_class, holder_class_of
 from rosetta_jit.runtime.lanes import Lanes
@@ -32,6 +32,15 @@ FULL = {
     "names": ["a", ""], "matrix": [[1, 2], [], [65535]], "fixed": [1, 2, 3], "by_name": {"k": {"x": 7, "name": "", "values": []}},
     "counts": {-1: 2**40}, "right": {"name": "r", "values": []},
 }  # fmt: skip
+
+
+def test_the_data_of_a_type_have_those_of_the_declarations_that_it_reaches():
+    """What a nested message is known by is the same, whether it was found in another type's data or made."""
+    plain, known = to_plain(Ref("t.Whole"), SCHEMA), {}
+    assert len(plain["declared"]) == 3
+    for name in plain["declared"]:
+        found, made = declared_in(plain, name, known), to_plain(Ref(name), SCHEMA)
+        assert json.dumps(found) == json.dumps(made)
 
 
 def test_dicts_go_in_and_come_out():

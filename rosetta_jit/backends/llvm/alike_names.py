@@ -61,3 +61,25 @@ def stay_inside(rows: Rows, uses: Counter[str]) -> bool:
         for slot in row
         if slot.kind == "bound"
     )
+
+
+def names_around(rows: Rows) -> list[dict[str, str]] | None:
+    """What blocks use of what is bound around them: for each, what the names of the last one are there; None if they do not correspond."""
+    last = rows[-1]
+    bound = {slot.name: at for at, slot in enumerate(last) if slot.kind == "bound"}
+    assigned = {slot.name for slot in last if slot.kind == "assigned" and slot.name not in bound}
+    uses = [(at, slot.name, bound.get(slot.name)) for at, slot in enumerate(last) if slot.is_use]
+    found: list[dict[str, str]] = []
+    for row in rows:
+        own, here = {slot.name for slot in row if slot.kind == "bound"}, dict[str, str]()
+        for at, name, source in uses:
+            if source is not None:
+                if row[at].name != row[source].name:
+                    return None
+            elif row[at].name in own or here.setdefault(name, row[at].name) != row[at].name:
+                return None
+        times = Counter(here.values())
+        if any(times[here[name]] > 1 for name in assigned):
+            return None  # what is assigned is read by another name
+        found.append(here)
+    return found

@@ -139,9 +139,11 @@ def place_pointer(frame: Frame, place: nodes.Place) -> ir.Value:
 
     address = frame.based((place.lane, row), start)
     offset = None if frame.stretch is None else frame.stretch.offsets.get((place.lane, place.offset))
-    if offset is None:
+    if frame.stretch is None or offset is None:
         return _moved(frame, address, rows * stride + place.offset)
-    return builder.gep(_moved(frame, address, rows * stride), [offset], source_etype=I8)
+    column = frame.stretch.columns[offset.column]
+    moved = frame.based((place.lane, row, offset.column), lambda: builder.gep(address, [column], source_etype=I8))
+    return _moved(frame, moved, rows * stride + offset.further)
 
 
 def base_and_offset(index: nodes.Expr) -> tuple[nodes.Expr, int]:

@@ -72,7 +72,7 @@ def cold(frame: Frame, holds: ir.Value, known: ir.Block | None = None) -> ir.Blo
 
 def _told(frame: Frame, site: int, *numbers: nodes.Expr) -> tuple[object, ...] | None:
     """What a failure reports, and what that is computed from; None where it is another site or another index for each caller or stretch."""
-    if frame.caller is not None or frame.stretch is not None:
+    if frame.caller is not None or not frame.has_one_stretch:
         return None
     names = sorted(set[str]().union(*map(locals_in, numbers)))
     return (site, numbers, *(frame.locals[each] for each in names))

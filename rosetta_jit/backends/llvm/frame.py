@@ -12,10 +12,10 @@ from functools import lru_cache
 
 from llvmlite import ir
 
-from rosetta_jit.backends.llvm.alike import NOTHING, Found
+from rosetta_jit.backends.llvm.alike import NOTHING, Found, Number
 from rosetta_jit.kernel.ir import Routine
 from rosetta_jit.kernel.nodes import Call, Scalar
-from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANE_WORDS, LANES, NOW, NUMBER, REGISTERS, USED, lane_word
+from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANES, NOW, NUMBER, REGISTERS, USED, lane_word
 from rosetta_jit.startup.dataclass import dataclass, field
 
 I1, I8, I16, I32, I64 = (ir.IntType(bits) for bits in (1, 8, 16, 32, 64))
@@ -135,11 +135,12 @@ class StoredExit:
 
     LLVM looks through all edges of a phi for each edge that it moves, which takes quadratic time. So it does with blocks whose last
     instructions are the same; theirs stores the site, in which they differ. ``shared`` are blocks on the way that store the same indices
-    for many edges, by these and by the values that they are computed from.
+    for many edges, by these and by the values that they are computed from. ``numbers`` are those of the words.
     """
 
     block: ir.Block
     words: tuple[ir.Value, ...]
+    numbers: tuple[int, ...]
     is_reached: bool = False
     shared: dict[tuple[object, ...], ir.Block] = field(default_factory=dict[tuple[object, ...], "ir.Block"])
 
@@ -165,11 +166,18 @@ class StoredExit:
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """The numbers of one stretch of a series, by those of the last one. A site is looked up where something has failed."""
+    """What stands for the lanes and offsets of the last stretch of a series in the one that is being printed: ``columns`` of its row.
 
-    lanes: Mapping[int, ir.Value]
-    offsets: Mapping[tuple[int, int], ir.Value]
+    ``words`` are the places in the state where the words of a lane of that number lie. A site is looked up where something has failed.
+    The function of a shared block ``is_whole``: all in it has these numbers.
+    """
+
+    lanes: Mapping[int, Number]
+    offsets: Mapping[tuple[int, int], Number]
+    columns: Mapping[int, ir.Value]
+    words: Mapping[int, ir.Value]
     site: Callable[[ir.IRBuilder, int], ir.Value]
+    is_whole: bool = False
 
 
 @dataclass(slots=True)
@@ -180,7 +188,8 @@ class Frame:
     ``indices`` are the locals that grow with the rounds of a loop. Of a body with series (`alike`),
     ``rows`` is an array of the used lengths of the holder's lanes, and ``stretch`` has the numbers of the stretch that is being printed.
     ``bases`` are addresses of rows and places in the message, by the block that has computed them. A body that is no ``counting`` one
-    leaves the used lengths of the holder's lanes as they are.
+    leaves the used lengths of the holder's lanes as they are. ``functions`` are those of shared blocks, by these; in such a function
+    ``outcome`` is what it gives.
     """
 
     module: ir.Module
@@ -203,6 +212,23 @@ class Frame:
     counting: bool = True
     indices: set[str] = field(default_factory=set[str])
     bases: dict[tuple[object, ...], ir.Value] = field(default_factory=dict[tuple[object, ...], ir.Value])
+    functions: dict[int, ir.Function] = field(default_factory=dict[int, "ir.Function"])
+    outcome: ir.LiteralStructType | None = None
+
+    @property
+    def has_one_stretch(self) -> bool:
+        """Whether the numbers are the same wherever the body has got to."""
+        return self.stretch is None or self.stretch.is_whole
+
+    def leave(self, status: ir.Value, values: Sequence[ir.Value] = ()) -> None:
+        """End the function with a status, and the values of variables that a shared block gives back."""
+        if self.outcome is None:
+            self.builder.ret(status)
+            return
+        whole: ir.Value = ir.Constant(self.outcome, None)
+        for number, value in enumerate((status, *values)):
+            whole = self.builder.insert_value(whole, value, number)
+        self.builder.ret(whole)
 
     def message(self) -> ir.Value:
         """Where the message begins."""
@@ -221,7 +247,7 @@ class Frame:
             self.loaded[key] = self.entry.select(has_any, limit, constant(0))
         return self.loaded[key]
 
-    def based(self, what: tuple[object, ir.Value], made: Callable[[], ir.Value]) -> ir.Value:
+    def based(self, what: tuple[object, ...], made: Callable[[], ir.Value]) -> ir.Value:
         """An address that depends on a value: made once in a block for a value of which there is but one."""
         key = (self.builder.block, self.stretch is None, *what)
         if key not in self.bases:
@@ -257,7 +283,11 @@ class Frame:
 
     def lane_number(self, lane: int) -> ir.Value:
         """The lane's number while the kernel runs: in a series it is another one for each stretch."""
-        return constant(lane) if self.stretch is None else self.stretch.lanes.get(lane, constant(lane))
+        found = None if self.stretch is None else self.stretch.lanes.get(lane)
+        if self.stretch is None or found is None:
+            return constant(lane)
+        number = self.stretch.columns[found.column]
+        return self.builder.add(number, constant(found.further)) if found.further else number
 
     def used_slot(self, lane: int) -> ir.Value:
         """Where the lane's used length is: in the state if it stays there, else in a stack slot."""
@@ -316,10 +346,10 @@ class Frame:
 
     def _state_place(self, lane: int, word: int) -> ir.Value:
         """The address of a word of one of the holder's lanes while the kernel runs."""
-        if self.stretch is None or lane not in self.stretch.lanes:
+        found = None if self.stretch is None else self.stretch.lanes.get(lane)
+        if self.stretch is None or found is None:
             return state_word(self.builder, self.parameters.state, lane_word(lane, word))
-        first = self.builder.mul(self.stretch.lanes[lane], constant(LANE_WORDS))
-        return state_word(self.builder, self.parameters.state, self.builder.add(first, constant(lane_word(0, word))))
+        return state_word(self.builder, self.stretch.words[found.column], lane_word(found.further, word))
 
     def _load(self, builder: ir.IRBuilder, lane: int, word: int, type_: ir.Type, name: str) -> ir.Value:
         if self.is_hidden(lane):

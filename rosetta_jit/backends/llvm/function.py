@@ -15,7 +15,7 @@ from llvmlite import ir
 
 from rosetta_jit.backends.llvm import checks as llvm_checks
 from rosetta_jit.backends.llvm import definitions
-from rosetta_jit.backends.llvm.alike import NOTHING, Found, may_have_series
+from rosetta_jit.backends.llvm.alike import NOTHING, Found, may_have_series, may_share
 from rosetta_jit.backends.llvm.frame import COLD, I64, POINTER, Exit, Frame, Parameters, StoredExit, constant, new_function, state_word
 from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.routines import Printed, routines_of
@@ -41,9 +41,9 @@ from rosetta_jit.kernel.traits import are_straight_and_compute, is_straight
 from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
-    from rosetta_jit.backends.llvm import series, stretches
+    from rosetta_jit.backends.llvm import series, stretches, twins
 else:
-    series, stretches = late("rosetta_jit.backends.llvm", "series", "stretches")
+    series, stretches, twins = late("rosetta_jit.backends.llvm", "series", "stretches", "twins")
 
 SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
 ARGUMENTS = ("buffer", "begin", "end", "state", "row")
@@ -145,13 +145,15 @@ def _attempt(
     """
     entry, first = Lines(function.append_basic_block("entry")), function.append_basic_block("body")
     body, is_first = kernel.bodies[number], number == 0
-    done, failed = Exit.new(entry, "done", 1), _failed(entry, kernel, function.args[3], is_first=is_first)
+    alike = _series_of(kernel, body, is_first=is_first)
+    stores = is_first and (alike.has_places or len(statements(body)) >= MANY_STATEMENTS)
+    done, failed = Exit.new(entry, "done", 1), _failed(entry, kernel, function.args[3], stores=stores)
     parameters, lanes, emptied = Parameters(*function.args), (kernel.strides, kernel.lanes), emptied_lanes(kernel)
     frame = Frame(function.module, entry, entry.beside(first), parameters, *lanes, {}, done, failed, emptied, routines)
     frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
     counted = counted_lanes(kernel, body)
-    frame.alike, frame.counting = _series_of(kernel, body), bool(counted)
-    if frame.alike and counted:
+    frame.alike, frame.counting = alike, bool(counted)
+    if alike and counted:
         series.begin_rows(frame, kernel.direction)
     llvm_checks.body(frame, body, in_vectors=is_first and are_straight_and_compute((kernel,)))
     if not frame.builder.block.is_terminated:
@@ -172,9 +174,10 @@ def _attempt(
             builder.ret(otherwise)
 
 
-def _series_of(kernel: Kernel, body: Block) -> Found:
+def _series_of(kernel: Kernel, body: Block, *, is_first: bool) -> Found:
     """What repeats itself in a body: most are too short for that to be looked for."""
-    return stretches.found(kernel, body) if may_have_series(kernel, body) else NOTHING
+    found = stretches.found(kernel, body) if may_have_series(kernel, body) else NOTHING
+    return twins.with_places(found, kernel, body) if is_first and may_share(kernel, body) else found
 
 
 def _following(module: ir.Module, kernel: Kernel, number: int, name: str, routines: Printed) -> ir.Function | None:
@@ -206,11 +209,12 @@ def _width(kernel: Kernel) -> int:
     return min(INDEX_WORDS, max((_index_count(body) for body in kernel.bodies), default=0))
 
 
-def _failed(entry: ir.IRBuilder, kernel: Kernel, state: ir.Value, *, is_first: bool) -> Exit | StoredExit:
-    """Where the failures of a body lead to."""
-    if is_first and len(statements(kernel.bodies[0])) >= MANY_STATEMENTS:
-        words = tuple(state_word(entry, state, word) for word in _words(2 + _width(kernel)))
-        return StoredExit(entry.function.append_basic_block("failed"), words)
+def _failed(entry: ir.IRBuilder, kernel: Kernel, state: ir.Value, *, stores: bool) -> Exit | StoredExit:
+    """Where the failures of a body lead to, each of which ``stores`` what it reports or brings it there."""
+    if stores:
+        numbers = _words(2 + _width(kernel))
+        words = tuple(state_word(entry, state, each) for each in numbers)
+        return StoredExit(entry.function.append_basic_block("failed"), words, numbers)
     return Exit.new(entry, "failed", 2 + _width(kernel))
 
 

@@ -23,7 +23,7 @@ def reserve(frame: Frame, lane: int, count: ir.Value) -> None:
 
 def _small(frame: Frame, lane: int, count: ir.Value) -> tuple[ir.Block, bool]:
     """The block for where rows are missing, and whether it is a new one: a large body has one for each lane and constant number of rows."""
-    if not (isinstance(frame.failed, StoredExit) and isinstance(count, ir.Constant) and frame.stretch is None):
+    if not (isinstance(frame.failed, StoredExit) and isinstance(count, ir.Constant) and frame.has_one_stretch):
         return frame.block("small"), True
     told, shared = ("small", lane, count), frame.failed.shared
     is_new = told not in shared
@@ -40,4 +40,4 @@ def _grow(frame: Frame, lane: int, count: ir.Value) -> None:
     if frame.is_hidden(lane):
         missing = builder.mul(missing, constant(frame.strides[lane]))
     builder.store(missing, state_word(builder, state, GROW_ROWS), align=8)
-    builder.ret(constant(GROW))
+    frame.leave(constant(GROW))

@@ -107,10 +107,10 @@ class Outline:
                 self._shape.append(byte)
 
     def _sites(self, sites: tuple[int, ...]) -> None:
-        distances = tuple([each - sites[0] for each in sites])
-        self._shape.append(distances)
-        if sites:
-            self.slots.append(_slot(("site", "", sites[0], 0, distances, "i64")))
+        """A slot for each run of sites that follow one another: of blocks that are alike, runs may lie in other distances."""
+        runs = runs_of(sites)
+        self._shape.append(tuple([count for _, count in runs]))
+        self.slots += [_slot(("site", "", first, 0, tuple(range(count)) if count > 1 else _ALONE, "i64")) for first, count in runs]
 
     # --- places ----------------------------------------------------------------------------------------------------------
 
@@ -182,6 +182,18 @@ _LITERALS: dict[type[nodes.Expr], Callable[[Any], Hashable]] = {
     nodes.Register: attrgetter("number"),
 }
 """What is an expression's own, besides its operands."""
+
+
+def runs_of(sites: Sequence[int]) -> list[tuple[int, int]]:
+    """The runs of numbers that follow one another: where each begins, and how many they are."""
+    runs: list[tuple[int, int]] = []
+    for site in sites:
+        first, count = runs[-1] if runs else (site, 0)
+        if site == first + count:
+            runs[-1:] = [(first, count + 1)]
+        else:
+            runs.append((site, 1))
+    return runs
 
 
 def is_number(expr: nodes.Const) -> bool:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm.alike import NOTHING, Number, Series
-from rosetta_jit.backends.llvm.expr import expression
+from rosetta_jit.backends.llvm.expr import expression, fill_memory
 from rosetta_jit.backends.llvm.frame import I64, LLVM_TYPES, Frame, Stretch, constant, forgotten, state_word
 from rosetta_jit.backends.llvm.tables import signed, table
 from rosetta_jit.kernel.nodes import Block, Direction, Local, Switch
@@ -19,6 +19,9 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     Printer = Callable[[Frame, Block], None]
+
+FEW_LANES = 64
+"""Lanes up to which the used lengths of all are copied one by one: a loop takes twice as long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,16 +102,27 @@ def _stretch(frame: Frame, series: Series, index: ir.Value, block: Printer) -> N
     row = Row(series, index, frame.module)
     for name, (type_, number) in series.constants.items():
         frame.locals[name] = builder.trunc(row.number(builder, number), LLVM_TYPES[type_])
-    lanes = {lane: row.number(builder, number) for lane, number in series.lanes.items()}
-    offsets = {place: row.number(builder, number) for place, number in series.offsets.items()}
+    columns = {column: row.number(builder, Number(column, 0)) for column in columns_of(series)}
+    words = words_of(builder, frame.parameters.state, series, columns)
 
     def site(where: ir.IRBuilder, number: int) -> ir.Value:
         found = series.sites.get(number)
         return constant(number) if found is None else row.number(where, found)
 
-    around, frame.alike, frame.stretch = frame.alike, NOTHING, Stretch(lanes, offsets, site)
+    around, frame.alike, frame.stretch = frame.alike, NOTHING, Stretch(series.lanes, series.offsets, columns, words, site)
     block(frame, series.body)
     frame.alike, frame.stretch = around, None
+
+
+def columns_of(series: Series) -> list[int]:
+    """The columns with the numbers of lanes and offsets."""
+    return sorted({each.column for each in (*series.lanes.values(), *series.offsets.values())})
+
+
+def words_of(builder: ir.IRBuilder, state: ir.Value, series: Series, columns: Mapping[int, ir.Value]) -> dict[int, ir.Value]:
+    """Where the words of lanes lie whose numbers stand in columns."""
+    wanted = sorted({each.column for each in series.lanes.values()})
+    return {each: state_word(builder, state, builder.mul(columns[each], constant(LANE_WORDS))) for each in wanted}
 
 
 def _constant(number: int) -> ir.Constant:
@@ -119,20 +133,27 @@ def _constant(number: int) -> ir.Constant:
 
 
 def begin_rows(frame: Frame, direction: Direction) -> None:
-    """An array of the used lengths of the holder's lanes, as the body begins with them."""
+    """An array of the used lengths of the holder's lanes, as the body begins with them: to decode into row 0 empties all behind lane 0."""
     array = ir.ArrayType(I64, frame.own_lanes)
     frame.rows = rows = frame.entry.alloca(array, name="rows")
-    builder, row = frame.builder, frame.parameters.row
-    first = builder.icmp_signed("==", row, constant(0))
+    builder = frame.builder
 
     def start(lane: ir.Value) -> None:
-        used = builder.load(_used_word(frame, builder, lane), typ=I64, align=8)
-        if direction == "decode":
-            is_emptied = builder.and_(first, builder.icmp_signed(">", lane, constant(0)))
-            used = builder.select(is_emptied, constant(0), used)
-        builder.store(used, state_word(builder, rows, lane))
+        builder.store(builder.load(_used_word(frame, builder, lane), typ=I64, align=8), state_word(builder, rows, lane), align=8)
 
-    _each(builder, frame.own_lanes, start)
+    if direction == "decode":
+        empty, later, behind = (frame.block(name) for name in ("empty", "later", "body"))
+        builder.cbranch(builder.icmp_signed("==", frame.parameters.row, constant(0)), empty, later)
+        builder.position_at_end(empty)
+        fill_memory(frame, rows, 0, constant(8 * frame.own_lanes))
+        start(constant(0))
+        builder.branch(behind)
+        builder.position_at_end(later)
+        _each(builder, frame.own_lanes, start)
+        builder.branch(behind)
+        builder.position_at_end(behind)
+    else:
+        _each(builder, frame.own_lanes, start)
 
 
 def end_rows(frame: Frame, lanes: Sequence[int]) -> None:
@@ -150,6 +171,11 @@ def _keep(frame: Frame, builder: ir.IRBuilder, rows: ir.Value, lane: ir.Value) -
 
 
 def _each(builder: ir.IRBuilder, count: int, body: Callable[[ir.Value], None]) -> None:
+    """Do something for each of some lanes: in a loop, where they are many."""
+    if count <= FEW_LANES:
+        for lane in range(count):
+            body(constant(lane))
+        return
     before, head, behind = builder.block, builder.append_basic_block("lane"), builder.append_basic_block("after")
     builder.branch(head)
     builder.position_at_end(head)
@@ -163,5 +189,5 @@ def _each(builder: ir.IRBuilder, count: int, body: Callable[[ir.Value], None]) -
 
 
 def _used_word(frame: Frame, builder: ir.IRBuilder, lane: ir.Value) -> ir.Value:
-    word = builder.add(builder.mul(lane, constant(LANE_WORDS)), constant(lane_word(0, USED)))
-    return state_word(builder, frame.parameters.state, word)
+    first = state_word(builder, frame.parameters.state, builder.mul(lane, constant(LANE_WORDS)))
+    return state_word(builder, first, lane_word(0, USED))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.llvm.frame import I64, Frame, constant, state_word
+from rosetta_jit.backends.llvm.frame import I64, Frame, Stretch, constant, state_word
 from rosetta_jit.backends.llvm.tables import table
 
 if TYPE_CHECKING:
@@ -18,11 +19,15 @@ FEW_RUNS = 3
 def site_of(frame: Frame, number: ir.Value, sites: tuple[int, ...]) -> ir.Value:
     """The caller's site for a routine's failure: mostly they follow one another as the routine's own do."""
     builder = frame.builder
-    first = constant(0) if not sites else constant(sites[0]) if frame.stretch is None else frame.stretch.site(builder, sites[0])
-    if len(sites) < 2:
-        return first
+    if not sites:
+        return constant(0)
     runs = [(own, site - own - sites[0]) for own, site in enumerate(sites, 1)]
     runs = [runs[0], *(run for before, run in pairwise(runs) if run[1] != before[1])]
+    if frame.stretch is not None:
+        return _looked_up(frame, frame.stretch, number, [(own, sites[own - 1]) for own, _ in runs], is_alone=len(sites) == 1)
+    first = constant(sites[0])
+    if len(sites) == 1:
+        return first
     if len(runs) > FEW_RUNS:
         distances = table(frame.module, [0, *(site - sites[0] for site in sites)])
         return builder.add(first, builder.load(state_word(builder, distances, number), typ=I64))
@@ -30,3 +35,16 @@ def site_of(frame: Frame, number: ir.Value, sites: tuple[int, ...]) -> ir.Value:
     for own, distance in runs[1:]:
         further = builder.select(builder.icmp_signed(">=", number, constant(own)), constant(distance), further)
     return builder.add(first, builder.add(number, further))
+
+
+def _looked_up(frame: Frame, stretch: Stretch, number: ir.Value, runs: Sequence[tuple[int, int]], *, is_alone: bool) -> ir.Value:
+    """The same where sites are other ones for each stretch, and so are the distances of runs."""
+    builder, (_, first) = frame.builder, runs[0]
+    site = stretch.site(builder, first)
+    if is_alone:
+        return site
+    further = builder.sub(site, constant(1))
+    for own, site in runs[1:]:
+        start = builder.sub(stretch.site(builder, site), constant(own))
+        further = builder.select(builder.icmp_signed(">=", number, constant(own)), start, further)
+    return builder.add(further, number)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm import widths
-from rosetta_jit.backends.llvm.alike import NOTHING, Series
+from rosetta_jit.backends.llvm.alike import NOTHING, Part, Place, Series
 from rosetta_jit.backends.llvm.expr import (
     copy_memory,
     expression,
@@ -32,10 +32,10 @@ from rosetta_jit.startup.dataclass import replace
 from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
-    from rosetta_jit.backends.llvm import host, series
+    from rosetta_jit.backends.llvm import host, series, shared
     from rosetta_jit.backends.llvm import rounds as rounds_of_switch
 else:
-    host, series, rounds_of_switch = late("rosetta_jit.backends.llvm", "host", "series", "rounds")
+    host, series, shared, rounds_of_switch = late("rosetta_jit.backends.llvm", "host", "series", "shared", "rounds")
 
 MANY_CASES = 64
 GOLDEN = 0x9E3779B1
@@ -48,17 +48,19 @@ def block(frame: Frame, statements: nodes.Block) -> None:
         print_part(frame, part)
 
 
-def parts(frame: Frame, statements: nodes.Block) -> Sequence[nodes.Stmt | Series]:
+def parts(frame: Frame, statements: nodes.Block) -> Sequence[Part]:
     """What a block is printed as."""
     return frame.alike.parts(statements)
 
 
-def print_part(frame: Frame, part: nodes.Stmt | Series) -> None:
+def print_part(frame: Frame, part: Part) -> None:
     """Print a part of a block, unless one before it has ended it."""
     if frame.builder.block.is_terminated:
         return
     if isinstance(part, Series):
         series.print_series(frame, part, block)
+    elif isinstance(part, Place):
+        shared.print_place(frame, part, block)
     else:
         _statement(frame, part)
 

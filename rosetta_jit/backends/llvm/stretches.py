@@ -110,7 +110,7 @@ class _Look:
             if times[kind] < ROUNDS and (times[kind] == 1 or not _is_vast(body)):
                 continue
             outlines = list(map(self.outline, body))
-            slots = _joined(each.slots for each in outlines)
+            slots = joined(each.slots for each in outlines)
             around = _names_around(slots) if self.is_large else ()
             alike.setdefault((around, *[each.shape for each in outlines]), []).append((number, body, slots))
         groups = [each for each in alike.values() if len(each) > 1 and len(each[0][1]) > 1]
@@ -152,7 +152,7 @@ def _best(block: Block, slots: Sequence[Sequence[Slot]], where: range, period: i
             cut = range(start, where.stop - period + 1, period)
             if len(cut) < ROUNDS:
                 continue
-            series = _series(block[cut[-1] : cut[-1] + period], [_joined(slots[at : at + period]) for at in cut], uses)
+            series = _series(block[cut[-1] : cut[-1] + period], [joined(slots[at : at + period]) for at in cut], uses)
             if series is not None:
                 return series, start, cut[-1] + period
     return None
@@ -160,11 +160,12 @@ def _best(block: Block, slots: Sequence[Sequence[Slot]], where: range, period: i
 
 def _carries(slots: Sequence[Sequence[Slot]], begin: int, period: int) -> int:
     """How many names a stretch takes over from the one before it, if one begins there."""
-    before = {slot.name for slot in _joined(slots[begin - period : begin]) if slot.kind == "bound"}
-    return len({slot.name for slot in _joined(slots[begin : begin + period]) if slot.is_use and slot.name in before})
+    before = {slot.name for slot in joined(slots[begin - period : begin]) if slot.kind == "bound"}
+    return len({slot.name for slot in joined(slots[begin : begin + period]) if slot.is_use and slot.name in before})
 
 
-def _joined(slots: Iterable[Sequence[Slot]]) -> list[Slot]:
+def joined(slots: Iterable[Sequence[Slot]]) -> list[Slot]:
+    """All slots, those of one statement behind those of another."""
     return [slot for each in slots for slot in each]
 
 
@@ -196,6 +197,11 @@ def _series(last: Block, rows: Sequence[Sequence[Slot]], uses: Counter[str] | No
     carried = alike_names.carried_names(rows)
     if carried is None or (uses is not None and not alike_names.stay_inside(rows, uses)):
         return None
+    return tabled(last, rows, carried)
+
+
+def tabled(last: Block, rows: Sequence[Sequence[Slot]], carried: tuple[Carried, ...]) -> Series | None:
+    """The series of some stretches whose names correspond to one another; None where one number of the last stretch stands for two."""
     columns = _Columns()
     found: dict[tuple[Any, ...], Number | None] = {}
     for at, stacked in enumerate(zip(*rows, strict=True)):
@@ -207,7 +213,7 @@ def _series(last: Block, rows: Sequence[Sequence[Slot]], uses: Counter[str] | No
         for further in slot.distances:
             same = None if number is None else Number(number.column, number.further + further)
             if found.setdefault((*key, slot.number + further), same) != same:
-                return None  # one number of the last stretch stands for two
+                return None
     return _stated(last, rows[-1], columns.rows(), {key: each for key, each in found.items() if each is not None}, carried)
 
 

@@ -16,7 +16,8 @@ from itertools import pairwise
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
-from rosetta_jit.backends.llvm.alike import Series
+from rosetta_jit.backends.llvm.alike import Part as AnyPart
+from rosetta_jit.backends.llvm.alike import Place, Series
 from rosetta_jit.backends.llvm.expr import (
     FLOAT_BINARY,
     base_and_offset,
@@ -70,10 +71,10 @@ class Wide:
     value: Vector
 
 
-Part = nodes.Stmt | Series | Wide
+Part = AnyPart | Wide
 
 
-def joined(body: nodes.Block, parts: Sequence[nodes.Stmt | Series], strides: Sequence[int]) -> Sequence[Part]:
+def joined(body: nodes.Block, parts: Sequence[AnyPart], strides: Sequence[int]) -> Sequence[Part]:
     """The parts of a body with stores side by side as one, without the locals that nobody asks for then."""
     look, found, stretch = _Look(body, strides), list["Part"](), list["nodes.Stmt"]()
     for part in parts:
@@ -99,6 +100,8 @@ def _asked_for(parts: Sequence[Part]) -> list[Part]:
                 names |= locals_in(target).union(*map(locals_in, _scalars(value)))
             case Series():
                 names |= names_read(part.body).union(each.first for each in part.carried)
+            case Place():
+                names.update(part.names.values())
             case _:
                 names |= names_read((part,))
     return kept[::-1]

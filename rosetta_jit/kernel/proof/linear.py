@@ -42,6 +42,8 @@ def plus(left: Linear, right: Linear) -> Linear:
 
 def times(linear: Linear, factor: int) -> Linear:
     """A multiple."""
+    if factor == 1:
+        return linear
     if factor == 0:
         return sum_of((0, ()))
     constant, terms = linear

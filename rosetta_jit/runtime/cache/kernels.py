@@ -262,7 +262,9 @@ def _users_folder() -> str:
 
 
 def digest_file(path: str) -> str | None:
-    """SHA-256 of a file's content, or None where there is no file to read."""
+    """SHA-256 of a file's content, or None where there is no file to read: mostly, where one would be preferred, which raises nothing."""
+    if not os.access(path, os.F_OK):
+        return None
     try:
         with open(path, "rb", buffering=0) as file:
             return sha256(file.read()).hexdigest()

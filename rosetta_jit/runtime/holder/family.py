@@ -13,8 +13,8 @@ import numpy as np
 
 from rosetta_jit.kernel.state import VALID, WASTED
 from rosetta_jit.model.layout import layout
-from rosetta_jit.model.serial import Plain, from_plain, to_plain
-from rosetta_jit.model.types import Ref, Schema, Struct, Type
+from rosetta_jit.model.serial import Plain, declared_in, from_plain, to_plain
+from rosetta_jit.model.types import Schema, Struct, Type
 from rosetta_jit.runtime.attributes import descriptors
 from rosetta_jit.runtime.attributes.code import functions, is_compiled, library
 from rosetta_jit.runtime.attributes.field_table import KeptFields, OfSequences
@@ -66,7 +66,7 @@ class Family:
         self.assigns_whole = manners.assigns_whole
         self._accesses: dict[int, Access] = {}
         self._views: dict[str, type[View]] = {}
-        self._of_structs: dict[str, type[Holder]] = {}
+        self._of_structs, self._referred = dict[str, "type[Holder]"](), dict[str, list[str]]()
         self._shown_of: dict[int, frozenset[str]] = {}
         self._made_in_python = 0
         self._recipes: dict[int, tuple[Any, ...]] = {}
@@ -144,8 +144,9 @@ class Family:
             return self.holder
         other = self._of_structs.get(struct)
         if other is None:
-            type_ = Ref(struct) if struct in self.schema.types else written_within(self.struct, self.schema, struct)
-            other = self._of_structs[struct] = holder_class(type_, self.schema, self.manners)
+            within = None if struct in self.schema.types else written_within(self.struct, self.schema, struct)
+            plain = declared_in(self._plain, struct, self._referred) if within is None else to_plain(within, self.schema)
+            other = self._of_structs[struct] = holder_class_of(plain, self.manners)
         return other
 
     def view_class(self, struct: str) -> type[View]:
