@@ -60,8 +60,8 @@ def _reached(kernel: Kernel, lanes: Lanes) -> tuple[nodes.Block, nodes.Block, La
     """What the decoder checks and what it sets, of lists that are empty or have few elements, and how it reaches the object."""
     body = without_asking(kernel, lanes.opened).bodies[0]
     ways = (
-        (of_empty_lists(kernel.bodies[0], lanes), lanes_of_empty_lists(lanes)),
         (of_few_elements(body, lanes), lanes_of_few_elements(lanes)),
+        (of_empty_lists(kernel.bodies[0], lanes), lanes_of_empty_lists(lanes)),
     )
     found = ((straightened, reached) for each, reached in ways if (straightened := _straightened(each)) is not None)
     return next(((*parts, reached) for parts, reached in found), None)
