@@ -30,8 +30,9 @@ SCHEMA = (
 )
 OPTIONS = {"encoding": "protobuf", "schema": {"t.proto": SCHEMA}}
 CPP = {"g++": QUICK, "g++ -O1": ("-O1", *QUICK[1:]), "g++ -U__SSE2__": ("-U__SSE2__", *QUICK), "clang++": ("-O2",)}
-"""Options for C++. What an optimising compiler makes of it stays in the suite with clang++, what sanitizers find with g++. Machines that look at sixteen
-bytes at once have code of their own; without the word for them it is what others have."""
+"""Options for C++. What an optimising compiler makes of it stays in the suite with clang++, what sanitizers find with g++.
+
+Machines that look at sixteen bytes at once have code of their own; without the word for them it is what others have."""
 WIDEST = 10
 BEHIND_TAGS = len(SCALARS) + 1
 """The field whose integers come one by one."""
