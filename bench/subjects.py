@@ -69,6 +69,16 @@ LCM_DOUBLES = Subject(
     "lcm",
     bytes.fromhex("29e473ce1716ca37") + struct.pack(">qi", 1_700_000_000_000_000, DOUBLES) + NUMBERS[:DOUBLES].astype(">f8").tobytes(),
 )
+_EXAMPLE = struct.pack(">Qq7di", 3987159373929993494, 0, 1, 2, 3, 1, 0, 0, 0, 15) + struct.pack(">15h", *range(15))
+LCM_EXAMPLE = Subject("exlcm.example_t", "lcm", _EXAMPLE + struct.pack(">i", 15) + b"example string\0\1")
+FLAGS = 64
+FLAGS_T = Path(__file__).with_name("native") / "rj" / "flags_t.lcm"
+LCM_FLAGS = Subject(
+    "rj.flags_t",
+    "lcm",
+    bytes.fromhex("069bf23ae45877df") + struct.pack(">i", FLAGS) + bytes(each % 3 == 0 for each in range(FLAGS)),
+    {"schema": {"rj/flags_t.lcm": FLAGS_T.read_text("utf-8")}},
+)
 CORBA_DOUBLES = Subject(
     "RTC::TimedDoubleSeq",
     "cdr-giop",
