@@ -69,6 +69,16 @@ LCM_DOUBLES = Subject(
     "lcm",
     bytes.fromhex("29e473ce1716ca37") + struct.pack(">qi", 1_700_000_000_000_000, DOUBLES) + NUMBERS[:DOUBLES].astype(">f8").tobytes(),
 )
+_EXAMPLE = struct.pack(">Qq7di", 3987159373929993494, 0, 1, 2, 3, 1, 0, 0, 0, 15) + struct.pack(">15h", *range(15))
+LCM_EXAMPLE = Subject("exlcm.example_t", "lcm", _EXAMPLE + struct.pack(">i", 15) + b"example string\0\1")
+FLAGS = 64
+FLAGS_T = Path(__file__).with_name("native") / "rj" / "flags_t.lcm"
+LCM_FLAGS = Subject(
+    "rj.flags_t",
+    "lcm",
+    bytes.fromhex("069bf23ae45877df") + struct.pack(">i", FLAGS) + bytes(each % 3 == 0 for each in range(FLAGS)),
+    {"schema": {"rj/flags_t.lcm": FLAGS_T.read_text("utf-8")}},
+)
 CORBA_DOUBLES = Subject(
     "RTC::TimedDoubleSeq",
     "cdr-giop",
@@ -133,6 +143,18 @@ SEVERAL = 200
 _SIZES: list[int] = NUMBERS_OF_BYTES.integers(1, 6, SEVERAL).tolist()
 _UP_TO_FIVE = [int(NUMBERS_OF_BYTES.integers(1 << 7 * size - 7, 1 << 7 * size)) for size in _SIZES]
 _ZIGZAG: list[int] = NUMBERS_OF_BYTES.integers(0, 1 << 21, SEVERAL).tolist()
+OF_EACH_KIND = 50
+
+
+def _each_kind() -> Subject:
+    """Integers of one byte or two, bools, the numbers of an enum, and numbers of a fixed size."""
+    one_or_two = (NUMBERS_OF_BYTES.integers(1, 300, OF_EACH_KIND).tolist() for _ in range(6))
+    bools, modes = (NUMBERS_OF_BYTES.choice(those, OF_EACH_KIND).tolist() for those in ((0, 1), (0, 1, 300)))
+    varints = [b"".join(map(_varint, values)) for values in (*one_or_two, bools, modes)]
+    fixed = [struct.pack(f"<{OF_EACH_KIND}{each}", *range(OF_EACH_KIND)) for each in "fdI"]
+    return Subject("rj.EachKind", "protobuf", b"".join(_field(number, each) for number, each in enumerate((*varints, *fixed), 1)), _ANGLES)
+
+
 SEVERAL_VARINTS = {
     f"{SEVERAL} integers of one to five bytes, packed": _integers("rj.PackedIntegers", _UP_TO_FIVE),
     f"{SEVERAL} integers of one to five bytes, behind tags": _integers("rj.Integers", _UP_TO_FIVE),
@@ -140,6 +162,7 @@ SEVERAL_VARINTS = {
     f"{SEVERAL} integers of one byte or two, packed": _integers("rj.PackedIntegers", _mixed()[:SEVERAL]),
     f"{SEVERAL} integers of nine bytes, packed": _integers("rj.PackedIntegers", [(1 << 56) + (each << 30) for each in _ZIGZAG]),
     f"{SEVERAL} negative integers, packed": _integers("rj.PackedIntegers", [(1 << 64) - each - 1 for each in _ZIGZAG]),
+    f"{OF_EACH_KIND} numbers of each kind, packed": _each_kind(),
 }
 """What control boards and encoders of motors send."""
 _TEXTS = {"schema": {"texts.proto": ANGLES_PROTO.with_name("texts.proto").read_text("utf-8")}}

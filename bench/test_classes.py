@@ -1,4 +1,4 @@
-"""Generated C++ that fills the classes of roscpp, rclcpp and protoc, against the code of roscpp, Fast CDR and protoc that does."""
+"""Generated C++ that fills classes of roscpp, rclcpp, protoc and lcm-gen, against the frameworks' own code, of ROS 2 Fast CDR."""
 
 from __future__ import annotations
 
@@ -8,21 +8,22 @@ from bench.contest import Contender, Outcome, comparison
 from bench.peers import generated_classes as peers
 from bench.peers.generated_classes import Messages
 from bench.report import words
-from bench.subjects import DIAGNOSTICS, LISTS, ROS_2, SCENE, SEVERAL_VARINTS, SHORT, SUBJECTS
+from bench.subjects import DIAGNOSTICS, FLAGS_T, LCM_DOUBLES, LCM_EXAMPLE, LCM_FLAGS, LISTS, ROS_2, SCENE, SEVERAL_VARINTS, SHORT, SUBJECTS
 from rosetta_jit.api.options import type_request
 
 CHAPTER = "Generated C++ in frameworks' classes"
 OURS = "rosetta_jit, generated C++"
-PEERS = {"ros1": "roscpp", "ros2": "Fast CDR" if peers.has_fast_cdr() else "roscpp", "protobuf": "protobuf"}
+PEERS = {"ros1": "roscpp", "ros2": "Fast CDR" if peers.has_fast_cdr() else "roscpp", "protobuf": "protobuf", "lcm": "lcm-gen"}
 JOBS = {
     "decode": ("decoded", "an object, used again", 1),
     "anew": ("decoded into a new object", "an object, made anew", None),
     "encode": ("encoded", "a buffer that is given", None),
+    "turn": ("decoded, one of many in turn", "an object, used again", 1),
 }
-"""What is done, what each makes, and the target."""
+"""What is done, what each makes, and the target. Messages of a few bytes are read in turn, too."""
 WRITTEN_AS_QUICKLY = frozenset({*SEVERAL_VARINTS, *LISTS})
 """What has a target for encoding, too."""
-WITHOUT_TARGET = frozenset({"Float64", "Bool"})
+WITHOUT_TARGET = frozenset({"Float64", "Bool", "LCM, 64 bools"})
 """What has none for decoding, as it takes as long in both, or longer: docs/cpp.md says why."""
 ROS = ("Imu", "JointState, 32 joints", "LaserScan 1080", "PoseArray 1000", "Image 640x480")
 STATUSES = "DiagnosticArray, 20 statuses"
@@ -35,6 +36,11 @@ PROTOBUF = {
     **dict.fromkeys(SEVERAL_VARINTS, "angles.proto"),
     **dict.fromkeys(LISTS, "texts.proto"),
 }
+LCM = {
+    "LCM example_t": (LCM_EXAMPLE, peers.IDL / "lcm" / "exlcm" / "example_t.lcm"),
+    "LCM, 1,000 doubles": (LCM_DOUBLES, peers.IDL / "lcm" / "rjtest" / "doubles_t.lcm"),
+    "LCM, 64 bools": (LCM_FLAGS, FLAGS_T),
+}
 
 
 @pytest.fixture
@@ -44,7 +50,7 @@ def against(tmp_path, effort, found, record):
     def measure(name, request, holder, messages, **given):
         taken = peers.measured(peers.program(request, holder, tmp_path, **given), messages, effort.rounds, effort.round_s)
         whose = {OURS: "ours", f"{PEERS[holder]} in C++": "theirs"}
-        for job, (done, makes, at_most) in JOBS.items():
+        for job, (done, makes, at_most) in ((each, how) for each, how in JOBS.items() if f"ours {each}" in taken):
             outcome = Outcome({who: taken[f"{each} {job}"] for who, each in whose.items()})
             contenders = [Contender(who, "ours" if each == "ours" else "peer", makes, lambda: 0.0) for who, each in whose.items()]
             found("comparisons", comparison(CHAPTER, f"{name}, {done}", contenders, outcome))
@@ -54,7 +60,7 @@ def against(tmp_path, effort, found, record):
             record(
                 what,
                 outcome.ratio(*whose),
-                None if name in WITHOUT_TARGET else aim,
+                None if name in WITHOUT_TARGET and job != "turn" else aim,
                 f"x {PEERS[holder]}",
                 said,
                 messages=1,
@@ -90,3 +96,11 @@ def test_classes_of_protoc(name, against):
     subject = {**SUBJECTS, **SEVERAL_VARINTS, **LISTS, "Scene": SCENE}[name]
     request = type_request("decode", subject.type, {"encoding": "protobuf", **subject.options})
     against(name, request, "protobuf", Messages(subject.message, subject.message), proto=PROTOBUF[name])
+
+
+@pytest.mark.skipif(not peers.installed("lcm"), reason="lcm-gen and its headers are not installed")
+@pytest.mark.parametrize("name", LCM)
+def test_classes_of_lcm_gen(name, against):
+    subject, schema = LCM[name]
+    request = type_request("decode", subject.type, {"encoding": "lcm", **subject.options})
+    against(name, request, "lcm", Messages(subject.message, subject.message), lcm=schema)

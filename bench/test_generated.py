@@ -12,7 +12,7 @@ from bench.contest import Contender
 from bench.figures import Spread
 from bench.peers import generated_python, python_peers
 from bench.report import words
-from bench.subjects import SUBJECTS, Subject
+from bench.subjects import LCM_EXAMPLE, SUBJECTS, Subject
 from bench.tagged import TAGGED
 
 CHAPTER = "Generated Python"
@@ -78,13 +78,12 @@ def matrices(each: int) -> bytes:
     return head + struct.pack(f">{each**3}i", *range(each**3)) + texts
 
 
-EXAMPLE = struct.pack(">Qq7di", 3987159373929993494, 0, 1, 2, 3, 1, 0, 0, 0, 15) + struct.pack(">15h", *range(15))
 MESSAGES = {
     "Twist": Subject("geometry_msgs/Twist", "ros1", struct.pack("<6d", *range(6))),
     "JointState, 7 joints": Subject("sensor_msgs/JointState", "ros1", joint_state(7)),
     "DiagnosticArray, 20 statuses": Subject("diagnostic_msgs/DiagnosticArray", "ros1", diagnostics(20)),
     "Mesh, 50 triangles": Subject("shape_msgs/Mesh", "ros1", mesh(50)),
-    "LCM example_t": Subject("exlcm.example_t", "lcm", EXAMPLE + struct.pack(">i", 15) + b"example string\0\1"),
+    "LCM example_t": LCM_EXAMPLE,
     "LCM multidim_array_t, 10 x 10 x 10": Subject("lcmtest.multidim_array_t", "lcm", matrices(10)),
     **{
         name: SUBJECTS[name]

@@ -1,5 +1,5 @@
 // A message in a class of a framework's, decoded and encoded by the code that `rosetta-jit generate` writes for that class, and by the framework's own.
-// HEADER and UNIT are those of the generated unit, which is compiled by itself; ROS1, ROS2 or PROTOBUF says whose class it is. rclcpp's structs have no code
+// HEADER and UNIT are those of the generated unit, which is compiled by itself; ROS1, ROS2, PROTOBUF or LCM says whose class it is. rclcpp's structs have no code
 // of their own that reads them, but ROS 2's middleware has: with FASTCDR it is Fast CDR, as rmw_fastrtps calls it. Without, roscpp's struct of the same data,
 // which PEER_HEADER declares, is filled beside them, behind the four bytes of the encapsulation. The program gets two files, a message for ours and the
 // same for theirs, the number of rounds, and the seconds of one; it prints nanoseconds a message, a line for who and job.
@@ -114,6 +114,17 @@ std::string canonical(const Theirs& message) {
     theirs_write(message, reinterpret_cast<unsigned char*>(&found[0]), found.size());
     return found;
 }
+#elif defined(LCM)
+bool theirs_read(const unsigned char* data, std::size_t size, Theirs& message) { return message.decode(data, 0, static_cast<int>(size)) >= 0; }
+
+bool theirs_write(const Theirs& message, unsigned char* data, std::size_t size) { return message.encode(data, 0, static_cast<int>(size)) >= 0; }
+
+// The message as the framework writes it whatever it was read from, to be compared.
+std::string canonical(const Theirs& message) {
+    std::string found(static_cast<std::size_t>(message.getEncodedSize()), 0);
+    theirs_write(message, reinterpret_cast<unsigned char*>(&found[0]), found.size());
+    return found;
+}
 #elif defined(PROTOBUF)
 bool theirs_read(const unsigned char* data, std::size_t size, Theirs& message) { return message.ParseFromArray(data, static_cast<int>(size)); }
 
@@ -152,6 +163,36 @@ template <class Class, class Write> double write(const Class& message, unsigned 
     publish(message);
     publish(place);
     return nanoseconds(iterations, [&] { return work(message, place); });
+}
+
+// Messages of a few bytes in turn: where each of them lies is in memory, as in a program that gets one after the other. In a loop over a single one a
+// compiler finds out once, before the loop, where the message ends.
+constexpr std::size_t FEW_BYTES = 16, MANY = 64;
+
+struct Given {
+    const unsigned char* data;
+    std::size_t size;
+};
+
+template <class Class, class Read> double read_in_turn(const Bytes& one, Read work, std::int64_t iterations) {
+    std::vector<unsigned char> memory(MANY * FEW_BYTES);
+    Given given[MANY];
+    for (std::size_t number = 0; number < MANY; number++) {
+        given[number] = {std::copy(one.begin(), one.end(), &memory[number * FEW_BYTES]) - one.size(), one.size()};
+    }
+    Class message;
+    publish(message);
+    publish(given);
+    const double took = nanoseconds(std::max<std::int64_t>(1, iterations / static_cast<std::int64_t>(MANY)), [&] {
+        for (const Given& each : given) {
+            forget();
+            if (!work(each.data, each.size, message)) {
+                return false;
+            }
+        }
+        return true;
+    });
+    return took < 0 ? took : took / static_cast<double>(MANY);
 }
 
 // Whether what ours reads from the one message is what theirs reads from the other, and comes back the same.
@@ -204,7 +245,7 @@ int main(int, char** arguments) {
     Places places(std::max(ours.size(), theirs.size()));
     const auto encode = [&](const Message& message, unsigned char* buffer) { return codec.try_encode(message, buffer, ours.size()).has_value(); };
     const auto peer_encode = [&](const Theirs& message, unsigned char* buffer) { return theirs_write(message, buffer, theirs.size()); };
-    Contender contenders[] = {
+    std::vector<Contender> contenders = {
         {"ours decode", [&](std::int64_t iterations, int turn) {
             const unsigned char* const data = places.of(turn, ours);
             const std::size_t size = ours.size();
@@ -228,15 +269,22 @@ int main(int, char** arguments) {
         {"ours encode", [&](std::int64_t iterations, int turn) { return write(one, places.of(turn, ours), encode, iterations); }, 0},
         {"theirs encode", [&](std::int64_t iterations, int turn) { return write(other, places.of(turn, theirs), peer_encode, iterations); }, 0},
     };
+    if (std::max(ours.size(), theirs.size()) <= FEW_BYTES) {
+        const auto decode = [](const unsigned char* data, std::size_t size, Message& message) { return codec.try_decode(data, size, message).has_value(); };
+        contenders.push_back({"ours turn", [&, decode](std::int64_t iterations, int) { return read_in_turn<Message>(ours, decode, iterations); }, 0});
+        const auto peer_decode = [](const unsigned char* data, std::size_t size, Theirs& message) { return theirs_read(data, size, message); };
+        contenders.push_back({"theirs turn", [&, peer_decode](std::int64_t iterations, int) { return read_in_turn<Theirs>(theirs, peer_decode, iterations); }, 0});
+    }
     for (Contender& each : contenders) {
         each.iterations = std::max<std::int64_t>(1, static_cast<std::int64_t>(round_ns / std::max(each.job(100, 0), 0.1)));
     }
-    constexpr int TURNS = 10, COUNT = sizeof contenders / sizeof *contenders;
+    constexpr int TURNS = 10;
+    const int count = static_cast<int>(contenders.size());
     for (int round = 0; round < rounds; round++) {
-        double took[COUNT] = {};
+        std::vector<double> took(contenders.size());
         for (int turn = 0; turn < TURNS; turn++) {  // so that a busy moment of the machine hits all alike; who comes first changes
-            for (int number = 0; number < COUNT; number++) {
-                const int place = (number + turn) % COUNT;
+            for (int number = 0; number < count; number++) {
+                const std::size_t place = static_cast<std::size_t>(number + turn) % contenders.size();
                 const Contender& each = contenders[place];
                 const double taken = each.job(std::max<std::int64_t>(1, each.iterations / TURNS), turn);
                 if (taken < 0) {
@@ -245,7 +293,7 @@ int main(int, char** arguments) {
                 took[place] += taken / TURNS;
             }
         }
-        for (int number = 0; number < COUNT; number++) {
+        for (std::size_t number = 0; number < contenders.size(); number++) {
             std::printf("%s %.3f\n", contenders[number].name, took[number]);
         }
     }

@@ -18,10 +18,15 @@ if TYPE_CHECKING:
     from rosetta_jit.pipeline.request import Request
 
 ROSCPP = ("-lroscpp_serialization", "-lrostime", "-lcpp_common")
-LIBRARIES = {"ros1": ROSCPP, "ros2": ROSCPP, "protobuf": ("-lprotobuf",)}
+LIBRARIES = {"ros1": ROSCPP, "ros2": ROSCPP, "protobuf": ("-lprotobuf",), "lcm": ()}
 FAST_CDR = "fastcdr/Cdr.h"
-HEADERS = {"ros1": "sensor_msgs/JointState.h", "ros2": "sensor_msgs/JointState.h", "protobuf": "google/protobuf/message.h"}
-GENERATORS = {"protobuf": "protoc", "ros2": "rosidl"}
+HEADERS = {
+    "ros1": "sensor_msgs/JointState.h",
+    "ros2": "sensor_msgs/JointState.h",
+    "protobuf": "google/protobuf/message.h",
+    "lcm": "lcm/lcm_coretypes.h",
+}
+GENERATORS = {"protobuf": "protoc", "ros2": "rosidl", "lcm": "lcm-gen"}
 ROSIDL = tuple(f"-I/usr/include/rosidl_runtime_{each}" for each in ("c", "cpp"))
 """What the structs of rclcpp include besides."""
 IDL = SOURCES.parents[1] / "idl"
@@ -66,8 +71,8 @@ class Messages:
     theirs: bytes
 
 
-def program(request: Request, holder: str, folder: Path, *, proto: str = "", peer: str = "") -> Path:
-    """A program that measures both; protoc makes the class from ``proto``.
+def program(request: Request, holder: str, folder: Path, *, proto: str = "", lcm: Path | None = None, peer: str = "") -> Path:
+    """A program that measures both; protoc makes the class from ``proto``, lcm-gen from ``lcm``.
 
     Of ROS 2 the other one is Fast CDR, if it is installed; else roscpp, which fills its struct ``peer`` of the same data.
     """
@@ -79,6 +84,8 @@ def program(request: Request, holder: str, folder: Path, *, proto: str = "", pee
     if proto:
         subprocess.run(["protoc", f"--cpp_out={folder}", "-I", SOURCES, "-I", IDL, proto], check=True)
         sources.append(proto.replace(".proto", ".pb.cc"))
+    if lcm is not None:
+        subprocess.run(["lcm-gen", "--cpp", "--cpp-hpath", folder, lcm], check=True, capture_output=True)
     if peer:
         _structs_of_rclcpp(folder)
     words = ['-DHEADER="unit.hpp"', "-DUNIT=unit", f"-D{holder.upper()}"]

@@ -32,6 +32,7 @@ TYPES = {
     "lists of numbers": (f"Gap[] gaps\nPoint[] points\n{SEPARATOR}\n{GAP}\n{SEPARATOR}\n{POINT}", {"gaps": GAPS[:3], "points": POINTS[:2]}),
     "a list of numbers": (f"Point[] points\n{SEPARATOR}\n{POINT}", {"points": POINTS[:4]}),
     "a list of flags": (f"Flag[] flags\n{SEPARATOR}\nMSG: rj/Flag\nbool set\nuint8 rest\n", {"flags": [{"set": True, "rest": 2}] * 3}),
+    "lists of texts": ("string[] names\nstring[] others\n", {}),
     "arrays": ("string name\nfloat64[] many\nint16[] few\nuint8 last\n", {"name": "n", "many": [1.0, 2.0, 3.0], "few": [-1, 2], "last": 4}),
 }
 OTHERS = {
@@ -39,13 +40,14 @@ OTHERS = {
     "text behind numbers": {"frame": "\U0001f916 and more"},
     "arrays": {"name": ""},
     "lists before arrays": {"names": ["one", "another"]},
+    "lists of texts": {"names": ["one"], "others": ["another", ""]},
     "lists of numbers": {"gaps": GAPS[:16], "points": POINTS[:17]},
     "a list of numbers": {"points": POINTS},
     "a list of flags": {"flags": [{"set": False, "rest": 1}] * 2},
 }
 """What the source file reads, as lists that have many elements, or texts that have nothing."""
 WRITTEN = {*TYPES}
-IN_HEADER = {*TYPES} - {"numbers behind bytes", "a list of flags"}
+IN_HEADER = {*TYPES} - {"numbers behind bytes"}
 
 
 def encoders(type_, encoding):

@@ -6,27 +6,54 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
-from rosetta_jit.generate.build import generated
+from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
 from tests.generate import cpp
 from tests.generate.driver import answers, harmed
 from tests.generate.test_cpp import BOTH, CAREFUL, same
 
-SCHEMA = {"rj/msg/Message.msg": f"bool[] flags\nRow[] rows\nuint8 last\n{'=' * 80}\nMSG: rj/Row\nbool[] flags\nint16 number\n"}
+ROW = f"{'=' * 80}\nMSG: rj/Row\nbool[] flags\nint16 number\nbool[5] five\n"
+SCHEMA = {"rj/msg/Message.msg": f"bool[] flags\nRow[] rows\nbool[9] nine\nuint8 last\n{ROW}"}
 COUNTS = (0, 1, 7, 8, 9, 15, 31, 32, 33, 40, 71)
+OF_BYTES = """#include <array>
+#include <cstdint>
+#include <vector>
+namespace rj {
+struct Row { std::vector<std::uint8_t> flags; std::int16_t number; std::array<std::uint8_t, 5> five; };
+struct Message { std::vector<std::uint8_t> flags; std::vector<Row> rows; std::array<std::uint8_t, 9> nine; std::uint8_t last; };
+}
+"""
+"""As roscpp has them."""
 
 
-@cpp.needs_cpp
-@pytest.mark.parametrize("encoding", ["ros1", "cdr"])
-def test_flags_come_out_the_same(encoding, tmp_path):
+def read_alike(tmp_path, encoding, wishes=NO_WISHES):
+    """The source, when what it reads and writes has been compared with the library: messages cut at each byte, altered, and harmed."""
     options = {"encoding": encoding, "schema": SCHEMA}
-    texts = generated(type_request("decode", "rj/Message", options), "cpp", BOTH, "unit")
-    assert all(texts["unit.cpp"].count(f"rosetta_jit::detail::{each}_flags(") >= 2 for each in ("read", "copy"))
+    texts = generated(type_request("decode", "rj/Message", options), "cpp", BOTH, "unit", wishes)
     encode = rj.Encoder.of("rj/Message", **options)
     flags = {count: [each % 3 == 0 for each in range(count)] for count in COUNTS}
-    values = [{"flags": each, "rows": [{"flags": flags[9], "number": count}] * (count % 3), "last": 7} for count, each in flags.items()]
+    row = {"flags": flags[9], "five": flags[15][:5]}
+    values = [
+        {"flags": each, "rows": [row | {"number": count}] * (count % 3), "nine": flags[9], "last": 7} for count, each in flags.items()
+    ]
     good = [bytes(encode(each)) for each in values]
     messages = [message[:end] for message in good for end in range(len(message) + 1)]
     messages += [message[:at] + b"\2" + message[at + 1 :] for message in good for at in range(len(message))]
     messages += [each for message in good for each in harmed([message], 5, encoding)]
     name = cpp.write(tmp_path, texts)
     same(answers(cpp.program(tmp_path, name, options=CAREFUL), messages), rj.Decoder.of("rj/Message", **options), encode, messages)
+    return texts["unit.cpp"]
+
+
+@cpp.needs_cpp
+@pytest.mark.parametrize("encoding", ["ros1", "cdr"])
+def test_flags_come_out_the_same(encoding, tmp_path):
+    text = read_alike(tmp_path, encoding)
+    assert all(text.count(f"rosetta_jit::detail::{each}_flags(") >= 2 for each in ("read", "copy"))
+
+
+@cpp.needs_cpp
+def test_bytes_of_a_class_are_set_where_they_are(tmp_path):
+    (tmp_path / "rj_message.h").write_text(OF_BYTES)
+    text = read_alike(tmp_path, "ros1", Wishes(holder="ros1", include="rj_message.h"))
+    assert "flags = rosetta_jit::detail::sized<uint8_t>(given_object.flags, count);" in text
+    assert "nine = rosetta_jit::detail::rows_of<uint8_t, 9>(given_object.nine);" in text

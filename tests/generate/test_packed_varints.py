@@ -29,8 +29,10 @@ SCHEMA = (
     "repeated uint64 f9 = 9 [packed = false]; }"
 )
 OPTIONS = {"encoding": "protobuf", "schema": {"t.proto": SCHEMA}}
-CPP = {"g++": QUICK, "g++ -O1": ("-O1", *QUICK[1:]), "clang++": ("-O2",)}
-"""Options for C++. What an optimising compiler makes of it stays in the suite with clang++, what sanitizers find with g++."""
+CPP = {"g++": QUICK, "g++ -O1": ("-O1", *QUICK[1:]), "g++ -U__SSE2__": ("-U__SSE2__", *QUICK), "clang++": ("-O2",)}
+"""Options for C++. What an optimising compiler makes of it stays in the suite with clang++, what sanitizers find with g++.
+
+Machines that look at sixteen bytes at once have code of their own; without the word for them it is what others have."""
 WIDEST = 10
 BEHIND_TAGS = len(SCALARS) + 1
 """The field whose integers come one by one."""
@@ -76,7 +78,7 @@ def message(chance: random.Random) -> bytes:
     return b"".join([*fields, nested, another, *([b"\xc0\x02\x05"] if chance.random() < 0.3 else [])])
 
 
-COMPILERS = ["g++", pytest.param("g++ -O1", marks=pytest.mark.campaign), "clang++"]
+COMPILERS = ["g++", pytest.param("g++ -O1", marks=pytest.mark.campaign), "g++ -U__SSE2__", "clang++"]
 EVERY = [*COMPILERS, "gcc"]
 
 
@@ -161,11 +163,10 @@ def test_loops_are_recognised():
     request = type_request("decode", "t.A", {"encoding": "protobuf", "schema": {"t.proto": schema}})
     text = generated(request, "cpp", BOTH, "unit")["unit.cpp"]
     integers = len(SCALARS) - 1
-    for function in ("count_of_varints", "read_varints"):
-        assert text.count(f"detail::{function}(") == integers + 1, function
-    for function in ("size_of_varints", "write_varints"):
+    for function in ("count_of_varints", "read_varints", "size_of_varints", "write_varints"):
         assert text.count(f"detail::{function}(") == integers, function
-    assert text.count("detail::write_flags(") == text.count("detail::size_of_flags(") == 1
+    for function in ("count_of_flags", "read_flags_of_varints", "size_of_flags", "write_flags"):
+        assert text.count(f"detail::{function}(") == 1, function
     for function in ("read_eight", "write_varint"):
         assert f"detail::{function}(" in text, function
     assert "borrow_read_eight(" not in text

@@ -3,6 +3,7 @@
     size += varint_size(value[i])               size_of_varints: all rounds
     next = write_varint(next, value[i])         write_varints: those for which the message has room
     value[used++] = read_packed(at)             read_varints: those that the message has as it should, in a lane with room for all
+    value[used++] = read_packed(at) != 0        read_flags_of_varints: all, where each takes one byte, as no writer has it otherwise
 
 A loop that is printed behind such a call does the rest, and says where something is wrong. Kernels cannot say what makes these functions
 quick: how many bits a number has, and how many numbers follow in 64 bytes.
@@ -23,6 +24,7 @@ from rosetta_jit.kernel.nodes import (
     Block,
     Call,
     Compare,
+    Const,
     Convert,
     Expr,
     Get,
@@ -218,24 +220,35 @@ def _numbered(scope: Scope, number: str, count: Expr, value: Expr) -> str:
 
 def _appending(scope: Scope, rounds: Appended) -> list[str]:
     lanes, lane = scope.lanes, rounds.lane
-    at, rows, used = scope.locals.identifier(rounds.at), scope.rows(lane), scope.used(lane)
-    stop, bytes_, end = bare(expression(scope, rounds.stop)), scope.takes("bytes"), expression(scope, END)
-    several = scope.locals.identifier(f"{rounds.at} several")
-    varint = scope.locals.identifier(each := f"{rounds.varint.name} of several")
-    value = bare(expression(scope, substituted(rounds.value, {rounds.varint.name: Local("u64", each)})))
+    several, used = scope.locals.identifier(f"{rounds.at} several"), scope.used(lane)
     lacking = f"{several} - ({scope.capacity(lane)} - {used})"
     grown = lanes.grown(lane, lacking)
     assert grown is not None
     scope.moved.add(lane)
-    moved = f"{rows} = {lanes.member(lane)}"
+    moved = f"{scope.rows(lane)} = {lanes.member(lane)}"
+    counted, read = _counted(scope, rounds)
     return [
-        f"const int64_t {several} = {DETAIL}::count_of_varints({bytes_}, {at}, {stop}, {end});",
+        f"const int64_t {several} = {DETAIL}::{counted};",
         f"if ({several} > {scope.capacity(lane)} - {used}) {{",
         f"    static_cast<void>({grown});",
         f"    {moved};",
         "}",
         f"if ({several} > 0 && {several} <= {scope.capacity(lane)} - {used}) {{",
-        f"    const auto number = [](std::uint64_t {varint}) -> {C_TYPES[type_of(rounds.value)]} {{ return {value}; }};",
-        f"    {used} += {DETAIL}::read_varints({bytes_}, {at}, {stop}, {end}, {rows} + {used}, number);",
+        *(f"    {each}" for each in read),
         "}",
+    ]
+
+
+def _counted(scope: Scope, rounds: Appended) -> tuple[str, list[str]]:
+    """What counts the integers, and the statements that read them."""
+    at, used = scope.locals.identifier(rounds.at), scope.used(rounds.lane)
+    stop, bytes_, end = bare(expression(scope, rounds.stop)), scope.takes("bytes"), expression(scope, END)
+    rows = f"{scope.rows(rounds.lane)} + {used}"
+    if rounds.value == Compare("ne", rounds.varint, Const("u64", 0)):
+        return f"count_of_flags({bytes_}, {at}, {stop})", [f"{used} += {DETAIL}::read_flags_of_varints({bytes_}, {at}, {stop}, {rows});"]
+    varint = scope.locals.identifier(each := f"{rounds.varint.name} of several")
+    value = bare(expression(scope, substituted(rounds.value, {rounds.varint.name: Local("u64", each)})))
+    return f"count_of_varints({bytes_}, {at}, {stop}, {end})", [
+        f"const auto number = [](std::uint64_t {varint}) -> {C_TYPES[type_of(rounds.value)]} {{ return {value}; }};",
+        f"{used} += {DETAIL}::read_varints({bytes_}, {at}, {stop}, {end}, {rows}, number);",
     ]

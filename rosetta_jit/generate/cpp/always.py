@@ -59,7 +59,7 @@ def _numbers(walk: Walk, type_: Type, slot: Slot, element: object, row: str, at:
 
 
 def is_plain(walk: Walk, type_: String | Bytes | Array, lane: int) -> bool:
-    """Whether a container has the very numbers that the lane has: enums are of another type, and bools may be bits."""
+    """Whether a container has the very numbers that the lane has: enums are of another type, as bools often are."""
     element = walk.unit.layout.lanes[lane].element
     is_enum = isinstance(type_, Array) and isinstance(walk.unit.schema.resolve(type_.element), Enum)
-    return isinstance(element, Number) and element.scalar != "bool" and not is_enum
+    return isinstance(element, Number) and (element.scalar != "bool" or walk.manners.byte_flags) and not is_enum

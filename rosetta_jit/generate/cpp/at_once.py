@@ -32,7 +32,9 @@ SHARED = "rosetta_jit::detail::"
 MOST = 64
 """How many statements are worth to be printed wherever a message is read."""
 FEW_CHECKS = 8
-"""Behind more of them a compiler takes code for such as seldom runs, and makes it short, not quick, unless it is said that none fails."""
+"""Behind more of them a compiler takes code for such as seldom runs, and makes it short, not quick, unless it is said that none fails.
+
+Of fewer that is said where no text is looked at: a compiler then calls functions of a text that it would else put in their place."""
 PARAMETERS = frozenset({"given_object", "bytes", "end"})
 """What such a decoder is given."""
 
@@ -48,9 +50,9 @@ def at_once(kernel: Kernel, lanes: Lanes) -> str:
     scope = Scope(Namespace(words), replace(lanes, shared=SHARED), set(), set(), set())
     function = Function(scope, kernel.sites, {}, read=read_names((*checks, *effects)))
     function.writer.depth = 2
-    many = are_many(checks)
+    marked = are_marked(checks)
     for stmt in checks:
-        check(function, stmt, "return false;", many=many)
+        check(function, stmt, "return false;", marked=marked)
     _print_effects(function, effects)
     is_free = scope.parameters <= PARAMETERS and all(map(is_shared, scope.support)) and not scope.tables
     return function.writer.text() if is_free and "given_object" in scope.parameters else ""
@@ -60,8 +62,8 @@ def _reached(kernel: Kernel, lanes: Lanes) -> tuple[nodes.Block, nodes.Block, La
     """What the decoder checks and what it sets, of lists that are empty or have few elements, and how it reaches the object."""
     body = without_asking(kernel, lanes.opened).bodies[0]
     ways = (
-        (of_empty_lists(kernel.bodies[0], lanes), lanes_of_empty_lists(lanes)),
         (of_few_elements(body, lanes), lanes_of_few_elements(lanes)),
+        (of_empty_lists(kernel.bodies[0], lanes), lanes_of_empty_lists(lanes)),
     )
     found = ((straightened, reached) for each, reached in ways if (straightened := _straightened(each)) is not None)
     return next(((*parts, reached) for parts, reached in found), None)
@@ -115,20 +117,22 @@ def _starts_with_bytes(checks: list[nodes.Stmt]) -> bool:
             return False
 
 
-def are_many(block: nodes.Block) -> bool:
-    """Whether a block has many checks."""
-    return sum(isinstance(stmt, nodes.Require | nodes.Expect) for stmt in block) > FEW_CHECKS
+def are_marked(block: nodes.Block) -> bool:
+    """Whether the checks of a block are said to fail seldom."""
+    checks = [stmt for stmt in block if isinstance(stmt, nodes.Require | nodes.Expect)]
+    has_text = any(isinstance(stmt, nodes.Expect) and isinstance(stmt.condition, nodes.IsText) for stmt in checks)
+    return len(checks) > FEW_CHECKS or not has_text
 
 
-def check(function: Function, stmt: nodes.Stmt, otherwise: str, *, many: bool) -> None:
-    """A check, which may be one of many, or a local that one needs; ``otherwise`` is what is done where it fails.
+def check(function: Function, stmt: nodes.Stmt, otherwise: str, *, marked: bool) -> None:
+    """A check, which may be said to fail seldom, or a local that one needs; ``otherwise`` is what is done where it fails.
 
     Of texts those that are ASCII are read at once.
     """
     condition = _failing(function, stmt)
     if condition is None:
         return
-    with function.block(f"if (ROSETTA_JIT_UNLIKELY({bare(condition)}))" if many else f"if ({bare(condition)})"):
+    with function.block(f"if (ROSETTA_JIT_UNLIKELY({bare(condition)}))" if marked else f"if ({bare(condition)})"):
         function.line(otherwise)
 
 

@@ -1,7 +1,6 @@
 """A decoder's statements for messages whose lists are empty, as those often are that say more of what a message has besides.
 
-How many elements a list has must be found before any text is checked: a message that has some loses a comparison. One that has nothing
-but lists is not worth it.
+How many elements a list has must be found before any text is checked: a message that has some loses a comparison.
 """
 
 from __future__ import annotations
@@ -26,12 +25,10 @@ NOT_EMPTY = nodes.Failure(0, NONE)
 
 
 def of_empty_lists(body: Block, lanes: Lanes) -> Block:
-    """The statements of a body that are left, behind checks that lists of the message are empty; the body itself if it is not worth it."""
-    spans = {offset: straight.lane for (lane, offset), straight in lanes.straight.items() if lane == 0 and straight.lane}
-    lists, of_lists = frozenset(spans.values()), {offset + half for offset in spans for half in (0, 8)}
+    """The statements of a body that are left, behind checks that lists of the message are empty; the body itself if there are none."""
+    lists = frozenset(straight.lane for (lane, _), straight in lanes.straight.items() if lane == 0 and straight.lane)
     reserved = (stmt.count for stmt in body if isinstance(stmt, nodes.Reserve) and stmt.lane in lists)
     counts = {count.name for count in reserved if isinstance(count, nodes.Local)}
-    others = [stmt for stmt in body if isinstance(stmt, nodes.SetField) and stmt.place.offset not in of_lists]
     values, found, is_soon = dict[str, Expr](), list[Stmt](), True
     for each in body:
         stmt = with_values(each, values)
@@ -54,7 +51,7 @@ def of_empty_lists(body: Block, lanes: Lanes) -> Block:
             case _:
                 found.append(stmt)
         is_soon = is_soon and not any(isinstance(part, nodes.IsText) for expr in expressions_of(stmt) for part in subexpressions(expr))
-    return tuple(found) if lists and others else body
+    return tuple(found) if lists else body
 
 
 def of_no_elements(body: Block) -> Block:

@@ -39,6 +39,8 @@ class Manners:
         Fields are named in lower case.
     renamed
         Fields that the classes name otherwise than the schema: by struct and field.
+    byte_flags
+        Arrays of bools have a byte for each, as rows have.
     reserved
         Names of fields and classes behind which the framework's generator writes an underscore.
     around
@@ -53,6 +55,7 @@ class Manners:
     type: Callable[[Struct], str] | None = None
     header: Callable[[Struct], str] | None = None
     lower: bool = False
+    byte_flags: bool = False
     renamed: tuple[tuple[tuple[str, str], str], ...] = ()
     reserved: frozenset[str] = frozenset()
     around: tuple[str, ...] = ()
@@ -134,6 +137,7 @@ MANNERS = (
         ("fields",),
         _joined,
         lambda struct: f"{'/'.join(name_parts(struct.name))}.h",
+        byte_flags=True,
         renamed=TIMES,
         framework="ros1",
     ),
@@ -144,6 +148,7 @@ MANNERS = (
         ("fields",),
         _joined,
         lambda struct: f"{struct.name.replace('.', '/')}.hpp",
+        byte_flags=True,
         framework="lcm",
     ),
     Manners("yarp", "own classes, with a yarp::os::Portable around them", ("fields", "own"), around=("portable",)),

@@ -15,7 +15,7 @@ from rosetta_jit.generate.c.scope import Scope
 from rosetta_jit.generate.c.statements import Function, print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.cpp.always import is_plain, numbers
-from rosetta_jit.generate.cpp.at_once import MOST, PARAMETERS, SHARED, are_many, check, is_shared
+from rosetta_jit.generate.cpp.at_once import MOST, PARAMETERS, SHARED, are_marked, check, is_shared
 from rosetta_jit.generate.cpp.empty_lists import NOT_EMPTY, of_no_elements
 from rosetta_jit.generate.cpp.lists_in_place import spans_of
 from rosetta_jit.generate.cpp.walk import Walk
@@ -58,7 +58,7 @@ def put_at_once(unit: Unit, manners: Manners, lanes: Lanes) -> str:
     function.writer.depth = 2
     for stmt in body:
         if isinstance(stmt, nodes.Require | nodes.Expect | nodes.Let):
-            check(function, stmt, "return -1;", many=are_many(body))
+            check(function, stmt, "return -1;", marked=are_marked(body))
         else:
             print_block(function, (stmt,))
     arrays = [lane for lane in sorted(scope.touched) if lane in reached_by.given]

@@ -21,6 +21,9 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 #if __cplusplus >= 202002L
 #include <span>
 #endif
@@ -903,7 +906,28 @@ inline std::int64_t write_flags(unsigned char *bytes, std::int64_t end, std::int
     return at;
 }
 
+/* How many bools an array of protobuf's has: 0 where one takes several bytes, as none does that is written. */
+inline std::int64_t count_of_flags(const unsigned char *bytes, std::int64_t at, std::int64_t stop) noexcept
+{
+    return is_ascii(bytes, at, stop - at) ? stop - at : 0;
+}
+
+/* Reads them, and says how many. */
+inline std::int64_t read_flags_of_varints(const unsigned char *bytes, std::int64_t &at, std::int64_t stop, std::uint8_t *rows) noexcept
+{
+    const std::int64_t count = stop - at;
+    copy_flags(rows, bytes + at, count);
+    at = stop;
+    return count;
+}
+
 constexpr std::int64_t FEW_BYTES = 32; /* of an array whose integers are not worth to be counted */
+
+#if defined(__SSE2__)
+/* Sixteen bytes for instructions that change each of them, and eight. */
+inline __m128i sixteen_at(const unsigned char *bytes) noexcept { return _mm_loadu_si128(reinterpret_cast<const __m128i *>(bytes)); }
+inline __m128i eight_at(const unsigned char *bytes) noexcept { return _mm_loadl_epi64(reinterpret_cast<const __m128i *>(bytes)); }
+#endif
 
 /* How many integers end between two places of a message; 0 where it is not worth to count them. */
 inline std::int64_t count_of_varints(const unsigned char *bytes, std::int64_t at, std::int64_t stop, std::int64_t end) noexcept
@@ -912,6 +936,19 @@ inline std::int64_t count_of_varints(const unsigned char *bytes, std::int64_t at
         return 0;
     }
     std::int64_t count = 0;
+#if defined(__SSE2__)
+    __m128i counts = _mm_setzero_si128();
+    while (stop - at >= 16) {
+        __m128i each = _mm_setzero_si128(); /* a byte for each of the sixteen */
+        for (const std::int64_t last = std::min(stop - 15, at + 255 * 16); at < last; at += 16) {
+            each = _mm_sub_epi8(each, _mm_cmpgt_epi8(sixteen_at(bytes + at), _mm_set1_epi8(-1)));
+        }
+        counts = _mm_add_epi64(counts, _mm_sad_epu8(each, _mm_setzero_si128()));
+    }
+    std::int64_t both[2];
+    std::memcpy(both, &counts, sizeof both);
+    count = both[0] + both[1];
+#endif
     while (stop - at >= 8) {
         std::uint64_t each = 0; /* a byte for each of the eight */
         for (const std::int64_t last = std::min(stop - 7, at + 255 * 8); at < last; at += 8) {
@@ -920,21 +957,52 @@ inline std::int64_t count_of_varints(const unsigned char *bytes, std::int64_t at
         const std::uint64_t pairs = (each & 0x00ff00ff00ff00ffu) + (each >> 8 & 0x00ff00ff00ff00ffu);
         count += static_cast<std::int64_t>((pairs * 0x0001000100010001u) >> 48);
     }
-    for (; at < stop; at++) {
-        count += bytes[at] < 128u ? 1 : 0;
-    }
-    return count;
+    const std::uint64_t others = GOES_ON >> 8 * (stop - at); /* of the last eight bytes, those that are counted already */
+    return count + static_cast<std::int64_t>((((~word_at(bytes + stop - 8) & GOES_ON & ~others) >> 7) * 0x0101010101010101u) >> 56);
 }
 
 /* Which of up to 64 bytes end an integer: a bit each. There are as many whole words. */
 inline std::uint64_t last_bytes(const unsigned char *bytes, std::int64_t size) noexcept
 {
     std::uint64_t found = 0;
-    for (std::int64_t at = 0; at < size; at += 8) {
+    std::int64_t at = 0;
+#if defined(__SSE2__)
+    for (; size - at >= 16; at += 16) {
+        found |= static_cast<std::uint64_t>(_mm_movemask_epi8(sixteen_at(bytes + at)) ^ 0xffff) << at;
+    }
+#endif
+    for (; at < size; at += 8) {
         found |= (((~word_at(bytes + at) & GOES_ON) * 0x0002040810204081u) >> 56) << at;
     }
     return size < 64 ? found & ((std::uint64_t{1} << size) - 1) : found;
 }
+
+/* Integers of one or two bytes, by the last byte of each; of longer ones the last two bytes. There are as many whole words of bytes, and one before them. */
+struct short_varints {
+#if defined(__SSE2__)
+    std::uint16_t each[64];
+
+    short_varints(const unsigned char *bytes, std::int64_t size) noexcept
+    {
+        for (std::int64_t at = 0; at < size; at += 8) {
+            const __m128i last = eight_at(bytes + at), before = eight_at(bytes + at - 1), two = _mm_cmpgt_epi8(_mm_setzero_si128(), before);
+            const __m128i low = _mm_or_si128(_mm_and_si128(two, before), _mm_andnot_si128(two, last)), high = _mm_and_si128(two, last);
+            const __m128i joined = _mm_srli_epi16(_mm_unpacklo_epi8(_mm_add_epi8(low, low), high), 1);
+            std::memcpy(each + at, &joined, sizeof joined);
+        }
+    }
+    std::uint64_t operator[](unsigned at) const noexcept { return each[at]; }
+#else
+    const unsigned char *bytes;
+
+    short_varints(const unsigned char *from, std::int64_t) noexcept : bytes(from) {}
+    std::uint64_t operator[](unsigned at) const noexcept
+    {
+        const std::uint64_t before = bytes[std::ptrdiff_t{at} - 1], byte = bytes[at], longer = (before >> 7) * 127u;
+        return byte * (longer + 1u) + (before & longer);
+    }
+#endif
+};
 
 /* The same where all have a number of bytes. */
 inline constexpr std::uint64_t ALIKE[8] = {
@@ -1003,57 +1071,104 @@ template <class Row, class Number> void read_alike(const unsigned char *bytes, s
     }
 }
 
+/* Integers that end where bits are set, as far as they are not too long. */
+template <class Row, class Number>
+ROSETTA_JIT_INLINE Row *read_long(const unsigned char *bytes, std::int64_t &start, std::uint64_t &last, Row *next, Number number)
+{
+    for (; last != 0; last &= last - 1) {
+        const std::int64_t ends = lowest_bit(last), longer = ends - start;
+        std::uint64_t value = 0;
+        if (longer < 8) {
+            value = bits_joined(word_at(bytes + start) & VARINT_BITS[longer]);
+        } else if (longer < 10) {
+            value = bits_joined(word_at(bytes + start) & VARINT_BITS[7]) | std::uint64_t{bytes[start + 8] & 127u} << 56;
+            value |= longer == 9 ? std::uint64_t{bytes[ends]} << 63 : 0;
+        } else {
+            break;
+        }
+        *next++ = static_cast<Row>(number(value));
+        start = ends + 1;
+    }
+    return next;
+}
+
+/* The same where they have up to four bytes. */
+template <class Row, class Number>
+ROSETTA_JIT_INLINE Row *read_middle(const unsigned char *bytes, std::int64_t &start, std::uint64_t &last, Row *next, Number number)
+{
+    for (; last != 0; last &= last - 1) {
+        const std::int64_t ends = lowest_bit(last);
+        const std::uint32_t four = static_cast<std::uint32_t>(word_at(bytes + start) & VARINT_BITS[ends - start]), pairs = four - ((four & 0x7f007f00u) >> 1);
+        *next++ = static_cast<Row>(number(std::uint64_t{(pairs & 0x3fffu) | (pairs >> 2 & 0x0fffc000u)}));
+        start = ends + 1;
+    }
+    return next;
+}
+
+/* And where they have one or two. */
+template <class Row, class Number>
+ROSETTA_JIT_INLINE Row *read_short(const unsigned char *bytes, std::int64_t size, std::int64_t &start, std::uint64_t &last, Row *next, Number number)
+{
+    const short_varints values(bytes, size);
+    start = last == 0 ? start : std::int64_t{highest_bit(last)} + 1;
+    for (; last != 0; last &= last - 1) {
+        *next++ = static_cast<Row>(number(values[lowest_bit(last)]));
+    }
+    return next;
+}
+
+/* How many bytes the longest of some integers has, as far as it matters: up to two, up to four, or more. `more` are the bytes that end none, a bit each,
+   and `open` is how many of the first integer are before them. */
+inline int longest_varint(std::uint64_t more, std::int64_t open) noexcept
+{
+    const std::uint64_t before = open < 4 ? 0xfu >> open ^ 0xfu : 0xfu; /* the highest of its four bits is the last byte */
+    const std::uint64_t three = more & (more << 1 | before >> 3);
+    if (three == 0 && open < 2) {
+        return 2;
+    }
+    return open < 4 && (three & (more << 2 | before >> 2) & (more << 3 | before >> 1)) == 0 ? 4 : 10;
+}
+
 /* Reads the integers of an array as `count_of_varints` has counted them, and says how many. It stops before an integer that is too long, and
    eight bytes before the message's end. `number` says what an integer stands for. */
 template <class Row, class Number>
 std::int64_t read_varints(const unsigned char *bytes, std::int64_t &at, std::int64_t stop, std::int64_t end, Row *rows, Number number)
 {
+    constexpr std::int64_t BLOCK = 64;
     const std::int64_t limit = std::min(stop, end - 8);
     Row *next = rows;
-    std::int64_t start = at, block = at; /* of the integer at hand, and of the bytes that are looked at */
     if (bytes[at - 1] >= 128u) {
         return 0;
     }
-    while (block < limit) {
-        const std::int64_t size = std::min<std::int64_t>(64, limit - block);
-        const std::uint64_t inside = ~std::uint64_t{0} >> (64 - size);
-        std::uint64_t last = last_bytes(bytes + block, size);
-        const std::uint64_t more = ~last & inside;
-        const std::int64_t width = last == 0 ? 64 : lowest_bit(last) + 1;
-        if (start == block && width <= 8 && last == (ALIKE[width - 1] & inside)) {
+    for (std::int64_t block = at; block < limit;) {
+        const std::int64_t size = std::min(BLOCK, limit - block), open = block - at; /* the bytes before of an integer that ends here */
+        const unsigned char *const here = bytes + block;
+        const std::uint64_t inside = ~std::uint64_t{0} >> (BLOCK - size);
+        std::uint64_t last = last_bytes(here, size);
+        const std::int64_t width = last == 0 ? BLOCK : lowest_bit(last) + 1;
+        if (open == 0 && width <= 8 && last == (ALIKE[width - 1] & inside)) {
             const std::int64_t count = size / width;
-            read_alike(bytes + block, width, count, next, number);
+            read_alike(here, width, count, next, number);
             next += count;
-            start = block + count * width;
-            block = size < 64 ? limit : start;
+            at = block + count * width;
+            block = size < BLOCK ? limit : at;
             continue;
         }
-        if ((more & (more << 1 | (start < block ? 1u : 0u))) == 0 && block - start < 2) {
-            for (; last != 0; last &= last - 1) {
-                const std::int64_t ends = block + lowest_bit(last);
-                const std::uint64_t before = bytes[ends - 1], byte = bytes[ends], longer = (before >> 7) * 127u;
-                *next++ = static_cast<Row>(number(byte * (longer + 1u) + (before & longer)));
-                start = ends + 1;
-            }
+        const int longest = longest_varint(~last & inside, open);
+        std::int64_t start = -open;
+        if (longest == 2) {
+            next = read_short(here, size, start, last, next, number);
+        } else if (longest == 4) {
+            next = read_middle(here, start, last, next, number);
+        } else {
+            next = read_long(here, start, last, next, number);
         }
-        for (; last != 0; last &= last - 1) {
-            const std::int64_t ends = block + lowest_bit(last), longer = ends - start;
-            std::uint64_t value = word_at(bytes + start);
-            if (longer < 8) {
-                value = bits_joined(value & VARINT_BITS[longer]);
-            } else if (longer < 10) {
-                value = bits_joined(value & VARINT_BITS[7]) | std::uint64_t{bytes[start + 8] & 127u} << 56;
-                value |= longer == 9 ? std::uint64_t{bytes[ends]} << 63 : 0;
-            } else {
-                at = start;
-                return next - rows;
-            }
-            *next++ = static_cast<Row>(number(value));
-            start = ends + 1;
+        at = block + start;
+        if (last != 0) {
+            break;
         }
         block += size;
     }
-    at = start;
     return next - rows;
 }
 
