@@ -4,8 +4,8 @@ from __future__ import annotations
 
 # --- Programs -----------------------------------------------------------------------------------------------------------
 
-MAX_STATEMENTS = 20_000
-"""statements of one program: some thirteen a field of a bottle, fewer of other wires; `FileDescriptorSet` comes to 12,000"""
+MAX_STATEMENTS = 24_000
+"""statements of one program: some thirteen a field of a bottle, twenty an array of CDR; `FileDescriptorSet` comes to 12,000"""
 
 # --- Messages -----------------------------------------------------------------------------------------------------------
 

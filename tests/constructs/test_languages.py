@@ -147,7 +147,7 @@ def test_each_in_c(name, monkeypatch):
 def in_c(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     made = case(name)
     wanted = [results(made, each) for each in made.directions]
-    monkeypatch.setattr(programs, "_loaded", loaded_in_c)
+    monkeypatch.setattr(programs, "loaded_of", loaded_in_c)
     assert [results(made, each) for each in made.directions] == wanted
 
 

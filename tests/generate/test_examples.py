@@ -132,7 +132,7 @@ def plain(value: Any) -> Any:
 def test_in_c(name, monkeypatch):
     made = case(name)
     wanted = [results(made, each) for each in made.directions]
-    monkeypatch.setattr(programs, "_loaded", loaded_in_c)
+    monkeypatch.setattr(programs, "loaded_of", loaded_in_c)
     assert [results(made, each) for each in made.directions] == wanted
 
 

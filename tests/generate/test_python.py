@@ -9,6 +9,7 @@ import subprocess
 import sys
 from itertools import permutations
 from pathlib import Path
+from typing import get_type_hints
 
 import numpy as np
 import pytest
@@ -188,6 +189,30 @@ def test_types_are_called_as_the_module_calls_its_own(name):
     element = struct.pack("<hI2s", 7, 2, b"ab")
     message = element + struct.pack("<I", 2) + element + element
     assert answer(unit, message) == f"ok {message.hex()}"
+
+
+NAMED_AS_TYPES = """syntax = "proto3"; package t;
+message M {
+  repeated int32 list = 1; repeated int32 other = 2; map<string, int32> dict = 3; map<string, float> more = 4; bytes bytes = 5;
+  int32 int = 6; double float = 7; string str = 8; M M = 9; repeated M us = 10; int32 np = 11; repeated double doubles = 12;
+  bool bool = 13; bool flag = 14; optional string Any = 15; int32 range = 16; int32 npt = 17; int32 _builtins = 18; repeated M tuple = 19;
+}
+"""
+
+
+@pytest.mark.parametrize("arrays", ["", "numpy"])
+def test_fields_are_called_as_the_types_of_others(arrays):
+    """The body of a class finds its own fields before the names of Python's types."""
+    given = {"encoding": "protobuf", "schema": {"t.proto": NAMED_AS_TYPES}}
+    unit = module(type_request("decode", "t.M", given), wishes=Wishes(numpy=bool(arrays)))
+    encode = rj.Encoder.of("t.M", **given)
+    inner = {"int": 5, "float": 1.5, "str": "s", "bool": True, "bytes": b"b"}
+    names = {"list": [1, 2], "other": [3], "dict": {"a": 1}, "more": {"b": 0.5}, "M": inner, "us": [inner], "doubles": [0.25]}
+    message = bytes(encode(encode.holder_type.from_dict({**inner, **names, "np": 1, "Any": "any", "range": 2, "npt": 3, "tuple": [inner]})))
+    assert answer(unit, message) == f"ok {message.hex()}"
+    said = get_type_hints(unit.M)
+    assert (said["int"], said["flag"], said["unknown_fields"]) == (int, bool, bytes)
+    assert unit.M() == unit.M()
 
 
 def test_loops_that_do_nothing_are_not_printed():

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import builtins
 import keyword
+import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import assert_never
 
 from rosetta_jit.backends.printing import Namespace, class_name
@@ -41,7 +42,9 @@ WORDS = frozenset(
 OWN = """dataclass field Struct Any Callable c_float decode encode size reset Refused MessageError DecodeError EncodeError npt"""
 TAKEN = WORDS.union(OWN.split())
 """What no class may be called: what the module defines and imports besides."""
-MEMBERS = frozenset((*keyword.kwlist, "unknown_fields", "field"))
+MEMBERS = frozenset((*keyword.kwlist, "unknown_fields", "field", "_builtins"))
+TYPES = frozenset(("bool", "int", "float", "str", "bytes", "list", "dict", "tuple"))
+"""Python's own names that classes use for types and values, where a field may have such a name."""
 MAX_DOC = 200
 NOT_MODULES = frozenset((*keyword.kwlist, *sys.stdlib_module_names))
 """What no unit may be called: it could not be imported, or others could not."""
@@ -115,13 +118,21 @@ def _class(identifier: str, struct: Struct, names: dict[str, str], unit: Unit) -
     head = ["@dataclass(slots=True)", f"class {identifier}:"]
     head = ["@dataclass(slots=True, eq=False)", f"class {identifier}(_Comparable):"] if unit.numpy else head
     lines = [*head, f"    {_doc(f'{struct.name}. {struct.doc}'.rstrip('. ') + '.')}", ""]
-    for each, member in zip(struct.fields, member_names(struct), strict=True):
-        lines.append(f"    {member}: {_type(each.type, names, unit)} = {_default(each.type, names, unit)}")
+    members = member_names(struct)
+    for each, member in zip(struct.fields, members, strict=True):
+        lines.append(f"    {member}: {_beside(members, f'{_type(each.type, names, unit)} = {_default(each.type, names, unit)}')}")
         said = " ".join(part for part in (each.doc, f"[{each.unit}]" if each.unit else "") if part)
         lines += [f"    {_doc(said)}"] if said else []
     if struct.option("unknown"):
-        lines += ['    unknown_fields: bytes = b""', '    """Fields that the schema does not know, as they came."""']
+        declared = _beside(members, 'bytes = b""')
+        lines += [f"    unknown_fields: {declared}", '    """Fields that the schema does not know, as they came."""']
     return "\n".join([*lines, ""])
+
+
+def _beside(members: Collection[str], text: str) -> str:
+    """What a field is declared as, in a class of which some fields may have the names of Python's types."""
+    hidden = "|".join(sorted(TYPES.intersection(members)))
+    return re.sub(rf"(?<![\w.])(?:{hidden})\b", r"_builtins.\g<0>", text) if hidden else text
 
 
 def _type(type_: Type, names: dict[str, str], unit: Unit, *, inside: bool = False) -> str:

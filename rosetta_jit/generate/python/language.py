@@ -89,12 +89,13 @@ class _Module:
                 "from typing import Any\n", "from typing import Any\n\nimport numpy as np\nimport numpy.typing as npt\n"
             )
             runtime += f"\n\n\n{arrays[arrays.index('_Array') :].rstrip()}"
+        declared = classes(self.unit).rstrip()
+        if "_builtins." in declared:
+            runtime = runtime.replace("import ", "import builtins as _builtins\nimport ", 1)
         made = "\n".join(
             f"# {ascii(' '.join(line.split()))[1:-1]}" for line in ("Made by rosetta-jit. Changes will be lost.", *self.unit.made_from)
         )
-        text = "\n\n\n".join(
-            [f"{made}\nfrom __future__ import annotations\n\n{runtime}", classes(self.unit).rstrip(), self._constants(), *parts]
-        )
+        text = "\n\n\n".join([f"{made}\nfrom __future__ import annotations\n\n{runtime}", declared, self._constants(), *parts])
         return re.sub(r"\n{4,}", "\n\n\n", text).rstrip() + "\n"
 
     def _constants(self) -> str:

@@ -10,7 +10,8 @@ pytest.importorskip("cyclonedds")
 
 from cyclonedds.idl import Endianness
 
-from rosetta_jit.api.programs import Decoder, Encoder
+from rosetta_jit.api.decoder import Decoder
+from rosetta_jit.api.encoder import Encoder
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref
 from rosetta_jit.pipeline.request import Request
