@@ -160,16 +160,21 @@ def _attempt(
         frame.builder.unreachable()  # verified: every path that gets here has ended in a Return before
     _finish(frame, counted)
     entry.branch(first)
-    if not failed.is_reached:
+    if failed.is_reached:
+        _end_failed(frame, otherwise, is_first=is_first)
+    else:
         failed.drop()
-        return
-    builder = ir.IRBuilder(failed.block)
-    site = _record(builder, parameters.state, failed, is_first=is_first)
+
+
+def _end_failed(frame: Frame, otherwise: ir.Function | ir.Constant | None, *, is_first: bool) -> None:
+    """Record the failures of a body, and lead to what `_attempt` is told."""
+    builder = ir.IRBuilder(frame.failed.block)
+    site = _record(builder, frame.parameters.state, frame.failed, is_first=is_first)
     match otherwise:
         case None:
             builder.ret(builder.sub(constant(-1), site))
         case ir.Function():
-            builder.ret(builder.call(otherwise, function.args))
+            builder.ret(builder.call(otherwise, frame.entry.function.args))
         case _:
             builder.ret(otherwise)
 

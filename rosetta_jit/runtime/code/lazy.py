@@ -79,16 +79,16 @@ def _stub(number: int, slots: int, find: int) -> bytes:
 
 
 def _size(instructions: Sequence[tuple[str, str]]) -> int:
-    return len(_assembled(instructions, 0, None))
+    return sum(len(bytes.fromhex(opcode)) + 4 * bool(operand) for opcode, operand in instructions)
 
 
-def _assembled(instructions: Sequence[tuple[str, str]], begin: int, places: Mapping[str, int] | None) -> bytes:
-    """The bytes of instructions from a place on; without places, with distances that mean nothing."""
+def _assembled(instructions: Sequence[tuple[str, str]], begin: int, places: Mapping[str, int]) -> bytes:
+    """The bytes of instructions that begin at a place."""
     code = bytearray()
     for opcode, operand in instructions:
         code += bytes.fromhex(opcode)
         if operand:
-            code += struct.pack("<i", places[operand] - (begin + len(code) + 4) if places else 0)
+            code += struct.pack("<i", places[operand] - (begin + len(code) + 4))
     return bytes(code)
 
 
