@@ -148,12 +148,14 @@ def _placed(tree: Tree, parts: list[Any]) -> Tree:
 class Grammar:
     """Tables as they stand in a file: see `parsing.tables`. Of the states only those are looked at that a text leads to."""
 
-    def __init__(self, plain: Mapping[str, Any]) -> None:
-        self.plain = plain
+    def __init__(self, tables: Mapping[str, str]) -> None:
+        self.tables = tables
+        self.start, self.end = int(tables["start"]), int(tables["end"])
+        """The first state, and the one behind the whole text."""
 
     def lex(self, text: str) -> Iterator[Token]:
         """The tokens of a text, one by one; raises UnexpectedCharacterError where none starts."""
-        match, ignored, words = self._pattern.match, self._ignored, self.plain["words"]
+        match, ignored, words = self._pattern.match, self._ignored, self._words
         at = 0
         while at < len(text):
             found = match(text, at)
@@ -166,7 +168,7 @@ class Grammar:
 
     def parser(self) -> Parser:
         """A parser before its first token."""
-        return Parser(self, [self.plain["start"]], [])
+        return Parser(self, [self.start], [])
 
     def parse(self, tokens: Iterator[Token]) -> Tree:
         """The tree of a whole text."""
@@ -177,9 +179,9 @@ class Grammar:
 
     def actions(self, state: int) -> Mapping[str, int]:
         """What to do in a state at a kind of token or behind a rule: the next state, or the complement of a complete rule's number."""
-        found = self._states.get(state)
+        found = self._looked_at.get(state)
         if found is None:
-            found = self._states[state] = _row(self.plain["states"][state], self.plain["symbols"])
+            found = self._looked_at[state] = _row(self._states[state], self._symbols)
         return found
 
     def step(self, below: int, state: int, kind: str) -> tuple[int, int | None]:
@@ -194,17 +196,9 @@ class Grammar:
         return found
 
     @cached_property
-    def _pattern(self) -> re.Pattern[str]:
-        return re.compile(self.plain["pattern"])
-
-    @cached_property
-    def _ignored(self) -> frozenset[str]:
-        return frozenset(self.plain["ignored"])
-
-    @cached_property
     def rules(self) -> tuple[Rule, ...]:
         """By the complements of the actions that say they are complete."""
-        return tuple(Rule(*each) for each in self.plain["rules"])
+        return tuple(map(_rule, self.tables["rules"].split("\n")))
 
     @cached_property
     def steps(self) -> dict[tuple[int, int, str], tuple[int, int | None]]:
@@ -212,8 +206,40 @@ class Grammar:
         return {}
 
     @cached_property
-    def _states(self) -> dict[int, Mapping[str, int]]:
+    def _pattern(self) -> re.Pattern[str]:
+        return re.compile(self.tables["pattern"])
+
+    @cached_property
+    def _ignored(self) -> frozenset[str]:
+        return frozenset(self.tables["ignored"].split())
+
+    @cached_property
+    def _words(self) -> dict[str, dict[str, str]]:
+        """The kinds of texts that the pattern finds as another kind."""
+        words: dict[str, dict[str, str]] = {}
+        for line in self.tables["words"].split("\n"):
+            found, text, kind = line.split()
+            words.setdefault(found, {})[text] = kind
+        return words
+
+    @cached_property
+    def _symbols(self) -> Sequence[str]:
+        return self.tables["symbols"].split()
+
+    @cached_property
+    def _states(self) -> Sequence[str]:
+        return self.tables["states"].split("\n")
+
+    @cached_property
+    def _looked_at(self) -> dict[int, Mapping[str, int]]:
         return {}
+
+
+def _rule(line: str) -> Rule:
+    """A rule, from `name data size shape parts`."""
+    name, data, size, shape, parts = line.split()
+    kept = None if parts == "all" else [(int(part.rstrip("*")), part.endswith("*")) for part in parts.split(",") if part != "none"]
+    return Rule(name, data, int(size), kept, shape == "thin")
 
 
 def _row(text: str, symbols: Sequence[str]) -> dict[str, int]:
@@ -254,7 +280,7 @@ class Parser:
     def _reduce(self, token: Token) -> int:
         """Make trees of what is complete before a token; the state behind the token then, or the last one at the end."""
         grammar, states, values = self.grammar, self.states, self.values
-        rules, steps, last, kind = grammar.rules, grammar.steps, grammar.plain["end"], token.type
+        rules, steps, last, kind = grammar.rules, grammar.steps, grammar.end, token.type
         while True:
             below = states[-2] if len(states) > 1 else NOWHERE
             states[-1], action = steps.get((below, states[-1], kind)) or grammar.step(below, states[-1], kind)
@@ -280,5 +306,5 @@ class Parser:
             rule = self.grammar.rules[~action]
             del states[len(states) - rule.size :]
             states.append(self.grammar.actions(states[-1])[rule.name])
-            if states[-1] == self.grammar.plain["end"] and kind == END:
+            if states[-1] == self.grammar.end and kind == END:
                 return True

@@ -1,10 +1,12 @@
-"""From a grammar in lark's language to the tables that drive our parser, as JSON. Only here lark is imported.
+"""From a grammar in lark's language to the tables that drive our parser, each a text. Only here lark is imported.
 
-pattern, ignored, words     what tokens match, which of them are left out, and which texts of a kind are another kind
-symbols                     kinds of tokens, and names of rules
-rules                       the fields of each `lalr.Rule`
-states                      for each its actions: `state:symbol,symbol` where one follows, `~rule:symbol` where a rule is complete
-start, end                  the first state, and the one behind the whole text
+pattern     what tokens match
+ignored     which kinds of them are left out
+words       which texts of a kind are another kind: `kind text other` in a line
+symbols     kinds of tokens, and names of rules
+rules       the fields of each `lalr.Rule`: `name data size thin|whole parts` in a line; the parts that are kept, dissolved ones with a `*`
+states      for each its actions in a line: `state:symbol,symbol` where one follows, `~rule:symbol` where a rule is complete
+start, end  the first state, and the one behind the whole text
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
     from lark.grammar import Rule, Symbol, Terminal
 
 
-def tables_of(text: str, *, start: str, mistake_tokens: Sequence[str]) -> dict[str, Any]:
+def tables_of(text: str, *, start: str, mistake_tokens: Sequence[str]) -> dict[str, str]:
     """The tables of a grammar.
 
     Parameters
@@ -43,11 +45,11 @@ def tables_of(text: str, *, start: str, mistake_tokens: Sequence[str]) -> dict[s
     symbols = sorted({symbol for actions in table.states.values() for symbol in actions})
     return {
         **_lexer(made.parser.lexer.lexer),
-        "symbols": symbols,
-        "rules": [_rule(rule) for rule in rules],
-        "states": [_row(table.states[state], order, rules, symbols) for state in order],
-        "start": order[table.start_states[start]],
-        "end": order[table.end_states[start]],
+        "symbols": "\n".join(symbols),
+        "rules": "\n".join(map(_rule, rules)),
+        "states": "\n".join(_row(table.states[state], order, rules, symbols) for state in order),
+        "start": str(order[table.start_states[start]]),
+        "end": str(order[table.end_states[start]]),
     }
 
 
@@ -67,22 +69,31 @@ class _KeptTokens(PostLex):
         return stream
 
 
-def _lexer(lexer: Any) -> dict[str, Any]:
+def _lexer(lexer: Any) -> dict[str, str]:
     """One pattern of all tokens, in the order in which they are tried; words that are kinds of their own are told apart behind it."""
     scanner: Any = lexer.scanner  # lark has no other way to ask
-    words: dict[str, dict[str, str]] = {}
+    words: list[tuple[str, str, str]] = []
     for kind, unless in lexer.callback.items():
-        words[kind] = dict(sorted((each.pattern.value, each.name) for each in unless.scanner.terminals))
+        words += sorted((kind, each.pattern.value, each.name) for each in unless.scanner.terminals)
     groups: list[str] = []
     for is_literal, run in groupby(scanner.terminals, _is_literal):
         terminals = list(run)
         if is_literal and len(terminals) > 1:
-            kind = f"__LITERAL_{len(words)}"
-            words[kind] = {each.pattern.value: each.name for each in terminals}
+            kind = f"__LITERAL_{len(groups)}"
+            words += [(kind, each.pattern.value, each.name) for each in terminals]
             groups.append(f"(?P<{kind}>{_alternatives([each.pattern.value for each in terminals])})")
         else:
             groups += [f"(?P<{each.name}>{each.pattern.to_regexp()})" for each in terminals]
-    return {"pattern": "|".join(groups), "ignored": sorted(lexer.ignore_types), "words": words}
+    return {
+        "pattern": _printable("|".join(groups)),
+        "ignored": "\n".join(sorted(lexer.ignore_types)),
+        "words": "\n".join(map(" ".join, words)),
+    }
+
+
+def _printable(pattern: str) -> str:
+    """The same pattern in one line: spaces other than a blank are written as escapes."""
+    return re.sub(r"\\?([\t\n\v\f\r])|\\.", lambda found: repr(found[1])[1:-1] if found[1] else found[0], pattern)
 
 
 def _alternatives(texts: Sequence[str]) -> str:
@@ -109,15 +120,17 @@ def _reached(states: Mapping[Any, Mapping[str, tuple[Any, Any]]], start: Any) ->
     return order
 
 
-def _rule(rule: Rule) -> list[Any]:
+def _rule(rule: Rule) -> str:
     expansion = rule.expansion
     kept = [
-        [number, _is_dissolved(part)] for number, part in enumerate(expansion) if rule.options.keep_all_tokens or not _is_left_out(part)
+        f"{number}{'*' if _is_dissolved(part) else ''}"
+        for number, part in enumerate(expansion)
+        if rule.options.keep_all_tokens or not _is_left_out(part)
     ]
-    is_plain = len(kept) == len(expansion) and not any(is_dissolved for _, is_dissolved in kept)
-    is_thin = bool(rule.options.expand1) and rule.alias is None
+    is_plain = kept == [str(number) for number in range(len(expansion))]
+    shape = "thin" if rule.options.expand1 and rule.alias is None else "whole"
     data = rule.alias or rule.options.template_source or rule.origin.name
-    return [str(rule.origin.name), str(data), len(expansion), None if is_plain else kept, is_thin]
+    return f"{rule.origin.name} {data} {len(expansion)} {shape} {'all' if is_plain else ','.join(kept) or 'none'}"
 
 
 def _is_left_out(part: Symbol) -> bool:

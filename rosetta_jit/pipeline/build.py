@@ -5,7 +5,6 @@ texts → schemas and mapping → checked rules → encoding, layout → kernels
 
 from __future__ import annotations
 
-import json
 from collections.abc import Generator, Iterable, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast, get_args
@@ -245,9 +244,8 @@ class Build:
 
         kernels = [to_text(kernel) for kernel in self.kernels]
         digests = [f"{function.name} {function.identity.digest}" for function in self.called]
-        holder = json.dumps(self.header["type"], sort_keys=True)
-        state = json.dumps([self.header["state"], self.wires, self.header["wire"], self.header["rare"]])
-        return "\n".join([self.backend.name, self.entry, self.manners, str(self.limit), state, holder, *kernels, *digests])
+        plain = repr([self.header[name] for name in ("state", "wires", "wire", "rare", "type")])
+        return "\n".join([self.backend.name, self.entry, self.manners, str(self.limit), plain, *kernels, *digests])
 
     @cached_property
     def entry(self) -> Literal["decode", "borrow", "encode"]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.catalogue import bind, wires
@@ -56,9 +55,11 @@ def declared_types(request: Request, files: Files) -> Types:
     """The type that a request names, as it is declared."""
     if request.wire is not None:
         raise report(request, wires.unknown(None, request.wire, ()))
-    for name in json.loads(request.parameters):
+    for name in request.values:
         raise report(request, bind.needless(name))
     if request.plain is not None:
+        import json  # few types come so
+
         type_, schema = from_plain(json.loads(request.plain))
         struct = schema.resolve(type_)
         assert isinstance(struct, Struct)

@@ -5,7 +5,6 @@ Programs of a type into its own holder, as most of logs are, import nothing of t
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -37,7 +36,7 @@ def checked(request: Request, sources: Files) -> Checked:
     """The mapping of a request, with its parameters."""
     source = sources.search.open(request.mapping or "")
     sources.reading.record(source.name, None, source)
-    return checked_source(source, readers_of(request), sources.search, sources.reading, json.loads(request.parameters))
+    return checked_source(source, readers_of(request), sources.search, sources.reading, request.values)
 
 
 def checked_source(

@@ -87,6 +87,15 @@ class Request:
     def __str__(self) -> str:
         return f"{self.mapping or self.type} ({self.direction})"
 
+    @property
+    def values(self) -> Mapping[str, object]:
+        """The values of the mapping's parameters, by their names."""
+        if self.parameters == NO_PARAMETERS:
+            return {}
+        import json  # most mappings have none
+
+        return json.loads(self.parameters)
+
     def is_identified(self) -> bool:
         """Whether the cache can know the answer: a function that is not identified may be another one each time."""
         return all(each.identity.digest is not None for each in self.functions)

@@ -14,6 +14,7 @@ from importlib.machinery import BuiltinImporter, FrozenImporter, ModuleSpec, Pat
 from importlib.util import MAGIC_NUMBER, cache_from_source
 from marshal import loads
 from stat import S_ISREG
+from struct import pack
 from types import CodeType, ModuleType
 from typing import Any
 
@@ -25,6 +26,12 @@ _IN_VAIN: tuple[Any, ...] = (BuiltinImporter, FrozenImporter)
 
 _COMPARED_BY_TIME = MAGIC_NUMBER + bytes(4)
 """How a compiled file of this Python begins that is as new as its source if the time and the size which follow are those of the source."""
+
+_ROOM = 1 << 18
+"""Bytes of a compiled file that are read at once; a longer one is left to Python."""
+
+_ROOMS: list[bytearray] = []
+"""Where files are read to, one for each thread that imports at the time: a new place for each file would be cleared by the system first."""
 
 
 def install() -> None:
@@ -91,12 +98,14 @@ class _Loader(SourceFileLoader):
             file = os.open(self._compiled, os.O_RDONLY)
         except OSError:
             return None
+        room = _ROOMS.pop() if _ROOMS else bytearray(_ROOM)
         try:
-            data = os.read(file, os.fstat(file).st_size)
+            size = os.preadv(file, (room,), 0)
+            stamp = pack("<II", int(self._found.st_mtime) & 0xFFFFFFFF, self._found.st_size & 0xFFFFFFFF)
+            if size == _ROOM or not room.startswith(_COMPARED_BY_TIME + stamp):
+                return None
+            code: CodeType = loads(memoryview(room)[16:size])  # noqa: S302 - the file that Python would read
         finally:
             os.close(file)
-        stamp = b"".join((int(each) & 0xFFFFFFFF).to_bytes(4, "little") for each in (self._found.st_mtime, self._found.st_size))
-        if data[:16] != _COMPARED_BY_TIME + stamp:
-            return None
-        code: CodeType = loads(memoryview(data)[16:])  # noqa: S302 - the file that Python would read
+            _ROOMS.append(room)
         return code if code.co_filename == self.path else None

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -20,7 +20,7 @@ from rosetta_jit.frameworks.yarp import sexpr
 from rosetta_jit.language.parse import templates
 from rosetta_jit.parsing import parsers
 from rosetta_jit.parsing.lalr import Tree, UnexpectedCharacterError, UnexpectedTokenError
-from rosetta_jit.parsing.tables import lark_of
+from rosetta_jit.parsing.tables import _printable, lark_of
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -131,11 +131,27 @@ def test_a_changed_grammar_does_not_use_old_tables(case, tmp_path):
     tables = Path(shutil.copy(case.grammar.with_suffix(parsers.SUFFIX), tmp_path))
     changed = Case(grammar, case.suffix, case.start, case.mistake_tokens)
     grammar.write_text(grammar.read_text("utf-8") + "// more\n", "utf-8")
-    stale = json.loads(tables.read_text("utf-8"))
-    assert changed.ours().plain == json.loads(parsers.tables_of(grammar, start=case.start, mistake_tokens=case.mistake_tokens))
-    assert {**changed.ours().plain, "digest": stale["digest"]} == stale
+    stale = case.ours().tables
+    fresh = changed.ours().tables
+    assert fresh == {**stale, "digest": fresh["digest"]}
+    assert fresh["digest"] != stale["digest"]
     tables.unlink()
-    assert changed.ours().plain["states"] == stale["states"]
+    assert changed.ours().tables == fresh
+
+
+@pytest.mark.parametrize("damaged", ["", "%", "{}", "%digest\n"])
+def test_damaged_tables_are_made_anew(case, tmp_path, damaged):
+    grammar = Path(shutil.copy(case.grammar, tmp_path))
+    grammar.with_suffix(parsers.SUFFIX).write_text(damaged, "utf-8")
+    assert Case(grammar, case.suffix, case.start, case.mistake_tokens).ours().tables == case.ours().tables
+
+
+@pytest.mark.parametrize("pattern", ["[ \t\n\f\r\v]+", "\\\n", "\\\\\n", "\\\\n", "[^\\\t]\\t", r"\d\n"])
+def test_patterns_are_written_in_one_line(pattern):
+    printable = _printable(pattern)
+    assert printable.isprintable()
+    for text in ("\n", "\t", "\\\n", "\\n", "a\t", "\t\t", "\\\\", " \v\f", "1\n"):
+        assert bool(re.fullmatch(printable, text)) == bool(re.fullmatch(pattern, text))
 
 
 def test_fresh_tables_need_no_lark():
