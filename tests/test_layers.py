@@ -33,6 +33,7 @@ API = {"api", "api.options", "api.cacheable"}
 FUNCTIONS = REPORTS | {"model", "kernel", "language", "language.functions"}
 FUNCTIONS |= {"lowering", "lowering.codec", "lowering.texts", "lowering.colours"}
 FRAMEWORK = REPORTS | {"model", "parsing", "wire", "frameworks"}
+YARP = {f"frameworks.yarp.{module}" for module in ("bottle_diagnostics", "forms", "limits", "names", "tags")}
 HOLDS = FRAMEWORK | {"runtime.holder", "runtime.holder.objects"}
 LOG_READER = REPORTS | {"logs.base", "logs.limits", "logs.reading", "logs.reading.storage", "logs.reading.walking"}
 TRANSPORT = REPORTS | {"transports"}
@@ -112,7 +113,10 @@ MAY_IMPORT = {
     "frameworks.protobuf.proto": REPORTS
     | {"model", "parsing"}
     | {f"frameworks.protobuf.{module}" for module in ("diagnostics", "edition_diagnostics", "file_diagnostics", "json_names", "limits")},
-    "frameworks.yarp": HOLDS | {"runtime.looks"},
+    "frameworks.yarp": HOLDS | {"frameworks.yarp.thrift", "runtime.looks"},
+    "frameworks.yarp.bottle_schema": FRAMEWORK | YARP,
+    "frameworks.yarp.drafting": FRAMEWORK | {"frameworks.yarp"},
+    "frameworks.yarp.thrift": FRAMEWORK | YARP,
     "runtime": HOLDERS | {"kernel.entries"} | RUNTIME - {"runtime.functions"},
     "runtime.holder": HOLDERS
     | {"runtime.holder.objects", "runtime.attributes", "runtime.looks", "runtime.limits"}

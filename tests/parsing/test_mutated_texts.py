@@ -16,7 +16,7 @@ from rosetta_jit.cli import main
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.frameworks.protobuf.descriptors import from_file_descriptor_set
 from rosetta_jit.frameworks.protobuf.proto import syntax
-from rosetta_jit.frameworks.yarp import sexpr
+from rosetta_jit.frameworks.yarp.bottle_schema import sexpr
 from rosetta_jit.language.check.mapping import check
 from rosetta_jit.language.parse import templates
 from rosetta_jit.language.parse.mapping import parse as parse_mapping

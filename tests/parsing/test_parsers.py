@@ -16,7 +16,7 @@ from lark import Token
 from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
 from rosetta_jit.frameworks.protobuf.proto import syntax
-from rosetta_jit.frameworks.yarp import sexpr
+from rosetta_jit.frameworks.yarp.bottle_schema import sexpr
 from rosetta_jit.language.parse import templates
 from rosetta_jit.parsing import parsers
 from rosetta_jit.parsing.lalr import Tree, UnexpectedCharacterError, UnexpectedTokenError

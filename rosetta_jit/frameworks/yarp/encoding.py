@@ -68,7 +68,7 @@ def _nested(attempts: Sequence[_Attempt]) -> tuple[dict[str, Codec], ...]:
 def _attempts(struct: Struct, schema: Schema, dialect: Dialect) -> tuple[_Attempt, ...]:
     """What a reader tries: the form that YARP writes for what is not empty, then whatever it reads. The last one is written."""
     if struct.option("thrift"):
-        from rosetta_jit.frameworks.yarp.thrift_encoding import Thrift
+        from rosetta_jit.frameworks.yarp.thrift.encoding import Thrift
 
         thrift = Thrift(schema, dialect, recursive_structs(Ref(struct.name), schema))
         return (_Attempt(thrift.message(struct), tuple(thrift.nested().items())),)

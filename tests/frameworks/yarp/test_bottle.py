@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from rosetta_jit.errors import DecodeError, EncodeError
 from rosetta_jit.frameworks.yarp.bottle import read, write
-from rosetta_jit.frameworks.yarp.infer import read_any
+from rosetta_jit.frameworks.yarp.drafting.infer import read_any
 from rosetta_jit.frameworks.yarp.limits import MAX_NESTING
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4, YARP2012
 from rosetta_jit.frameworks.yarp.text import to_text

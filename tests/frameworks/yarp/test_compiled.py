@@ -9,7 +9,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.frameworks.yarp.bottle import read
-from rosetta_jit.frameworks.yarp.infer import read_any
+from rosetta_jit.frameworks.yarp.drafting.infer import read_any
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.frameworks.yarp.tree import Dict, List, Value
 from rosetta_jit.runtime.holder import Holder

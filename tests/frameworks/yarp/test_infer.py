@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from rosetta_jit.errors import DecodeError, SchemaError
 from rosetta_jit.frameworks.yarp.bottle import read, write
-from rosetta_jit.frameworks.yarp.infer import infer
+from rosetta_jit.frameworks.yarp.bottle_schema.front_end import parse
+from rosetta_jit.frameworks.yarp.drafting.infer import infer
 from rosetta_jit.frameworks.yarp.limits import MAX_PLACES
-from rosetta_jit.frameworks.yarp.schema import parse
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4
 from rosetta_jit.frameworks.yarp.text import parse_text
 from rosetta_jit.frameworks.yarp.tree import Dict, List, Value, specialised

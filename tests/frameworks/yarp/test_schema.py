@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.yarp.schema import parse
+from rosetta_jit.frameworks.yarp.bottle_schema.front_end import parse
 from rosetta_jit.frameworks.yarp.tags import vocab
 from rosetta_jit.model.expr import Binary, Call, Literal, Member
 from rosetta_jit.model.expr import Path as Place

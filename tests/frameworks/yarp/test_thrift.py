@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import rosetta_jit as rj
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.yarp.thrift import parse
+from rosetta_jit.frameworks.yarp.thrift.front_end import parse
 from rosetta_jit.model.types import Array, Float, Int
 from rosetta_jit.source import Source
 from tests.golden import GOLDEN, check_golden

@@ -7,7 +7,7 @@ from typing import Literal as OneOf
 
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
-from rosetta_jit.frameworks.yarp.sexpr import Form, Node, Number, Text, Vocab, Word
+from rosetta_jit.frameworks.yarp.bottle_schema.sexpr import Form, Node, Number, Text, Vocab, Word
 from rosetta_jit.frameworks.yarp.tags import vocab
 from rosetta_jit.model.expr import Binary, Call, Expr, Len, Literal, Member, Path
 from rosetta_jit.model.types import Bool, Float, Int, String, Type

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
-from rosetta_jit.frameworks.yarp import thrift_diagnostics as thrift
 from rosetta_jit.frameworks.yarp.tags import FIXED_FORMATS, LIST, YARP4, Dialect, vocab
+from rosetta_jit.frameworks.yarp.thrift import diagnostics as thrift
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Schema, String, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass

@@ -41,11 +41,11 @@ from typing import TYPE_CHECKING
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
+from rosetta_jit.frameworks.yarp.bottle_schema.check import check
+from rosetta_jit.frameworks.yarp.bottle_schema.sexpr import Form, Node, Text, Word, head, read_forms
+from rosetta_jit.frameworks.yarp.bottle_schema.types import read_struct
 from rosetta_jit.frameworks.yarp.limits import MAX_PROBLEMS
 from rosetta_jit.frameworks.yarp.names import TYPE_NAME
-from rosetta_jit.frameworks.yarp.schema_check import check
-from rosetta_jit.frameworks.yarp.schema_type import read_struct
-from rosetta_jit.frameworks.yarp.sexpr import Form, Node, Text, Word, head, read_forms
 from rosetta_jit.model.types import Schema, Struct
 from rosetta_jit.source import Source
 

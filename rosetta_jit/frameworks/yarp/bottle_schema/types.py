@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
+from rosetta_jit.frameworks.yarp.bottle_schema.options import CASE, SCALARS, TEXT, Place, sort_rest, text_option, with_options
+from rosetta_jit.frameworks.yarp.bottle_schema.sexpr import Form, Node, Number, Text, Vocab, Word, head
 from rosetta_jit.frameworks.yarp.forms import make_union
 from rosetta_jit.frameworks.yarp.limits import MAX_NESTING, MAX_PROBLEMS
 from rosetta_jit.frameworks.yarp.names import FIELD_NAME
-from rosetta_jit.frameworks.yarp.schema_options import CASE, SCALARS, TEXT, Place, sort_rest, text_option, with_options
-from rosetta_jit.frameworks.yarp.sexpr import Form, Node, Number, Text, Vocab, Word, head
 from rosetta_jit.model.types import Array, Constant, Field, Map, Ref, Struct, Type
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import replace
 from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
-    from rosetta_jit.frameworks.yarp import schema_expr
+    from rosetta_jit.frameworks.yarp.bottle_schema import expressions as schema_expr
 else:
-    schema_expr = Late("rosetta_jit.frameworks.yarp.schema_expr")
+    schema_expr = Late("rosetta_jit.frameworks.yarp.bottle_schema.expressions")
 
 _GROUPS = MappingProxyType(
     {

@@ -7,7 +7,7 @@ from typing import Literal
 
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.yarp import thrift_diagnostics as say
+from rosetta_jit.frameworks.yarp.thrift import diagnostics as say
 from rosetta_jit.source import Source, Span
 from rosetta_jit.startup.dataclass import dataclass
 

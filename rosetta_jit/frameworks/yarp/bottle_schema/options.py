@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
+from rosetta_jit.frameworks.yarp.bottle_schema.sexpr import Form, Node, Number, Text, Word, head
 from rosetta_jit.frameworks.yarp.limits import MAX_PADDING
-from rosetta_jit.frameworks.yarp.sexpr import Form, Node, Number, Text, Word, head
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.limits import MAX_UNIT_PARTS
@@ -19,9 +19,9 @@ from rosetta_jit.startup.dataclass import dataclass, replace
 from rosetta_jit.startup.late import Late
 
 if TYPE_CHECKING:
-    from rosetta_jit.frameworks.yarp import schema_expr
+    from rosetta_jit.frameworks.yarp.bottle_schema import expressions as schema_expr
 else:
-    schema_expr = Late("rosetta_jit.frameworks.yarp.schema_expr")
+    schema_expr = Late("rosetta_jit.frameworks.yarp.bottle_schema.expressions")
 
 TEXT = String("octets", "string")
 

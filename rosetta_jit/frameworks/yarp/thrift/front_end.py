@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.yarp import thrift_diagnostics as say
-from rosetta_jit.frameworks.yarp import thrift_grammar as tree
 from rosetta_jit.frameworks.yarp.limits import MAX_ANCESTORS, MAX_FILES, MAX_FUNCTIONS, MAX_TYPE_DEPTH
 from rosetta_jit.frameworks.yarp.tags import vocab
-from rosetta_jit.frameworks.yarp.thrift_lexer import words_of
+from rosetta_jit.frameworks.yarp.thrift import diagnostics as say
+from rosetta_jit.frameworks.yarp.thrift import grammar as tree
+from rosetta_jit.frameworks.yarp.thrift.lexer import words_of
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import (
     Array,

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from rosetta_jit.errors import DecodeError, SchemaError
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.bottle import read
-from rosetta_jit.frameworks.yarp.draft import draft
+from rosetta_jit.frameworks.yarp.drafting.draft import draft
+from rosetta_jit.frameworks.yarp.drafting.shape import Clash, Fixed, Many, Shape, join_all, join_lists, join_places, shape
 from rosetta_jit.frameworks.yarp.limits import MAX_PLACES
 from rosetta_jit.frameworks.yarp.names import TYPE_NAME
-from rosetta_jit.frameworks.yarp.shape import Clash, Fixed, Many, Shape, join_all, join_lists, join_places, shape
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4, YARP2012, Dialect, vocab
 from rosetta_jit.frameworks.yarp.tree import Dict, Item, List, Value
 from rosetta_jit.startup.dataclass import dataclass

@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import assert_never
 
+from rosetta_jit.frameworks.yarp.drafting.shape import Entries, Fixed, Keyed, Many, Scalar, Shape
 from rosetta_jit.frameworks.yarp.limits import MAX_VALUE_SHOWN
 from rosetta_jit.frameworks.yarp.names import unique_names
-from rosetta_jit.frameworks.yarp.shape import Entries, Fixed, Keyed, Many, Scalar, Shape
 from rosetta_jit.frameworks.yarp.tags import vocab
 from rosetta_jit.frameworks.yarp.text import to_text
 from rosetta_jit.frameworks.yarp.tree import List, Value

@@ -10,12 +10,12 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.yarp import thrift_diagnostics as say
 from rosetta_jit.frameworks.yarp.limits import MAX_THRIFT_DIGITS, MAX_TYPE_DEPTH
+from rosetta_jit.frameworks.yarp.thrift import diagnostics as say
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
-    from rosetta_jit.frameworks.yarp.thrift_lexer import Word
+    from rosetta_jit.frameworks.yarp.thrift.lexer import Word
     from rosetta_jit.source import Span
 
 Value = bool | int | float | str | None

@@ -1,0 +1,1 @@
+"""Bottle schemas drafted from captured messages."""
