@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from ast import literal_eval
-from hashlib import md5
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.omg import diagnostics as say
@@ -15,6 +14,7 @@ from rosetta_jit.frameworks.omg.problems import LookupProblem
 from rosetta_jit.model.types import Array, Bytes, Constant, Float, String, Type
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.md5 import md5
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.omg.tree import Annotation

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -72,6 +71,8 @@ def _default(default: Constant | tree.Values | None, type_: Type) -> tuple[Const
         return default, ()
     if isinstance(type_, Bytes):
         return bytes(int(each) for each in default), ()
+    import json  # few fields have defaults of several values
+
     return None, (("default", json.dumps(default)),)
 
 

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from hashlib import md5
 
 from rosetta_jit.frameworks.ros import Definition, Dialect, Field, Interface, Rule, gathered, schema_of
 from rosetta_jit.frameworks.ros1.time_types import INT32, STRUCTS, UINT32
 from rosetta_jit.model.types import Bool, Float, Int, Schema, String
 from rosetta_jit.parsing.idl import Load
 from rosetta_jit.source import Source
+from rosetta_jit.startup.md5 import md5
 
 SCALARS = {
     "int8": Int(8, spelling="int8"),
