@@ -34,6 +34,8 @@ def plus(left: Linear, right: Linear) -> Linear:
         return sum_of((constant + other, terms))
     if not terms:
         return sum_of((constant + other, other_terms))
+    if len(other_terms) == 1 and other_terms[0][0] > terms[-1][0]:  # in order already
+        return sum_of((constant + other, (*terms, *other_terms)))
     total = dict(terms)
     for atom, coefficient in other_terms:
         total[atom] = total.get(atom, 0) + coefficient
@@ -51,13 +53,21 @@ def times(linear: Linear, factor: int) -> Linear:
 
 
 def minus(left: Linear, right: Linear) -> Linear:
-    """The difference of two."""
+    """The difference of two: most begin with the same term, or are in order already."""
     constant, terms = left
     other, other_terms = right
-    if terms == other_terms:
-        return sum_of((constant - other, ()))
     if not other_terms:
         return sum_of((constant - other, terms))
+    if terms and terms[0] == other_terms[0]:
+        terms, other_terms = terms[1:], other_terms[1:]
+        if not other_terms:
+            return sum_of((constant - other, terms))
+    if len(other_terms) == 1:
+        atom, coefficient = other_terms[0]
+        if not terms or atom > terms[-1][0]:
+            return sum_of((constant - other, (*terms, (atom, -coefficient))))
+        if atom < terms[0][0]:
+            return sum_of((constant - other, ((atom, -coefficient), *terms)))
     total = dict(terms)
     for atom, coefficient in other_terms:
         total[atom] = total.get(atom, 0) - coefficient

@@ -125,7 +125,7 @@ def bounds(scope: Scope, measure: Linear, condition: Formula, first_atom: int) -
     low, high = scope.facts.lower(measure), scope.facts.upper(measure)
     within = All((shifted(measure, -low), shifted(times(measure, -1), high))) if high - low <= MAX_LOOP_ROUNDS else False
     fixed = (part for part in _conjuncts(condition) if all(atom < first_atom for atom, _ in plus(part, measure).terms))
-    return Any((within, minus(linear(scope.locals["end"][1]), measure), *fixed))
+    return Any((within, minus(scope.end, measure), *fixed))
 
 
 def _conjuncts(formula: Formula) -> list[Linear]:
