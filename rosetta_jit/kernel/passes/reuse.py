@@ -8,7 +8,7 @@ as they are.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from itertools import count
 
@@ -133,9 +133,11 @@ def _block(block: Block, known: _Known, names: _Names) -> Block:
 def _statement(stmt: Stmt, known: _Known, names: _Names) -> Block:
     """A statement, behind names for what it is the first to read."""
     lets: list[Stmt] = []
+    named = _naming(known, names, lets)
+    changed: Stmt
     match stmt:
         case Let(name, Load() | Get() as read):
-            value = with_operands(read, lambda operand: _read(operand, known, names, lets))
+            value = with_operands(read, named)
             seen = known.of(_source(value))
             if value not in seen and names.variables.isdisjoint(locals_in(value)):
                 known.learn(_source(value), value, Local(type_of(value), name))
@@ -143,9 +145,9 @@ def _statement(stmt: Stmt, known: _Known, names: _Names) -> Block:
             return (*lets, Let(name, seen.get(value, value)))
         case While():
             # Its condition is asked in each round: no name before the loop can stand for it.
-            changed: Stmt = stmt
+            changed = stmt
         case _:
-            changed = with_expressions(stmt, lambda expr: _read(expr, known, names, lets))
+            changed = with_expressions(stmt, named)
     if type(changed) not in NESTED:
         return (*lets, changed)
     return (*lets, with_blocks(changed, lambda inner: _branch(inner, known, names)))
@@ -159,19 +161,23 @@ def _branch(block: Block, known: _Known, names: _Names) -> Block:
     return result
 
 
-def _read(expr: Expr, known: _Known, names: _Names, lets: list[Stmt]) -> Expr:
-    """An expression with names in place of what it reads."""
-    if type(expr) in PLAIN:
-        return expr
-    changed = with_operands(expr, lambda operand: _read(operand, known, names, lets))
-    if not isinstance(changed, Load | Get) or not names.variables.isdisjoint(locals_in(changed)):
-        return changed
-    local = known.of(_source(changed)).get(changed)
-    if local is None:
-        local = Local(changed.type, names.fresh())
-        known.learn(_source(changed), changed, local)
-        lets.append(Let(local.name, changed))
-    return local
+def _naming(known: _Known, names: _Names, lets: list[Stmt]) -> Callable[[Expr], Expr]:
+    """Gives an expression with names in place of what it reads; what is read for the first time gets its name in ``lets``."""
+
+    def named(expr: Expr) -> Expr:
+        if type(expr) in PLAIN:
+            return expr
+        changed = with_operands(expr, named)
+        if not isinstance(changed, Load | Get) or not names.variables.isdisjoint(locals_in(changed)):
+            return changed
+        local = known.of(_source(changed)).get(changed)
+        if local is None:
+            local = Local(changed.type, names.fresh())
+            known.learn(_source(changed), changed, local)
+            lets.append(Let(local.name, changed))
+        return local
+
+    return named
 
 
 def _source(read: Expr) -> int:
