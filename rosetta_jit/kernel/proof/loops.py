@@ -22,7 +22,7 @@ from rosetta_jit.kernel.proof.scope import Scope, Typed
 from rosetta_jit.kernel.proof.symbolic import linear
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.terms import type_of
-from rosetta_jit.kernel.walk import blocks_of, bound_names, changed_names, expressions_of, operands, statements
+from rosetta_jit.kernel.walk import blocks_of, bound_names, changed_names, expressions_of, flat, operands, statements
 from rosetta_jit.startup.dataclass import dataclass
 
 FEW_BYTES = 4
@@ -206,7 +206,7 @@ def _made_of(name: str, users: Mapping[str, set[str]]) -> set[str]:
 
 def advanced_lanes(body: Block) -> set[int]:
     """The lanes that a loop takes rows of."""
-    return {stmt.lane for stmt, _ in statements(body) if isinstance(stmt, Advance)}
+    return {stmt.lane for stmt in flat(body) if type(stmt) is Advance}
 
 
 def guesses(scope: Scope, names: set[str]) -> list[Guess]:

@@ -7,6 +7,7 @@ the message, its value before), as far as every path shows them.
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import ne
 
 from rosetta_jit.kernel.arithmetic import limits
 from rosetta_jit.kernel.limits import MAX_POSITION, MAX_ROWS
@@ -117,11 +118,14 @@ def _meet(scope: Scope, before: dict[str, Typed], arrivals: list[Arrival]) -> No
             scope.facts.assume(sum_of((-min([bound, *(each for each in shared if each is not None)]), terms)))
     for name, old in before.items():
         scope.bind(name, _met(scope, old, arrivals, name))
-    if all(arrival.used is first.used for arrival in arrivals):
-        scope.used = first.used
-        return
-    lanes = zip(scope.used, *[arrival.used for arrival in arrivals], strict=True)
-    scope.used = tuple([grown(scope, lane, used) if met.count(met[0]) < len(met) else met[0] for lane, (used, *met) in enumerate(lanes)])
+    unlike = sorted(set[int]().union(*[_unlike(first.used, arrival.used) for arrival in others]))
+    met = {lane: grown(scope, lane, scope.used[lane]) for lane in unlike}
+    scope.used = tuple([met.get(lane, used) for lane, used in enumerate(first.used)]) if met else first.used
+
+
+def _unlike(used: tuple[Linear, ...], other: tuple[Linear, ...]) -> list[int]:
+    """The lanes of which other lengths are used."""
+    return [] if used is other else [lane for lane, is_other in enumerate(map(ne, used, other)) if is_other]
 
 
 def _met(scope: Scope, old: Typed, arrivals: list[Arrival], name: str) -> Typed:
