@@ -212,6 +212,15 @@ def test_a_message_type_in_several_fields_is_printed_once():
     assert bytes(encode(decode(message))) == message
 
 
+@pytest.mark.parametrize("direction", ["decode", "encode"])
+def test_no_block_that_is_alike_looks_otherwise_at_first_sight(direction, monkeypatch):
+    type_, options = with_parts(PARTS)
+    found = [dict(each) for each in shared_blocks(direction, type_, options)]
+    monkeypatch.setattr(twins, "_look", lambda stmt, _: type(stmt))
+    anyway = [dict(each) for each in shared_blocks(direction, type_, options)]
+    assert [sorted(each.values()) for each in found] == [sorted(each.values()) for each in anyway]
+
+
 def test_lanes_of_shared_blocks_grow():
     type_, options = with_parts(PARTS)
     decode, encode = (make.of(type_, **options) for make in (rj.Decoder, rj.Encoder))

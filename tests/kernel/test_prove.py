@@ -112,6 +112,17 @@ def test_contradictions_are_found_over_rationals(facts):
         assert solver.check() == z3.unsat
 
 
+@given(st.lists(sums, max_size=6), sums)
+@example([(-5, [1, 1, 0, 0]), (9, [-1, -1, 0, 0])], (3, [1, 1, 0, 0]))
+def test_both_ends_of_a_sum_are_those_of_it_and_its_opposite(facts, asked):
+    known = Facts()
+    atoms = [known.fresh(-9, 9) for _ in range(4)]
+    for each in facts:
+        known.assume(linear(atoms, each))
+    total = linear(atoms, asked)
+    assert known.ends(total) == (known.lower(total), known.lower(times(total, -1))) == (known.lower(total), -known.upper(total))
+
+
 def test_rollback_gives_back_what_was_known():
     table = Facts()
     x, y = table.fresh(0, 100), table.fresh(0, 100)

@@ -15,6 +15,7 @@ from rosetta_jit.kernel.nodes import (
     Expect,
     Fill,
     For,
+    Get,
     If,
     Let,
     Load,
@@ -30,7 +31,7 @@ from rosetta_jit.kernel.nodes import (
     While,
     Wire,
 )
-from rosetta_jit.kernel.proof.loops import Guess
+from rosetta_jit.kernel.proof.loops import Guess, needless
 from rosetta_jit.kernel.proof.verify import VerificationError, verify
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
 from tests.kernel import kernels
@@ -292,6 +293,15 @@ def test_a_body_that_the_usual_guesses_do_not_prove_is_walked_with_all(monkeypat
     verify(kernel((Var("at", BEGIN), For("i", END, body), need(at, 1), Let("x", Load("u8", at)), DONE)))
     assert asked
     refused(Var("at", BEGIN), For("i", END, body), Let("x", Load("u8", at)), DONE, match="beyond the end")
+
+
+def test_a_variable_is_not_expected_to_grow_by_what_memory_holds_alone():
+    """Wherever the place came from: to walk a large loop again for that would double its proof."""
+    at, held = i64("at"), Get("i64", Place(1, i64("at")))
+    chained, added = kernels.Assign("at", held), kernels.Assign("at", add(at, held))
+    assert needless((chained,), (), None, {"at"}, {}) == {Guess("at", 2, 1)}
+    assert needless((If(compare("gt", held, 0), (Let("next", held), kernels.Assign("at", i64("next"))), (added,)),), (), None, {"at"}, {})
+    assert not needless((added,), (), None, {"at"}, {})
 
 
 def test_memory_is_read_once():

@@ -11,8 +11,24 @@ from rosetta_jit.backends.llvm.outline import Outline, Slot
 from rosetta_jit.backends.llvm.rounds import rounds_of
 from rosetta_jit.backends.llvm.stretches import joined, tabled
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.nodes import Advance, Block, HostCall, Local, Reserve, Return, Scalar, Stmt, Switch, Used, While
-from rosetta_jit.kernel.walk import NESTED, blocks_of, flat, parts_of
+from rosetta_jit.kernel.nodes import (
+    Advance,
+    Block,
+    Call,
+    Expect,
+    HostCall,
+    Local,
+    Require,
+    Reserve,
+    Return,
+    Scalar,
+    SetField,
+    Stmt,
+    Switch,
+    Used,
+    While,
+)
+from rosetta_jit.kernel.walk import NESTED, blocks_of, flat, parts_of, subexpressions
 
 LEAST = 32
 """Statements of a block from which on places share it: to call a function for less costs more than it saves."""
@@ -22,10 +38,10 @@ ALONE = (Return, HostCall)
 
 
 class _Sized(NamedTuple):
-    """A block, how many statements it has, and a number that it has in common with those of the same kinds of statements."""
+    """A block, how many statements it has, and a number that it has in common with those whose statements look the same at first sight."""
 
     size: int
-    kinds: int
+    look: int
     block: Block
 
 
@@ -49,10 +65,10 @@ def with_places(found: Found, kernel: Kernel, body: Block) -> Found:
 def places(kernel: Kernel, body: Block, taken: Container[int]) -> Iterator[tuple[int, Place]]:
     """The blocks inside a body that several places share, by their identity: the largest ones, outside those that are ``taken``."""
     sized: list[_Sized] = []
-    _measure(body, taken, sized)
+    _measure(body, kernel.strides, taken, sized)
     groups = dict[tuple[int, int], list[Block]]()
-    for size, kinds, block in sorted(sized, key=lambda each: -each.size):
-        groups.setdefault((size, kinds), []).append(block)
+    for size, look, block in sorted(sized, key=lambda each: -each.size):
+        groups.setdefault((size, look), []).append(block)
     inside = set[int]()
     for group in groups.values():
         blocks = [each for each in group if id(each) not in inside]
@@ -62,23 +78,37 @@ def places(kernel: Kernel, body: Block, taken: Container[int]) -> Iterator[tuple
                 inside.update(id(inner) for stmt in flat(block) for inner in blocks_of(stmt))
 
 
-def _measure(block: Block, taken: Container[int], found: list[_Sized]) -> tuple[int, int]:
-    """The statements of a block, and a number of their kinds; all large blocks inside that may be shared are ``found``."""
-    size, kinds = len(block), list[object]()
+def _measure(block: Block, strides: Sequence[int], taken: Container[int], found: list[_Sized]) -> tuple[int, int]:
+    """The statements of a block, and a number of their looks; all large blocks inside that may be shared are ``found``."""
+    size, looks = len(block), list[object]()
     for stmt in block:
-        kinds.append(type(stmt))
+        looks.append(_look(stmt, strides))
         if type(stmt) not in NESTED:
             continue
         is_whole = not isinstance(stmt, While) or rounds_of(stmt) is None  # else it is printed in parts
         for inner in blocks_of(stmt):
             if id(inner) in taken:
                 continue
-            count, number = _measure(inner, taken, found)
+            count, number = _measure(inner, strides, taken, found)
             size += count
-            kinds.append(number)
+            looks.append(number)
             if is_whole and count >= LEAST:
                 found.append(_Sized(count, number, inner))
-    return size, hash(tuple(kinds))
+    return size, hash(tuple(looks))
+
+
+def _look(stmt: Stmt, strides: Sequence[int]) -> object:
+    """What statements of one shape have in common and shows at once: a message in a list has indices and rows that another one has not."""
+    match stmt:
+        case SetField(place, _):
+            return SetField, strides[place.lane]
+        case Require(_, _, failure) | Expect(_, failure):
+            return type(stmt), len(failure.indices)
+        case Call():
+            rows = [strides[part.lane] for each in stmt.indices for part in subexpressions(each) if isinstance(part, Used)]
+            return stmt.routine, len(stmt.indices), *rows
+        case _:
+            return type(stmt)
 
 
 def _alike(kernel: Kernel, blocks: Sequence[Block]) -> list[list[_Instance]]:

@@ -8,7 +8,8 @@ as they are.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from itertools import count
 
 from rosetta_jit.kernel.ir import Kernel
@@ -54,8 +55,28 @@ WRITERS = frozenset((Call, Store, SetField, Copy, Fill, HostCall))
 _Bytes = tuple[int, int]
 """What is written: the number of a memory, and at which offset of its rows."""
 
-_Known = dict[int, dict[Expr, Local]]
-"""What has been read of each memory, and the locals that hold it."""
+
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """What has been read of each memory, the locals that hold it, and all that was learnt of that in its order."""
+
+    read: dict[int, dict[Expr, Local]] = field(default_factory=dict[int, "dict[Expr, Local]"])
+    news: list[tuple[int, Expr]] = field(default_factory=list["tuple[int, Expr]"])
+
+    def of(self, memory: int) -> dict[Expr, Local]:
+        """What has been read of a memory."""
+        return self.read.setdefault(memory, {})
+
+    def learn(self, memory: int, read: Expr, local: Local) -> None:
+        """A local holds what has been read."""
+        self.read[memory][read] = local
+        self.news.append((memory, read))
+
+    def unlearn(self, mark: int) -> None:
+        """Forget what was learnt since there were so many ``news``."""
+        while len(self.news) > mark:
+            memory, read = self.news.pop()
+            self.read.get(memory, {}).pop(read, None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,10 +110,10 @@ def _body(body: Block, taken: set[str], written: Mapping[str, set[_Bytes]]) -> B
     if len(set(reads)) == len(reads):
         return body
     names = _Names(changed_names(body), taken, written)
-    named = _block(body, {}, names)
+    named = _block(body, _Known(), names)
     uses = Counter([part.name for part in parts_of(flat(named)) if type(part) is Local])
     single = {name for name in names.made if uses[name] == 1}
-    return _inlined(named, single, {}) if single else named
+    return _inlined(named, names.made, single, {}) if single else named
 
 
 # --- names for reads ---------------------------------------------------------------------------------------------------
@@ -112,36 +133,51 @@ def _block(block: Block, known: _Known, names: _Names) -> Block:
 def _statement(stmt: Stmt, known: _Known, names: _Names) -> Block:
     """A statement, behind names for what it is the first to read."""
     lets: list[Stmt] = []
+    named = _naming(known, names, lets)
+    changed: Stmt
     match stmt:
         case Let(name, Load() | Get() as read):
-            value = with_operands(read, lambda operand: _read(operand, known, names, lets))
-            seen = known.setdefault(_source(value), {})
+            value = with_operands(read, named)
+            seen = known.of(_source(value))
             if value not in seen and names.variables.isdisjoint(locals_in(value)):
-                seen[value] = Local(type_of(value), name)
+                known.learn(_source(value), value, Local(type_of(value), name))
                 return (*lets, Let(name, value))
             return (*lets, Let(name, seen.get(value, value)))
         case While():
             # Its condition is asked in each round: no name before the loop can stand for it.
-            changed: Stmt = stmt
+            changed = stmt
         case _:
-            changed = with_expressions(stmt, lambda expr: _read(expr, known, names, lets))
+            changed = with_expressions(stmt, named)
     if type(changed) not in NESTED:
         return (*lets, changed)
-    return (*lets, with_blocks(changed, lambda inner: _block(inner, {memory: dict(seen) for memory, seen in known.items()}, names)))
+    return (*lets, with_blocks(changed, lambda inner: _branch(inner, known, names)))
 
 
-def _read(expr: Expr, known: _Known, names: _Names, lets: list[Stmt]) -> Expr:
-    """An expression with names in place of what it reads."""
-    if type(expr) in PLAIN:
-        return expr
-    changed = with_operands(expr, lambda operand: _read(operand, known, names, lets))
-    if not isinstance(changed, Load | Get) or not names.variables.isdisjoint(locals_in(changed)):
-        return changed
-    seen = known.setdefault(_source(changed), {})
-    if changed not in seen:
-        seen[changed] = Local(changed.type, names.fresh())
-        lets.append(Let(seen[changed].name, changed))
-    return seen[changed]
+def _branch(block: Block, known: _Known, names: _Names) -> Block:
+    """A block that may run or not: what is read in it is forgotten behind it. What it writes has been forgotten before."""
+    mark = len(known.news)
+    result = _block(block, known, names)
+    known.unlearn(mark)
+    return result
+
+
+def _naming(known: _Known, names: _Names, lets: list[Stmt]) -> Callable[[Expr], Expr]:
+    """Gives an expression with names in place of what it reads; what is read for the first time gets its name in ``lets``."""
+
+    def named(expr: Expr) -> Expr:
+        if type(expr) in PLAIN:
+            return expr
+        changed = with_operands(expr, named)
+        if not isinstance(changed, Load | Get) or not names.variables.isdisjoint(locals_in(changed)):
+            return changed
+        local = known.of(_source(changed)).get(changed)
+        if local is None:
+            local = Local(changed.type, names.fresh())
+            known.learn(_source(changed), changed, local)
+            lets.append(Let(local.name, changed))
+        return local
+
+    return named
 
 
 def _source(read: Expr) -> int:
@@ -181,9 +217,9 @@ def _forget(known: _Known, written: set[_Bytes]) -> None:
     """Forget what has been read of bytes that are written. Fields of a row do not overlap, whichever row it is."""
     for memory, offset in written:
         if offset == EVERYWHERE:
-            known.pop(memory, None)
-        elif memory in known:
-            known[memory] = {read: local for read, local in known[memory].items() if not _may_overlap(read, offset)}
+            known.read.pop(memory, None)
+        elif memory in known.read:
+            known.read[memory] = {read: local for read, local in known.read[memory].items() if not _may_overlap(read, offset)}
 
 
 def _may_overlap(read: Expr, offset: int) -> bool:
@@ -193,13 +229,15 @@ def _may_overlap(read: Expr, offset: int) -> bool:
 # --- names for nothing -------------------------------------------------------------------------------------------------
 
 
-def _inlined(block: Block, single: set[str], values: dict[str, Expr]) -> Block:
-    """The block without names that are used once: in the statement behind them."""
+def _inlined(block: Block, made: set[str], single: set[str], values: dict[str, Expr]) -> Block:
+    """The block without names that are used once: in the statement for which they were ``made``, or for others that are."""
     result: list[Stmt] = []
     for stmt in block:
         if isinstance(stmt, Let) and stmt.name in single:
             values[stmt.name] = substituted(stmt.value, values)
-        else:
-            changed = with_expressions(stmt, lambda expr: substituted(expr, values)) if values else stmt
-            result.append(with_blocks(changed, lambda inner: _inlined(inner, single, values)))
+            continue
+        changed = with_expressions(stmt, partial(substituted, values=values)) if values else stmt
+        if values and not (isinstance(stmt, Let) and stmt.name in made):
+            values = {}
+        result.append(with_blocks(changed, lambda inner: _inlined(inner, made, single, {})) if type(changed) in NESTED else changed)
     return tuple(result)

@@ -8,7 +8,7 @@ from rosetta_jit.kernel.ir import Routine
 from rosetta_jit.kernel.nodes import Call
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.linear import Linear
-from rosetta_jit.kernel.proof.obligations import demand, oblige
+from rosetta_jit.kernel.proof.obligations import UnprovenError, demand, oblige
 from rosetta_jit.kernel.proof.paths import from_begin, variable
 from rosetta_jit.kernel.proof.scope import Scope, entry
 from rosetta_jit.kernel.proof.symbolic import condition, evaluate, unknown
@@ -46,11 +46,12 @@ def bind(scope: Scope, routine: Routine, call: Call) -> None:
     A result of type i64 is a position if an argument is one, and the routine promises something of it: it is kept as a distance from
     `begin`. One without a promise is a number that was read, and may be multiplied.
     """
-    inner = Scope(scope.strides, scope.facts, {name: scope.locals[name] for name in MESSAGE}, scope.used, scope.capacity)
-    inner.record = scope.record
+    locals_ = {name: scope.locals[name] for name in MESSAGE}
+    inner = Scope(scope.strides, scope.begin, scope.end, scope.facts, locals_, scope.used, scope.capacity, scope.record)
     for parameter, argument in zip(routine.parameters, call.arguments, strict=True):
         inner.locals[parameter.name] = typed = evaluate(scope, argument)
-        demand(typed[0] == parameter.type, f"{typed[0]} where {parameter.type} belongs")
+        if typed[0] != parameter.type:
+            raise UnprovenError(f"{typed[0]} where {parameter.type} belongs")
     for required in routine.requires:
         oblige(inner, condition(inner, required), claims.DEMANDS)
     moves = any(isinstance(value, Linear) and from_begin(value) for _, value in (inner.locals[p.name] for p in routine.parameters))

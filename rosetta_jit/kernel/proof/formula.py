@@ -76,6 +76,12 @@ def is_vague(formula: Formula) -> bool:
             return False
 
 
+def shares_atom(fact: Any, goal: Linear) -> bool:
+    """Whether an alternative is directly about an atom of a goal."""
+    atoms = {atom for atom, _ in goal.terms}
+    return any(isinstance(part, Linear) and not atoms.isdisjoint(a for a, _ in part.terms) for part in fact.parts)
+
+
 def _size(formula: Formula) -> int:
     match formula:
         case All(parts) | Any(parts):

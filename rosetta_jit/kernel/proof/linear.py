@@ -11,6 +11,8 @@ from functools import partial
 from math import gcd
 from typing import NamedTuple
 
+from rosetta_jit.startup.dataclass import dataclass
+
 Terms = tuple[tuple[int, int], ...]
 """(atom, coefficient) pairs, by rising atom, no coefficient zero."""
 
@@ -34,6 +36,8 @@ def plus(left: Linear, right: Linear) -> Linear:
         return sum_of((constant + other, terms))
     if not terms:
         return sum_of((constant + other, other_terms))
+    if len(other_terms) == 1 and other_terms[0][0] > terms[-1][0]:  # in order already
+        return sum_of((constant + other, (*terms, *other_terms)))
     total = dict(terms)
     for atom, coefficient in other_terms:
         total[atom] = total.get(atom, 0) + coefficient
@@ -51,13 +55,21 @@ def times(linear: Linear, factor: int) -> Linear:
 
 
 def minus(left: Linear, right: Linear) -> Linear:
-    """The difference of two."""
+    """The difference of two: most begin with the same term, or are in order already."""
     constant, terms = left
     other, other_terms = right
-    if terms == other_terms:
-        return sum_of((constant - other, ()))
     if not other_terms:
         return sum_of((constant - other, terms))
+    if terms and terms[0] == other_terms[0]:
+        terms, other_terms = terms[1:], other_terms[1:]
+        if not other_terms:
+            return sum_of((constant - other, terms))
+    if len(other_terms) == 1:
+        atom, coefficient = other_terms[0]
+        if not terms or atom > terms[-1][0]:
+            return sum_of((constant - other, (*terms, (atom, -coefficient))))
+        if atom < terms[0][0]:
+            return sum_of((constant - other, ((atom, -coefficient), *terms)))
     total = dict(terms)
     for atom, coefficient in other_terms:
         total[atom] = total.get(atom, 0) - coefficient
@@ -109,15 +121,17 @@ def contradict(facts: list[Linear], budget: int) -> bool:
     from more than n + 1 of the facts after n eliminations follows from others (Kohler's rule), and among many facts is left out; as of
     equal sums only the strongest is kept, that can lose a contradiction.
     """
-    rows = {fact.terms: (fact.constant, 1 << number) for number, fact in enumerate(_strongest(facts))}
-    eliminated, are_few = 0, len(rows) <= FEW
-    while rows:
-        atom, cost = _cheapest(rows)
+    rows = _Rows({fact.terms: (fact.constant, 1 << number) for number, fact in enumerate(_strongest(facts))}, {}, {})
+    for terms in rows.known:
+        rows.note(terms)
+    eliminated, are_few = 0, len(rows.known) <= FEW
+    while rows.known:
+        atom, cost = rows.cheapest()
         budget -= cost
         if atom is None or budget < 0:
             return False
         eliminated += 1
-        above, below = _split(rows, atom)
+        above, below = rows.taken(atom, rows.above), rows.taken(atom, rows.below)
         for terms, constant, origin, factor in above:
             for other_terms, other_constant, other_origin, other_factor in below:
                 joined = origin | other_origin
@@ -129,47 +143,58 @@ def contradict(facts: list[Linear], budget: int) -> bool:
                     if row.constant < 0:
                         return True
                     continue
-                known = rows.get(row.terms)
+                known = rows.known.get(row.terms)
+                if known is None:
+                    rows.note(row.terms)
                 if known is None or known[0] > row.constant:
-                    rows[row.terms] = row.constant, joined
+                    rows.known[row.terms] = row.constant, joined
     return False
 
 
 _Row = tuple[Terms, int, int, int]
 """Terms, constant, the facts that it was made from (as bits), and how often the atom stands in it."""
 
+_Side = dict[int, dict[Terms, int]]
+"""For each atom the rows in which it counts up, or down, and how often."""
 
-def _cheapest(rows: dict[Terms, tuple[int, int]]) -> tuple[int | None, int]:
-    """The atom whose elimination makes the fewest new rows, and how many combinations that takes."""
-    above: dict[int, int] = {}
-    below: dict[int, int] = {}
-    for terms in rows:
+
+@dataclass(frozen=True, slots=True)
+class _Rows:
+    """Inequalities: what is ``known`` of sums, as a constant and the facts that it was made from, and in which of them each atom stands."""
+
+    known: dict[Terms, tuple[int, int]]
+    above: _Side
+    below: _Side
+
+    def note(self, terms: Terms) -> None:
+        """A sum is there."""
         for atom, coefficient in terms:
-            side = above if coefficient > 0 else below
-            side[atom] = side.get(atom, 0) + 1
-    best, least, combinations = None, 0, 0
-    for atom, over in above.items():
-        under = below.get(atom, 0)
-        growth = over * under - over - under
-        if best is None or growth < least:
-            best, least, combinations = atom, growth, over * under
-    for atom, under in below.items():
-        if atom not in above and (best is None or -under < least):
-            best, least, combinations = atom, -under, 0
-    return best, combinations
+            side = self.above if coefficient > 0 else self.below
+            side.setdefault(atom, {})[terms] = abs(coefficient)
 
+    def taken(self, atom: int, side: _Side) -> list[_Row]:
+        """Take the rows out in which an atom counts up, or down."""
+        found: list[_Row] = []
+        for terms, factor in side.pop(atom, {}).items():
+            constant, origin = self.known.pop(terms)
+            found.append((terms, constant, origin, factor))
+            for each, coefficient in terms:
+                if each != atom:
+                    del (self.above if coefficient > 0 else self.below)[each][terms]
+        return found
 
-def _split(rows: dict[Terms, tuple[int, int]], atom: int) -> tuple[list[_Row], list[_Row]]:
-    """Take the rows with an atom out: those where it counts up, and those where it counts down."""
-    above: list[_Row] = []
-    below: list[_Row] = []
-    for terms in list(rows):
-        for each, coefficient in terms:
-            if each == atom:
-                constant, origin = rows.pop(terms)
-                (above if coefficient > 0 else below).append((terms, constant, origin, abs(coefficient)))
-                break
-    return above, below
+    def cheapest(self) -> tuple[int | None, int]:
+        """The atom whose elimination makes the fewest new rows, and how many combinations that takes."""
+        best, least, combinations = None, 0, 0
+        for atom, rows in self.above.items():
+            over, under = len(rows), len(self.below.get(atom, ()))
+            growth = over * under - over - under
+            if over and (best is None or growth < least):
+                best, least, combinations = atom, growth, over * under
+        for atom, rows in self.below.items():
+            if rows and not self.above.get(atom) and (best is None or -len(rows) < least):
+                best, least, combinations = atom, -len(rows), 0
+        return best, combinations
 
 
 def _strongest(facts: list[Linear]) -> list[Linear]:

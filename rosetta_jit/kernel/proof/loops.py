@@ -13,7 +13,7 @@ from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 
 from rosetta_jit.kernel.arithmetic import FLOATS, limits
 from rosetta_jit.kernel.limits import MAX_LOOP_ROUNDS
-from rosetta_jit.kernel.nodes import WIDTH, Advance, Assign, Binary, Block, Const, Convert, Expr, If, Let, Local, Select, Stmt
+from rosetta_jit.kernel.nodes import WIDTH, Advance, Assign, Binary, Block, Const, Convert, Expr, Get, If, Let, Load, Local, Select, Stmt
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import All, Any, Formula
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
@@ -22,11 +22,13 @@ from rosetta_jit.kernel.proof.scope import Scope, Typed
 from rosetta_jit.kernel.proof.symbolic import linear
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.terms import type_of
-from rosetta_jit.kernel.walk import blocks_of, bound_names, changed_names, expressions_of, statements
+from rosetta_jit.kernel.walk import blocks_of, bound_names, changed_names, expressions_of, flat, operands, statements
 from rosetta_jit.startup.dataclass import dataclass
 
 FEW_BYTES = 4
 """Integers of so many are added up without a check in each round."""
+
+READS = frozenset((Load, Get))
 
 ROUNDS = 4
 """The anchor that is a variable's first value and a ``step`` for each round before."""
@@ -123,7 +125,7 @@ def bounds(scope: Scope, measure: Linear, condition: Formula, first_atom: int) -
     low, high = scope.facts.lower(measure), scope.facts.upper(measure)
     within = All((shifted(measure, -low), shifted(times(measure, -1), high))) if high - low <= MAX_LOOP_ROUNDS else False
     fixed = (part for part in _conjuncts(condition) if all(atom < first_atom for atom, _ in plus(part, measure).terms))
-    return Any((within, minus(linear(scope.locals["end"][1]), measure), *fixed))
+    return Any((within, minus(scope.end, measure), *fixed))
 
 
 def _conjuncts(formula: Formula) -> list[Linear]:
@@ -180,7 +182,16 @@ def _all_made(body: Block, made: dict[int, list[Made]]) -> list[Made]:
 def _made(stmt: Stmt) -> list[Made]:
     is_assigned = isinstance(stmt, Assign)
     targets = (stmt.name,) if is_assigned else bound_names(stmt)
-    return [(targets, set[str]().union(*map(locals_in, expressions_of(stmt))), is_assigned)] if targets else []
+    return [(targets, set[str]().union(*map(_computed_from, expressions_of(stmt))), is_assigned)] if targets else []
+
+
+def _computed_from(expr: Expr) -> set[str]:
+    """The locals that a value is computed from. What memory holds says nothing of the place where it was read."""
+    parts = [expr]
+    for part in parts:  # which grows
+        if type(part) not in READS:
+            parts += operands(part)
+    return {part.name for part in parts if type(part) is Local}
 
 
 def _made_of(name: str, users: Mapping[str, set[str]]) -> set[str]:
@@ -195,7 +206,7 @@ def _made_of(name: str, users: Mapping[str, set[str]]) -> set[str]:
 
 def advanced_lanes(body: Block) -> set[int]:
     """The lanes that a loop takes rows of."""
-    return {stmt.lane for stmt, _ in statements(body) if isinstance(stmt, Advance)}
+    return {stmt.lane for stmt in flat(body) if type(stmt) is Advance}
 
 
 def guesses(scope: Scope, names: set[str]) -> list[Guess]:

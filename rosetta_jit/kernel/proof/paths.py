@@ -7,6 +7,7 @@ the message, its value before), as far as every path shows them.
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import ne
 
 from rosetta_jit.kernel.arithmetic import limits
 from rosetta_jit.kernel.limits import MAX_POSITION, MAX_ROWS
@@ -72,7 +73,7 @@ def _arrive(scope: Scope, before: dict[str, Typed], mark: int) -> Arrival:
 
 def anchors(scope: Scope, old: Typed) -> list[Linear]:
     """What the values of a variable are compared with."""
-    return [linear(scope.locals["begin"][1]), linear(scope.locals["end"][1]), linear(old[1]), ZERO]
+    return [scope.begin, scope.end, linear(old[1]), ZERO]
 
 
 def _is_number(value: Typed) -> bool:
@@ -85,23 +86,26 @@ def _distances(scope: Scope, value: Linear, marks: list[Linear]) -> list[tuple[i
 
     Worth a proof is only that the value is in the message, and no less than before, or greater where that is quickly found.
     """
-    lower = scope.facts.lower
+    ends = scope.facts.ends
     behind_begin, behind_end, grown_by, itself = [minus(value, mark) for mark in marks]
+    after_begin, before_begin = ends(behind_begin)
+    after_end, before_end = ends(behind_end)
+    more, less = ends(grown_by)
     return [
-        (_least(scope, behind_begin), lower(times(behind_begin, -1))),
-        (lower(behind_end), _least(scope, times(behind_end, -1))),
-        (_growth(scope, grown_by), lower(times(grown_by, -1))),
-        (lower(itself), lower(times(itself, -1))),
+        (_least(scope, after_begin, behind_begin), before_begin),
+        (after_end, _least(scope, before_end, behind_end, -1)),
+        (_growth(scope, more, grown_by), less),
+        ends(itself),
     ]
 
 
-def _least(scope: Scope, distance: Linear) -> int:
-    low = scope.facts.lower(distance)
-    return 0 if low < 0 and coefficient_of(distance, BEGIN_ATOM) == 0 and scope.facts.proves(distance) else low
+def _least(scope: Scope, low: int, distance: Linear, sign: int = 1) -> int:
+    """The least of a multiple of a distance, of which the table says that it is no less than ``low``."""
+    return 0 if low < 0 and coefficient_of(distance, BEGIN_ATOM) == 0 and scope.facts.proves(times(distance, sign)) else low
 
 
-def _growth(scope: Scope, distance: Linear) -> int:
-    low = _least(scope, distance)
+def _growth(scope: Scope, low: int, distance: Linear) -> int:
+    low = _least(scope, low, distance)
     return 1 if low == 0 and scope.facts.adds_up(shifted(distance, -1)) else low
 
 
@@ -114,11 +118,14 @@ def _meet(scope: Scope, before: dict[str, Typed], arrivals: list[Arrival]) -> No
             scope.facts.assume(sum_of((-min([bound, *(each for each in shared if each is not None)]), terms)))
     for name, old in before.items():
         scope.bind(name, _met(scope, old, arrivals, name))
-    if all(arrival.used is first.used for arrival in arrivals):
-        scope.used = first.used
-        return
-    lanes = zip(scope.used, *[arrival.used for arrival in arrivals], strict=True)
-    scope.used = tuple([grown(scope, lane, used) if met.count(met[0]) < len(met) else met[0] for lane, (used, *met) in enumerate(lanes)])
+    unlike = sorted(set[int]().union(*[_unlike(first.used, arrival.used) for arrival in others]))
+    met = {lane: grown(scope, lane, scope.used[lane]) for lane in unlike}
+    scope.used = tuple([met.get(lane, used) for lane, used in enumerate(first.used)]) if met else first.used
+
+
+def _unlike(used: tuple[Linear, ...], other: tuple[Linear, ...]) -> list[int]:
+    """The lanes of which other lengths are used."""
+    return [] if used is other else [lane for lane, is_other in enumerate(map(ne, used, other)) if is_other]
 
 
 def _met(scope: Scope, old: Typed, arrivals: list[Arrival], name: str) -> Typed:
@@ -135,14 +142,14 @@ def _met(scope: Scope, old: Typed, arrivals: list[Arrival], name: str) -> Typed:
         ways = [arrival.distances.get(name, own)[k] for arrival in arrivals]
         distance = minus(met, mark)
         learn_distance(scope, distance, min([way[0] for way in ways]))
-        learn_distance(scope, times(distance, -1), min([way[1] for way in ways]))
+        learn_distance(scope, distance, min([way[1] for way in ways]), -1)
     return old[0], met
 
 
-def learn_distance(scope: Scope, distance: Linear, least: int) -> None:
-    """Keep a lower bound of a distance, if it says anything."""
+def learn_distance(scope: Scope, distance: Linear, least: int, sign: int = 1) -> None:
+    """Keep a lower bound of a distance, or with ``sign`` -1 of its opposite, if it says anything."""
     if least > -FAR or len(distance.terms) == 1:
-        scope.facts.derive(shifted(distance, -least))
+        scope.facts.derive(shifted(times(distance, sign), -least))
 
 
 # --- unknowns ----------------------------------------------------------------------------------------------------------
@@ -153,7 +160,7 @@ def variable(scope: Scope, type_: Scalar, *, relative: bool) -> Linear:
     low, high = limits(type_)
     if not relative:
         return scope.facts.fresh(low, high)
-    value = plus(linear(scope.locals["begin"][1]), scope.facts.fresh(low - MAX_POSITION, high))
+    value = plus(scope.begin, scope.facts.fresh(low - MAX_POSITION, high))
     scope.facts.assume(shifted(times(value, -1), high))
     return value
 

@@ -13,7 +13,7 @@ from collections.abc import Hashable
 from typing import Literal, NamedTuple, assert_never
 
 from rosetta_jit.kernel.limits import MAX_CASES, MAX_PROPAGATED, MAX_TRIED
-from rosetta_jit.kernel.proof.formula import All, Any, Formula, equal, is_vague, negated, said
+from rosetta_jit.kernel.proof.formula import All, Any, Formula, equal, is_vague, negated, said, shares_atom
 from rosetta_jit.kernel.proof.linear import Linear, Terms, coefficient_of, contradict, minus, replaced, shifted, sum_of, tightened, times
 from rosetta_jit.startup.dataclass import dataclass, field
 
@@ -34,15 +34,8 @@ Procedure = Literal["constants", "unreachable", "bounds", "sums", "elimination",
 Fourier-Motzkin elimination, or that in each case of a choice. What the proof infers comes from the rules of operations (`integers`) and
 from where paths meet (`paths`)."""
 
-
 _UNITS = (1, -1)
 """Coefficients that have no common factor with others."""
-
-
-def _shares_atom(fact: Any, goal: Linear) -> bool:
-    """Whether an alternative is directly about an atom of the goal."""
-    atoms = {atom for atom, _ in goal.terms}
-    return any(isinstance(part, Linear) and not atoms.isdisjoint(a for a, _ in part.terms) for part in fact.parts)
 
 
 @dataclass(slots=True)
@@ -167,10 +160,13 @@ class Facts:
         """Bound each atom of a short sum by the bounds of the others, so that most questions need no more than bounds."""
         if len(terms) > MAX_PROPAGATED:
             return
-        greatest = [c * (self.highs[a] if c > 0 else self.lows[a]) for a, c in terms]
+        lows, highs = self.lows, self.highs
+        greatest = [c * (highs[a] if c > 0 else lows[a]) for a, c in terms]
         total = constant + sum(greatest)
         for (atom, coefficient), own in zip(terms, greatest, strict=True):
-            self._learn_bound(total - own, atom, coefficient)
+            rest = total - own
+            if rest + coefficient * (lows if coefficient > 0 else highs)[atom] < 0:  # else that is known
+                self._learn_bound(rest, atom, coefficient)
 
     def _learn_bound(self, constant: int, atom: int, coefficient: int) -> None:
         if coefficient > 0:
@@ -246,6 +242,16 @@ class Facts:
         """An upper bound, by a look at the table."""
         return -self.lower(times(linear, -1))
 
+    def ends(self, linear: Linear) -> tuple[int, int]:
+        """A lower bound of a sum, and one of its opposite, by a look at the table."""
+        constant, terms = linear
+        low, opposite = constant, -constant
+        for atom, coefficient in terms:
+            below, above = (self.lows[atom], self.highs[atom]) if coefficient > 0 else (self.highs[atom], self.lows[atom])
+            low, opposite = low + coefficient * below, opposite - coefficient * above
+        known, other = self._bounds.get(terms), self._bounds.get(tuple([(atom, -coefficient) for atom, coefficient in terms]))
+        return low if known is None else max(low, known + constant), opposite if other is None else max(opposite, other - constant)
+
     def lies_within(self, linear: Linear, low: int, high: int) -> bool:
         """Whether the bounds of its atoms show that a sum lies between two numbers."""
         least = greatest = linear.constant
@@ -299,7 +305,7 @@ class Facts:
             case Any(parts):
                 # An alternative that a look shows comes before elimination on another one.
                 return (
-                    formula in self._either
+                    (bool(self._either) and formula in self._either)
                     or (effort.facts > 0 and any(self._proves(part, 0, SUMS) for part in parts))
                     or any(self._proves(part, depth, effort) for part in parts)
                     or self._proves_one(parts, depth, effort)
@@ -330,7 +336,7 @@ class Facts:
         atom = max((a for a, _ in goal.terms if a in self._cases), default=None)
         if atom is not None:
             return all(self._in_case(replaced(goal, atom, value), condition, depth, effort) for condition, value in self._cases[atom])
-        alternatives = next((fact for fact in reversed(self._either) if _shares_atom(fact, goal)), None)
+        alternatives = next((fact for fact in reversed(self._either) if shares_atom(fact, goal)), None)
         return alternatives is not None and all(self._in_case(goal, part, depth, effort) for part in alternatives.parts)
 
     def _in_case(self, goal: Linear, condition: Formula, depth: int, effort: Effort) -> bool:

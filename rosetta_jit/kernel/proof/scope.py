@@ -25,11 +25,14 @@ Typed = tuple["Scalar", Value]
 class Scope:
     """What a place of a kernel can see: its locals, the lanes, and the facts about them.
 
+    ``begin`` and ``end`` are the locals of these names, which never change: no others are asked for so often.
     Locals are gained along a path and given up at its end, as facts are, so that a path costs what it changes and not what there is.
     So are used lengths, of which each change makes new ones. ``record`` writes down what the kernel owes, where somebody wants to read it.
     """
 
     strides: tuple[int, ...]
+    begin: Linear
+    end: Linear
     facts: Facts = field(default_factory=Facts)
     locals: dict[str, Typed] = field(default_factory=dict[str, "Typed"])
     used: tuple[Linear, ...] = ()
@@ -80,10 +83,10 @@ class Arrival:
 
 def entry(strides: tuple[int, ...], record: Record | None = None) -> Scope:
     """The scope at the start of a body. ``end`` is kept as ``begin + length``, so that distances need no fact."""
-    scope = Scope(strides, Facts() if record is None else record.facts(), record=record)
-    facts = scope.facts
+    facts = Facts() if record is None else record.facts()
     begin, length = facts.fresh(0, MAX_POSITION), facts.fresh(0, MAX_POSITION)
     end = plus(begin, length)
+    scope = Scope(strides, begin, end, facts, record=record)
     facts.assume(shifted(times(end, -1), MAX_POSITION))
     scope.locals = {"begin": ("i64", begin), "end": ("i64", end), "row": ("i64", facts.fresh(0, limits("i64")[1]))}
     every: list[Linear] = []

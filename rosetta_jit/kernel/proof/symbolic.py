@@ -48,7 +48,8 @@ def linear(value: Value) -> Linear:
 def condition(scope: Scope, expr: nodes.Expr) -> Formula:
     """Value of an expression that must be a bool."""
     found, value = evaluate(scope, expr)
-    demand(found == "bool", f"{found} where bool belongs")
+    if found != "bool":
+        raise UnprovenError(f"{found} where bool belongs")
     return value
 
 
@@ -72,9 +73,8 @@ def check_extent(scope: Scope, address: nodes.Address, size: Linear) -> Linear:
 
 def check_wire(scope: Scope, start: Linear, size: Linear) -> None:
     """``size`` bytes from ``start`` lie in the message."""
-    begin, end = linear(scope.locals["begin"][1]), linear(scope.locals["end"][1])
-    oblige(scope, minus(minus(end, start), size), claims.BEFORE_END)
-    oblige(scope, minus(start, begin), claims.AFTER_BEGIN)
+    oblige(scope, minus(minus(scope.end, start), size), claims.BEFORE_END)
+    oblige(scope, minus(start, scope.begin), claims.AFTER_BEGIN)
 
 
 def check_field(scope: Scope, place: nodes.Place, type_: nodes.Scalar) -> None:
@@ -206,7 +206,8 @@ def _constant(type_: nodes.Scalar, value: float) -> Value:
 
 def _binary(scope: Scope, op: nodes.Arithmetic, left: Typed, right: Typed) -> Typed:
     type_ = left[0]
-    demand(type_ == right[0], f"{op} of {type_} and {right[0]}")
+    if type_ != right[0]:
+        raise UnprovenError(f"{op} of {type_} and {right[0]}")
     if type_ in FLOATS:
         demand(op in {"add", "sub", "mul", "div", "rem", "min", "max", "atan2"}, f"{op} of floats")
         demand(op != "atan2" or type_ == "f64", f"{op} of {type_}")
@@ -318,7 +319,8 @@ def _unary(scope: Scope, expr: nodes.Unary) -> Typed:
 
 
 def _compare(op: nodes.Comparison, left: Typed, right: Typed) -> Formula:
-    demand(left[0] == right[0], f"{op} of {left[0]} and {right[0]}")
+    if left[0] != right[0]:
+        raise UnprovenError(f"{op} of {left[0]} and {right[0]}")
     if left[0] == "bool" or left[0] in FLOATS:
         return None
     a, b = linear(left[1]), linear(right[1])
@@ -368,7 +370,8 @@ def _select(scope: Scope, expr: nodes.Select) -> Typed:
     chosen = condition(scope, expr.condition)
     type_, then = evaluate(scope, expr.then)
     other_type, otherwise = evaluate(scope, expr.otherwise)
-    demand(type_ == other_type, f"a choice between {type_} and {other_type}")
+    if type_ != other_type:
+        raise UnprovenError(f"a choice between {type_} and {other_type}")
     if type_ == "bool" or type_ in FLOATS:
         return type_, None
     return type_, scope.facts.chosen(((chosen, linear(then)), (negated(chosen), linear(otherwise))))

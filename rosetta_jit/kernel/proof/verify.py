@@ -194,7 +194,7 @@ def _statement(walk: _Walk, stmt: nodes.Stmt) -> bool:
         case nodes.Require(at, size, failure):
             start, length = integer(scope, at), integer(scope, size)
             effects.failure(scope, failure)
-            _check(walk, stmt, All((start, length, minus(minus(linear(scope.locals["end"][1]), start), length))))
+            _check(walk, stmt, All((start, length, minus(minus(scope.end, start), length))))
         case nodes.Expect(expr, failure):
             effects.failure(scope, failure)
             _check(walk, stmt, condition(scope, expr))
@@ -260,14 +260,13 @@ def _value(scope: Scope, expr: nodes.Expr) -> Typed:
 def _shortened(scope: Scope, value: Linear) -> Linear:
     """An atom for a long sum, `begin` kept apart."""
     facts = scope.facts
-    begin, end = linear(scope.locals["begin"][1]), linear(scope.locals["end"][1])
-    origin = begin if paths.from_begin(value) else Linear(0)
+    origin = scope.begin if paths.from_begin(value) else Linear(0)
     rest = minus(value, origin)
     low = facts.lower(rest)
     if low < 0 and facts.proves(rest):  # what its parts say together, which bounds of each do not
         low = 0
     atom = facts.abbreviated(rest, low, facts.upper(rest))
-    paths.learn_distance(scope, minus(minus(end, origin), atom), facts.lower(minus(end, value)))
+    paths.learn_distance(scope, minus(minus(scope.end, origin), atom), facts.lower(minus(scope.end, value)))
     return plus(origin, atom)
 
 

@@ -132,6 +132,12 @@ CASES.add(
     (Var("at", BEGIN), *BYTE, If(BRANCH, (need(BEGIN, 100), Assign("at", add(BEGIN, 100)))), Fill(Wire(AT), index(0))),
 )
 CASES.add(
+    "a position that one branch moves behind the end",
+    "bytes beyond the end of the message",
+    (Var("at", BEGIN), *BYTE, expect(compare("le", END, 1000)), If(BRANCH, (Assign("at", add(END, 8)),)), Fill(Wire(AT), index(0))),
+    (Var("at", BEGIN), *BYTE, expect(compare("le", END, 1000)), If(BRANCH, (Assign("at", END),)), Fill(Wire(AT), index(0))),
+)
+CASES.add(
     "a position that both branches move",
     "bytes beyond the end of the message",
     (
