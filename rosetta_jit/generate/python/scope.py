@@ -106,6 +106,12 @@ class Scope:
         self.loads.add(name)
         return name
 
+    def by_count(self, order: str, code: str, verb: str) -> str:
+        """The functions that read (``verb`` is ``reads``) or write (``writes``) as many numbers as a message says, by their count."""
+        name = f"_{verb}_{code.replace('?', TRUTH)}{'_be' if order == '>' and code not in 'bB?' else ''}"
+        self.loads.add(name)
+        return name
+
     def dtype(self, scalar: str, order: str = "<") -> str:
         """Numpy's type of a scalar in the message."""
         code = NUMPY[scalar][1]
