@@ -42,6 +42,9 @@ def test_bools_are_read_and_written_together(encoding, arrays):
     bad = [good[-1][:at] + bytes([byte]) + good[-1][at + 1 :] for at in range(len(good[-1])) for byte in (2, 255)]
     answers_as_the_library(unit, programs, [*harmed(good, 12, encoding), *bad])
     assert unit.decode(unit.encode(unit.T(a="yes", b=[], few=[0, 1, 5], many=[7] * 36))).a
+    if arrays:
+        seen, own = (unit.decode(good[-1], copy=copy).some for copy in (False, True))
+        assert (seen.dtype, seen.tolist(), seen.flags.writeable, own.flags.writeable) == (np.bool_, own.tolist(), False, True)
 
 
 def test_few_numbers_of_numpy_are_pythons_where_they_are_packed():

@@ -208,7 +208,7 @@ class _Module:
         if "call_registers" in needs:
             writer.line(f"call_registers = {REGISTERS[direction]}")
         if "call_copy" in needs:
-            writer.line("call_copy = copy")
+            writer.line("call_copy = _copied if copy else _as_it_is")
         if "call_now" in needs:
             writer.line("call_now = now()")
         if "call_number" in needs:

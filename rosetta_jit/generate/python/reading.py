@@ -41,14 +41,11 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
     part = f"data[{begin} : {begin} + {expression(scope, size)}]"
     if isinstance(slot, Number) and scope.numpy:
         count = Const("i64", int(size.value) // stride) if isinstance(size, Const) else _divided(size, stride)
-        dtype, number = scope.dtype(slot.scalar, order), bare(expression(scope, count))
+        dtype, number = scope.bool_dtype() if slot.scalar == "bool" else scope.dtype(slot.scalar, order), bare(expression(scope, count))
         if order == ">" and stride > 1:
             turned = f"_numbers_in(data, {dtype}, {number}, {begin}).astype({scope.dtype(slot.scalar)})"
             return turned if isinstance(count, Const) else f"{turned} if {number} else {scope.no_numbers(slot.scalar)}"
-        if slot.scalar == "bool":
-            return f"_numbers_in(data, {dtype}, {number}, {begin}) != 0"
-        scope.from_call.add("copy")
-        return f"_array({dtype}, data, {number}, {begin}, call_copy)"
+        return scope.numbers_in_message(dtype, number, begin)
     if isinstance(slot, Number):
         if slot.scalar == "u8":
             return f"[*{part}]"
@@ -132,8 +129,7 @@ def _table(
         case Copy(Place(lane)) if isinstance(slot := slot_of(lane), Number):
             type_ = slot.scalar
             numbers = bare(expression(scope, mul(count, size // WIDTH[type_])))
-            scope.from_call.add("copy")
-            found = f"_array({scope.dtype(type_)}, data, {numbers}, {begin}, call_copy)"
+            found = scope.numbers_in_message(scope.dtype(type_), numbers, begin)
         case _:
             return None
     found += f".reshape(-1, {size // WIDTH[type_]})"

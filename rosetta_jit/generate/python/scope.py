@@ -119,6 +119,16 @@ class Scope:
         self.loads.add(name)
         return name
 
+    def bool_dtype(self) -> str:
+        """Numpy's type of bools, which are known to be 0 or 1 in the message."""
+        self.loads.add("_dtype_b1")
+        return "_dtype_b1"
+
+    def numbers_in_message(self, dtype: str, count: str, begin: str) -> str:
+        """An array of numpy that lies in the message as in memory: a copy, or a view."""
+        self.from_call.add("copy")
+        return f"call_copy(_numbers_in(data, {dtype}, {count}, {begin}))"
+
     def no_numbers(self, scalar: str) -> str:
         """An array of numpy without elements."""
         name = f"_none_{'b1' if scalar == 'bool' else NUMPY[scalar][1]}"
