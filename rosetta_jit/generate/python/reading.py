@@ -79,11 +79,17 @@ def rows_read(scope: Scope, loop: For, slot_of: Callable[[int], Slot], row: Call
             bases = [each for each in (one, other) if loop.variable not in locals_in(each)]
             if size is None or len(bases) != 1 or steps != [index(size)]:
                 return None
-            made: Callable[[Scope], str] | None = (lambda within: row(within, lane)) if isinstance(slot_of(lane), Row) else None
+            is_made = any(isinstance(slot_of(each), Row) for each in (lane, *_filled(fills[0])))
+            made: Callable[[Scope], str] | None = (lambda within: row(within, lane)) if is_made else None
             table = _table(scope, fills[0], slot_of, bases[0], loop.count, size, made) if scope.numpy else None
             return (_rows(scope, fills[0], bases[0], loop.count, size, made), 0) if table is None else (table, MANY)
         case _:
             return None
+
+
+def _filled(fill: Stmt) -> tuple[int, ...]:
+    """The lane of which a statement sets a number."""
+    return (fill.place.lane,) if isinstance(fill, SetField) and isinstance(fill.value, Load) else ()
 
 
 def _size_of_bytes(scope: Scope, lane: int, item: str, fills: list[Stmt]) -> int | None:
@@ -122,7 +128,7 @@ def _table(
     """A list of rows that are arrays of numpy, of which a statement fills one: numpy reads all of them, as rows of one array."""
     begin, lane = bare(expression(scope, base)), 0
     match fill:
-        case SetField(Place(lane), Load(type_, _, order)):
+        case SetField(Place(lane), Load(type_, _, order)) if isinstance(slot_of(lane), Number):
             numbers = bare(expression(scope, mul(count, size // WIDTH[type_])))
             dtype = scope.dtype(type_, "<" if WIDTH[type_] == 1 else order)
             found = f"_numbers_in(data, {dtype}, {numbers}, {begin}).astype({scope.dtype(type_)})"

@@ -191,6 +191,9 @@ class Scope:
         """A scalar of a row."""
         if lane == 0 and self.attributes and offset in self.attributes:
             return self.attributes[offset]
+        if lane in self.direct.elements:
+            offsets = sorted({each.offset for each in self.direct.elements[lane]})
+            return self.element(lane, int(row) * len(offsets) + offsets.index(offset))
         if lane == 0 and self.flat:
             name = flat_name(self.lanes, offset, scalar)
             self.rows.add(name)
