@@ -17,13 +17,13 @@ from tests.generate.python import BOTH, answers_as_the_library, module, protobuf
 FEW = "message M { string name = 1; repeated string tags = 2; map<int32, int32> counts = 3; repeated double numbers = 4; }"
 LINES = """
         if target.name != "":
-            name_0 = target.name.encode("utf-8", "surrogateescape")
+            name_0 = target.name.encode()
             read_1 = len(name_0)
             parts += b'\\n', _varint(read_1), name_0
         if len(target.tags):
             tags_1 = target.tags
             for element_i in tags_1:
-                tags_9 = element_i.encode("utf-8", "surrogateescape")
+                tags_9 = element_i.encode()
                 count_3 = len(tags_9)
                 parts += b'\\x12', _varint(count_3), tags_9
         if len(target.counts):

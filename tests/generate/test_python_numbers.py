@@ -42,6 +42,9 @@ def test_bools_are_read_and_written_together(encoding, arrays):
     bad = [good[-1][:at] + bytes([byte]) + good[-1][at + 1 :] for at in range(len(good[-1])) for byte in (2, 255)]
     answers_as_the_library(unit, programs, [*harmed(good, 12, encoding), *bad])
     assert unit.decode(unit.encode(unit.T(a="yes", b=[], few=[0, 1, 5], many=[7] * 36))).a
+    if arrays:
+        seen, own = (unit.decode(good[-1], copy=copy).some for copy in (False, True))
+        assert (seen.dtype, seen.tolist(), seen.flags.writeable, own.flags.writeable) == (np.bool_, own.tolist(), False, True)
 
 
 def test_few_numbers_of_numpy_are_pythons_where_they_are_packed():
@@ -215,3 +218,23 @@ def test_arrays_of_numpy_in_arrays_are_joined_by_numpy():
 def vars_of(message, names):
     """Attributes by their names."""
     return {name: getattr(message, name) for name in names}
+
+
+@pytest.mark.parametrize("encoding", ["ros1", "lcm"])
+def test_arrays_of_more_lengths_than_are_kept(encoding):
+    """What reads and writes so many numbers is kept for some counts: nothing says so."""
+    schema = {"ros1": "int64[] v\nuint16[] w\n", "lcm": {"t.lcm": "package t; struct T { int32_t n; int64_t v[n]; int16_t w[n]; }"}}
+    type_, given = {"ros1": "t/T", "lcm": "t.T"}[encoding], {"encoding": encoding, "schema": schema[encoding]}
+    request, programs = type_request("decode", type_, given), (rj.Decoder.of(type_, **given), rj.Encoder.of(type_, **given))
+    unit, named = module(request), programs[1].holder_type.from_dict
+    assert "_writes_q" in generated(request, "python", BOTH, "unit")["unit.py"]
+    for count in (*range(300), 128, 1000, 0, 3):
+        values = {"v": [-(3**30)] * count, "w": [7 * each for each in range(count)], **({"n": count} if encoding == "lcm" else {})}
+        message = bytes(programs[1](named(values)))
+        assert unit.encode(unit.T(**values)) == message
+        assert unit.decode(message) == unit.T(**values)
+    kept = unit._writes_q if encoding == "ros1" else unit._writes_q_be
+    assert len(kept) <= unit._KEPT
+    for wrong in ([0.5], [1 << 63], ["1"], [None], 7):
+        with pytest.raises(unit.EncodeError, match="range"):
+            unit.encode(unit.T(**{"v": wrong, **({"n": 1, "w": [1]} if encoding == "lcm" else {})}))

@@ -125,3 +125,45 @@ def test_structs_that_are_one_array_and_are_wrong(arrays):
     for numbers in ([1, 2, 40000], [1.5, 2, 3], ["1", 2, 3]):
         with pytest.raises(unit.EncodeError, match="range"):
             unit.encode(unit.T(rows=[*(unit.R() for _ in range(5)), unit.R(numbers=numbers)]))
+
+
+FIXED = {
+    "ros1": "P[3] p\nQ[2] q\nR[] r\nO[2] o\nV[2] v\n===\nMSG: t/P\nfloat64 x\nfloat64 y\n===\nMSG: t/Q\nint8 a\nP p\nuint32 b\n===\n"
+    "MSG: t/R\nint16 n\nP[2] p\nfloat32 f\nQ[2] q\n===\nMSG: t/O\nbool b\nint64 i\n===\nMSG: t/V\nint32[2] v\n",
+    "cdr": "P[3] p\nQ[2] q\nR[] r\nO[2] o\nV[2] v\n===\nMSG: t/P\nfloat64 x\nfloat64 y\n===\nMSG: t/Q\nint8 a\nP p\nuint32 b\n===\n"
+    "MSG: t/R\nint16 n\nP[2] p\nfloat32 f\nQ[2] q\n===\nMSG: t/O\nbool b\nint64 i\n===\nMSG: t/V\nint32[2] v\n",
+    "lcm": {
+        "t.lcm": """package t; struct P { double x; double y; } struct Q { int8_t a; P p; int32_t b; }
+struct R { int16_t n; P p[2]; float f; Q q[2]; } struct O { boolean b; int64_t i; } struct V { int32_t v[2]; }
+struct T { int32_t n; P p[3]; Q q[2]; R r[n]; O o[2]; V v[2]; P g[n][2]; Q h[2][2]; P k[2][n]; P l[n][1]; }"""
+    },
+}
+
+
+@pytest.mark.parametrize("arrays", ["", "numpy"])
+@pytest.mark.parametrize("encoding", FIXED)
+def test_few_structs_of_numbers(encoding, arrays):
+    """Arrays of a fixed length, of structs of numbers: in messages, in rows, in arrays of arrays; those of bools and of arrays besides."""
+    type_, given = {"ros1": "t/T", "cdr": "t/msg/T", "lcm": "t.T"}[encoding], {"encoding": encoding, "schema": FIXED[encoding]}
+    request, programs = type_request("decode", type_, given), (rj.Decoder.of(type_, **given), rj.Encoder.of(type_, **given))
+    unit, numbers = module(request, BOTH, Wishes(numpy=bool(arrays))), iter(range(1, 10_000))
+
+    def points(count):
+        return [unit.P(next(numbers) / 2, -next(numbers)) for _ in range(count)]
+
+    def others(count):
+        return [unit.Q(next(numbers) % 100, points(1)[0], next(numbers)) for _ in range(count)]
+
+    good = []
+    for count in (0, 1, 2, 5):
+        made = unit.T(p=points(3), q=others(2), o=[unit.O(b=True, i=next(numbers)), unit.O()])
+        made.r = [unit.R(next(numbers), points(2), next(numbers) / 4, others(2)) for _ in range(count)]
+        made.v = [unit.V(np.array([each, 7], np.int32) if arrays else [each, 7]) for each in range(2)]
+        if encoding == "lcm":
+            made.n, made.g, made.h = count, [points(2) for _ in range(count)], [others(2), others(2)]
+            made.k, made.l = [points(count), points(count)], [points(1) for _ in range(count)]
+        good.append(unit.encode(made))
+        found = unit.decode(good[-1])
+        assert found == made
+        assert_said(found, unit.T, {**vars(unit), "np": np})
+    answers_as_the_library(unit, programs, harmed(good, 24, encoding))

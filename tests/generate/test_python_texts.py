@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.api.options import request_of
+from rosetta_jit.api.options import request_of, type_request
 from tests.generate.python import module
 
 MAPPING = 'import "w/W"\nimport "b.proto"\ndata-holder: b.H\nwire-schema: w/W\nunpack-rules:\n  .o = {}\n'
@@ -35,3 +35,28 @@ def test_parts_of_texts_that_stay_where_they_are(rule):
         except unit.DecodeError as error:
             found = error.kind, error.path, error.offset
         assert found == wanted
+
+
+PROTO = {"t.proto": 'syntax = "proto3"; package t; message T { string a = 1; repeated string b = 2; map<string, string> c = 3; T d = 4; }'}
+
+
+def test_texts_that_are_no_utf8_are_refused():
+    """Lone surrogates stand for bytes that are no UTF-8: they are written where a text may have such bytes, and nowhere else."""
+    ros: Any = {"encoding": "ros1", "schema": "string a\nstring[] b\n"}
+    protobuf: Any = {"encoding": "protobuf", "schema": PROTO}
+    for given, type_ in ((ros, "t/T"), (protobuf, "t.T")):
+        unit, encode = module(type_request("encode", type_, given)), rj.Encoder.of(type_, **given)
+        for wrong in ({"a": "\udc80"}, {"b": ["a", "é\udcff"]}):
+            with pytest.raises(unit.EncodeError, match=r"range.*surrogates not allowed"):
+                unit.encode(unit.T(**wrong))
+            with pytest.raises(ValueError, match="surrogates not allowed"):
+                encode.holder_type.from_dict(wrong)
+        assert unit.decode(unit.encode(unit.T(a="é", b=["", "日本"]))) == unit.T(a="é", b=["", "日本"])
+    for wrong in (unit.T(c={"\udc80": ""}), unit.T(c={"": "\udc80"}), unit.T(d=unit.T(a="\udc80"))):
+        with pytest.raises(unit.EncodeError, match="range"):
+            unit.encode(wrong)
+    options: Any = {**ros, "lenient": ["text"]}
+    lenient = module(type_request("encode", "t/T", options))
+    message = struct.pack("<I", 2) + b"\x80a" + struct.pack("<II", 1, 1) + b"\xff"
+    assert lenient.decode(message) == lenient.T(a="\udc80a", b=["\udcff"])
+    assert lenient.encode(lenient.decode(message)) == message

@@ -140,8 +140,10 @@ class Collect:
         match type_:
             case String("utf-16"):
                 return f'{at}.encode("utf-16-le", "surrogatepass")'
-            case String():
+            case String("octets"):
                 return f'{at}.encode("utf-8", "surrogateescape")'
+            case String():
+                return f"{at}.encode()"
             case Bytes():
                 return at
             case Array() if self.unit.numpy:

@@ -144,9 +144,7 @@ class Written:
         else:
             names = [name for name, lane in self.scope.counts.items() if lane == sequence.lane and name in self.function.read]
             count = self.scope.locals.identifier(names[0]) if names else f"len({own})"
-            native = order == "<" and code in "qQ"
-            codes = f"{{{count}}}{f'{{_{code}}}' if native else code}"
-            self.pending.append(Part("", "", (f'Struct(f"{order.replace("<", "")}{codes}").pack(*{own})',)))
+            self.pending.append(Part("", "", (f"{self.scope.by_count(order, code, 'writes')}[{count}](*{own})",)))
 
     def _each(self, sequence: Listed, codes: tuple[str, ...]) -> None:
         """Rows that are numbers."""

@@ -34,6 +34,7 @@ REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 RUNTIME = Path(__file__).with_name("runtime")
 MORE = {
     "_varint(": ("varints.py", "_SHORT"),
+    "_ByCount(": ("by_count.py", "_KEPT"),
     "_fitting(": ("integers.py", "def "),
     "_several_bytes(": ("long_varints.py", "def "),
     "_long_length(": ("long_lengths.py", "def "),
@@ -41,6 +42,8 @@ MORE = {
     "_set_class(": ("late_lists.py", "_set_class"),
 }
 """What modules have besides that name such functions: a file of the runtime, from where its text begins."""
+BY_COUNT = {"reads": "unpack_from", "writes": "pack"}
+"""The methods of the struct module that read, and write, as many numbers as a message says."""
 OF_DECIMALS = ("_nearest(", "_shortest(", "_fixed_digits(")
 NO_MEMORY = "the message asks for more memory than its size allows"
 
@@ -69,20 +72,20 @@ class _Module:
         parts += [self._decoder_of(wire, role) for wire, role in wires_of(self.unit).items()]
         parts += [self._encoder()] if "encode" in self.unit.kernels else []
         parts += [self._reset()] if self.unit.state else []
-        runtime = (RUNTIME / "usual.py").read_text("utf-8")
+        constants, runtime = self._constants(), (RUNTIME / "usual.py").read_text("utf-8")
         runtime = runtime[runtime.index("import math") :].rstrip()
         if any(function in part for function in OF_DECIMALS for part in parts):
             decimals = (RUNTIME / "decimals.py").read_text("utf-8")
             runtime += f"\n\n\n{decimals[decimals.index('def ') :].rstrip()}"
         for use, (file, begin) in MORE.items():
-            if any(use in part for part in (*parts, *self.late.lines)):
+            if any(use in part for part in (*parts, constants)):
                 more = (RUNTIME / file).read_text("utf-8")
                 if "BytesIO" in more:
                     runtime = runtime.replace("from itertools", "from io import BytesIO\nfrom itertools", 1)
                 if "_dataclasses" in more:
                     imports = "import dataclasses as _dataclasses\nimport math\nimport threading as _threading"
                     runtime = runtime.replace("import math", imports, 1)
-                runtime += f"\n\n\n{more[more.index(begin) :].rstrip()}".replace("  # pyright: ignore[reportUnusedFunction]", "")
+                runtime += "\n\n\n" + re.sub(r"  # pyright: ignore\[.*\]", "", more[more.index(begin) :].rstrip())
         if self.unit.numpy:
             arrays = (RUNTIME / "arrays.py").read_text("utf-8")
             runtime = runtime.replace(
@@ -95,7 +98,7 @@ class _Module:
         made = "\n".join(
             f"# {ascii(' '.join(line.split()))[1:-1]}" for line in ("Made by rosetta-jit. Changes will be lost.", *self.unit.made_from)
         )
-        text = "\n\n\n".join([f"{made}\nfrom __future__ import annotations\n\n{runtime}", declared, self._constants(), *parts])
+        text = "\n\n\n".join([f"{made}\nfrom __future__ import annotations\n\n{runtime}", declared, constants, *parts])
         return re.sub(r"\n{4,}", "\n\n\n", text).rstrip() + "\n"
 
     def _constants(self) -> str:
@@ -109,6 +112,9 @@ class _Module:
                 lines.append(f'{name} = np.empty(0, "<{code}").copy')
             elif verb == "EMPTY":
                 lines.append(f'{name} = memoryview(b"").cast("{code}")')
+            elif verb in BY_COUNT:
+                codes = f'"{{}}" + _{code}' if code in "qQ" and not order else f'"{">" if order else ""}{{}}{code.replace(TRUTH, "?")}"'
+                lines.append(f'{name} = _ByCount({codes}, "{BY_COUNT[verb]}")')
             else:
                 method = {"load": "unpack_from", "store": "pack_into", "whole": "pack"}[verb]
                 lines.append(f'{name} = Struct("{">" if order else "<"}{code.replace(TRUTH, "?")}").{method}')
@@ -202,7 +208,7 @@ class _Module:
         if "call_registers" in needs:
             writer.line(f"call_registers = {REGISTERS[direction]}")
         if "call_copy" in needs:
-            writer.line("call_copy = copy")
+            writer.line("call_copy = _copied if copy else _as_it_is")
         if "call_now" in needs:
             writer.line("call_now = now()")
         if "call_number" in needs:

@@ -268,6 +268,9 @@ class Make:
         if slot.lane in known.elements and isinstance(element, Number):
             texts = (self.scope.element(slot.lane, number) for number in range(len(known.elements[slot.lane])))
             return self._numbers(f"[{', '.join(texts)}]", element.scalar, is_few=True)
+        if slot.lane in known.elements and isinstance(type_, Array):
+            rows = len({each.row for each in known.elements[slot.lane]})
+            return f"[{', '.join(self.row(type_.element, slot.lane, str(number)) for number in range(rows))}]"
         return self.scope.text(lane, slot.offset) if (lane, slot.offset) in known.texts else None
 
     def _is_borrowed(self, type_: Type, lane: int) -> bool:

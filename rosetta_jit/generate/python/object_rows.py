@@ -299,14 +299,19 @@ class Binder:
         if isinstance(member.slot, Number) and self._is_needed(lane, member.slot):
             self.value(lane, f"(0 if {own} is None else {own})", type_.value, member.slot, found)
 
+    def _encoded(self, type_: String, at: str) -> str:
+        """The bytes of a text; lone surrogates are bytes that are no UTF-8, where a text may have any."""
+        if type_.encoding == "octets":
+            return f'{at}.encode("utf-8", "surrogateescape")'
+        return f"_utf8({at})" if self.scope.keeps_long else f"{at}.encode()"
+
     def _sequence(self, of: int, at: str, type_: String | Bytes | Array, slot: Span, found: dict[int, str]) -> None:
         lane = self.unit.layout.lanes[slot.lane]
         if isinstance(type_, String) and type_.encoding == "utf-16":
             raise NotInParts
         own = self.local((at if at.replace(".", "").isidentifier() and "." in at else lane.name).rpartition(".")[2] or "value")
-        encoded = f"_utf8({at})" if self.scope.keeps_long else f'{at}.encode("utf-8", "surrogateescape")'
         is_text = isinstance(type_, String)
-        self._take(of, slot, f'{at} != ""' if is_text else f"len({at})", f"{own} = {encoded if is_text else at}")
+        self._take(of, slot, f'{at} != ""' if is_text else f"len({at})", f"{own} = {self._encoded(type_, at) if is_text else at}")
         element = type_.element if isinstance(type_, Array) else None
         self.scope.sequences[slot.lane] = Listed(own, slot.lane, element, lane.element, is_text=is_text)
         found[slot.offset], found[slot.offset + 8] = f"{START}{slot.lane}", f"len({own})"

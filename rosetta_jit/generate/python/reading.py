@@ -41,25 +41,21 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
     part = f"data[{begin} : {begin} + {expression(scope, size)}]"
     if isinstance(slot, Number) and scope.numpy:
         count = Const("i64", int(size.value) // stride) if isinstance(size, Const) else _divided(size, stride)
-        dtype, number = scope.dtype(slot.scalar, order), bare(expression(scope, count))
+        dtype, number = scope.bool_dtype() if slot.scalar == "bool" else scope.dtype(slot.scalar, order), bare(expression(scope, count))
         if order == ">" and stride > 1:
             turned = f"_numbers_in(data, {dtype}, {number}, {begin}).astype({scope.dtype(slot.scalar)})"
             return turned if isinstance(count, Const) else f"{turned} if {number} else {scope.no_numbers(slot.scalar)}"
-        if slot.scalar == "bool":
-            return f"_numbers_in(data, {dtype}, {number}, {begin}) != 0"
-        scope.from_call.add("copy")
-        return f"_array({dtype}, data, {number}, {begin}, call_copy)"
+        return scope.numbers_in_message(dtype, number, begin)
     if isinstance(slot, Number):
         if slot.scalar == "u8":
             return f"[*{part}]"
         count = Const("i64", int(size.value) // stride) if isinstance(size, Const) else _divided(size, stride)
-        number = f"{count.value}" if isinstance(count, Const) else f"{{{bare(expression(scope, count))}}}"
-        code = "?" if slot.scalar == "bool" else CODES[slot.scalar]
-        many = f'_many{"_turned" if order == ">" else ""}({part}, "{code}")'
-        few, many = f'"{order.replace("<", "")}{number}{code}"', f'[*memoryview({part}).cast("?")]' if code == "?" else many
+        code, order = "?" if slot.scalar == "bool" else CODES[slot.scalar], order or "<"
+        many = f'[*memoryview({part}).cast("?")]' if code == "?" else f'_many{"_turned" if order == ">" else ""}({part}, "{code}")'
         if isinstance(count, Const):
-            return many if count.value > SOME else f"[*_unpack({few}, data, {begin})]"
-        return f"[*_unpack(f{few}, data, {begin})] if {expression(scope, count)} < {SOME} else {many}"
+            return many if count.value > SOME else f"[*{scope.struct(order, code * int(count.value), 'load')}(data, {begin})]"
+        few = f"[*{scope.by_count(order, code, 'reads')}[{bare(expression(scope, count))}](data, {begin})]"
+        return f"{few} if {expression(scope, count)} < {SOME} else {many}"
     numbers = sorted((each.offset, each.scalar) for each in slots_of(slot) if isinstance(each, Number))
     code = "".join(f"{len([*same])}{each}" for each, same in groupby(CODES[scalar] for _, scalar in numbers))
     names = _targets([scope.own(lane, offset, scalar) for offset, scalar in numbers])
@@ -67,7 +63,7 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
     return found if isinstance(size, Const) else f"{found} if {expression(scope, _divided(size, stride))} else []"
 
 
-def rows_read(scope: Scope, loop: For, slot_of: Callable[[int], Slot], row: Callable[[int], str]) -> tuple[str, int] | None:
+def rows_read(scope: Scope, loop: For, slot_of: Callable[[int], Slot], row: Callable[[Scope, int], str]) -> tuple[str, int] | None:
     """The rows, of as many bytes or numbers each, that a loop takes from the message one behind the other: a list of them.
 
     The number is that of rows from which on the loop takes longer. A row of a lane has the slot that ``slot_of`` gives, and is a struct or
@@ -83,11 +79,17 @@ def rows_read(scope: Scope, loop: For, slot_of: Callable[[int], Slot], row: Call
             bases = [each for each in (one, other) if loop.variable not in locals_in(each)]
             if size is None or len(bases) != 1 or steps != [index(size)]:
                 return None
-            made = (lambda: row(lane)) if isinstance(slot_of(lane), Row) else None
+            is_made = any(isinstance(slot_of(each), Row) for each in (lane, *_filled(fills[0])))
+            made: Callable[[Scope], str] | None = (lambda within: row(within, lane)) if is_made else None
             table = _table(scope, fills[0], slot_of, bases[0], loop.count, size, made) if scope.numpy else None
             return (_rows(scope, fills[0], bases[0], loop.count, size, made), 0) if table is None else (table, MANY)
         case _:
             return None
+
+
+def _filled(fill: Stmt) -> tuple[int, ...]:
+    """The lane of which a statement sets a number."""
+    return (fill.place.lane,) if isinstance(fill, SetField) and isinstance(fill.value, Load) else ()
 
 
 def _size_of_bytes(scope: Scope, lane: int, item: str, fills: list[Stmt]) -> int | None:
@@ -121,30 +123,29 @@ def _size_of_array(scope: Scope, item: str, fills: list[Stmt]) -> int | None:
 
 
 def _table(
-    scope: Scope, fill: Stmt, slot_of: Callable[[int], Slot], base: Expr, count: Expr, size: int, made: Callable[[], str] | None
+    scope: Scope, fill: Stmt, slot_of: Callable[[int], Slot], base: Expr, count: Expr, size: int, made: Callable[[Scope], str] | None
 ) -> str | None:
     """A list of rows that are arrays of numpy, of which a statement fills one: numpy reads all of them, as rows of one array."""
     begin, lane = bare(expression(scope, base)), 0
     match fill:
-        case SetField(Place(lane), Load(type_, _, order)):
+        case SetField(Place(lane), Load(type_, _, order)) if isinstance(slot_of(lane), Number):
             numbers = bare(expression(scope, mul(count, size // WIDTH[type_])))
             dtype = scope.dtype(type_, "<" if WIDTH[type_] == 1 else order)
             found = f"_numbers_in(data, {dtype}, {numbers}, {begin}).astype({scope.dtype(type_)})"
         case Copy(Place(lane)) if isinstance(slot := slot_of(lane), Number):
             type_ = slot.scalar
             numbers = bare(expression(scope, mul(count, size // WIDTH[type_])))
-            scope.from_call.add("copy")
-            found = f"_array({scope.dtype(type_)}, data, {numbers}, {begin}, call_copy)"
+            found = scope.numbers_in_message(scope.dtype(type_), numbers, begin)
         case _:
             return None
     found += f".reshape(-1, {size // WIDTH[type_]})"
-    known, scope.direct.whole = scope.direct.whole, scope.direct.whole | {lane}
-    rows = f"[*{found}]" if made is None else f"[{made()} for {scope.lanes.rows(lane)} in {found}]"
-    scope.direct.whole = known
-    return rows
+    if made is None:
+        return f"[*{found}]"
+    within = replace(scope, direct=replace(scope.direct, whole=scope.direct.whole | {lane}))
+    return f"[{made(within)} for {scope.lanes.rows(lane)} in {found}]"
 
 
-def _rows(scope: Scope, first: Stmt, base: Expr, count: Expr, size: int, made: Callable[[], str] | None) -> str:
+def _rows(scope: Scope, first: Stmt, base: Expr, count: Expr, size: int, made: Callable[[Scope], str] | None) -> str:
     """A list of rows, by the statement that fills the first field of one; ``made`` are those that are structs."""
     begin, whole = bare(expression(scope, base)), expression(scope, mul(count, size))
     part = f"data[{begin} : {expression(scope, base)} + {whole}]"
@@ -153,9 +154,9 @@ def _rows(scope: Scope, first: Stmt, base: Expr, count: Expr, size: int, made: C
             number = size // WIDTH[type_]
             each = f'_unpack_each("{"" if WIDTH[type_] == 1 else order}{number}{CODES[type_]}", {part})'
             names = [scope.element(lane, place) for place in range(number)]
-            return f"[[*each] for each in {each}]" if made is None else f"[{made()} for {_targets(names)} in {each}]"
+            return f"[[*each] for each in {each}]" if made is None else f"[{made(scope)} for {_targets(names)} in {each}]"
         case SetField(Place(lane)) if made is not None:
-            return f'[{made()} for {_targets([scope.piece(lane, 0)])} in _unpack_each("{size}s", {part})]'
+            return f'[{made(scope)} for {_targets([scope.piece(lane, 0)])} in _unpack_each("{size}s", {part})]'
         case _:
             return f'[each for (each,) in _unpack_each("{size}s", {part})]'
 

@@ -108,5 +108,4 @@ def _array(scope: Scope, type_: str, order: str, numbers: str, begin: str) -> st
     """An array of numpy of so many numbers, with the byte order of this machine."""
     if order == ">":
         return f"_numbers_in(data, {scope.dtype(type_, order)}, {numbers}, {begin}).astype({scope.dtype(type_)})"
-    scope.from_call.add("copy")
-    return f"_array({scope.dtype(type_)}, data, {numbers}, {begin}, call_copy)"
+    return scope.numbers_in_message(scope.dtype(type_), numbers, begin)

@@ -106,12 +106,28 @@ class Scope:
         self.loads.add(name)
         return name
 
+    def by_count(self, order: str, code: str, verb: str) -> str:
+        """The functions that read (``verb`` is ``reads``) or write (``writes``) as many numbers as a message says, by their count."""
+        name = f"_{verb}_{code.replace('?', TRUTH)}{'_be' if order == '>' and code not in 'bB?' else ''}"
+        self.loads.add(name)
+        return name
+
     def dtype(self, scalar: str, order: str = "<") -> str:
         """Numpy's type of a scalar in the message."""
         code = NUMPY[scalar][1]
         name = f"_dtype_{code}{'_be' if order == '>' and code[1:] != '1' else ''}"
         self.loads.add(name)
         return name
+
+    def bool_dtype(self) -> str:
+        """Numpy's type of bools, which are known to be 0 or 1 in the message."""
+        self.loads.add("_dtype_b1")
+        return "_dtype_b1"
+
+    def numbers_in_message(self, dtype: str, count: str, begin: str) -> str:
+        """An array of numpy that lies in the message as in memory: a copy, or a view."""
+        self.from_call.add("copy")
+        return f"call_copy(_numbers_in(data, {dtype}, {count}, {begin}))"
 
     def no_numbers(self, scalar: str) -> str:
         """An array of numpy without elements."""
@@ -175,6 +191,9 @@ class Scope:
         """A scalar of a row."""
         if lane == 0 and self.attributes and offset in self.attributes:
             return self.attributes[offset]
+        if lane in self.direct.elements:
+            offsets = sorted({each.offset for each in self.direct.elements[lane]})
+            return self.element(lane, int(row) * len(offsets) + offsets.index(offset))
         if lane == 0 and self.flat:
             name = flat_name(self.lanes, offset, scalar)
             self.rows.add(name)

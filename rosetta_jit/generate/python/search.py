@@ -10,6 +10,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from itertools import accumulate
 from typing import cast
 
 from rosetta_jit.generate.cleared import offsets_of, slots_of
@@ -121,16 +122,12 @@ class _Search(Texts):
                 outer = next((each for each in block if each is copy or _if_any(each, count, copy)), None)
                 if outer is None:
                     return False
-                if (
-                    isinstance(count, nodes.Const)
-                    and isinstance(element, Number)
-                    and 0 < count.value <= self.few
-                    and element.scalar != "bool"
-                ):
-                    places = [nodes.Place(lane, add(start, number)) for number in range(int(count.value))]
-                    self.direct.elements[lane] = places
+                if isinstance(count, nodes.Const) and 0 < count.value * len(code) <= self.few and "bool" not in code:
+                    places = self.direct.elements[lane] = _places(lane, start, int(count.value), element)
+                    begins = accumulate((nodes.WIDTH[each] for each in code * int(count.value)), initial=0)
                     self.instead[id(outer)] = tuple(
-                        nodes.SetField(place, nodes.Load(code[0], add(at, number * stride))) for number, place in enumerate(places)
+                        nodes.SetField(place, nodes.Load(type_, add(at, begin)))
+                        for place, type_, begin in zip(places, code * int(count.value), begins, strict=False)
                     )
                     return True
                 self.instead[id(outer)] = (copy,)
@@ -145,15 +142,16 @@ class _Search(Texts):
         return True
 
     def _by_name(self, block: nodes.Block, lane: int, start: nodes.Local, count: nodes.Expr, fills: list[nodes.Stmt]) -> bool:
-        if not isinstance(count, nodes.Const) or not 0 < count.value <= FEW or len(fills) != count.value:
+        if not isinstance(count, nodes.Const) or not 0 < count.value <= len(fills) <= FEW:
             return False
-        places = [nodes.Place(lane, add(start, number)) for number in range(int(count.value))]
+        element = self.layout.lanes[lane].element
+        if not (isinstance(element, Number) or _is_numbers(element)) or self.layout.lanes[lane].links is not None:
+            return False
+        places = _places(lane, start, int(count.value), element)
         here = {id(each) for each in block}
-        if not all(isinstance(each, nodes.SetField) and id(each) in here for each in fills):
+        if len(fills) != len(places) or not all(isinstance(each, nodes.SetField) and id(each) in here for each in fills):
             return False
         if {each.place for each in fills if isinstance(each, nodes.SetField)} != set(places):
-            return False
-        if not isinstance(self.layout.lanes[lane].element, Number):
             return False
         self.direct.elements[lane] = places
         return True
@@ -199,6 +197,20 @@ def _first_row(loop: nodes.For) -> nodes.Place | None:
         return found[0]
     bools = bools_read(loop)
     return None if bools is None else bools.first
+
+
+def _places(lane: int, start: nodes.Local, count: int, element: Slot) -> list[nodes.Place]:
+    """The numbers of the first rows of an array, each of which is a number, or some."""
+    offsets = sorted(each.offset for each in slots_of(element) if isinstance(each, Number))
+    return [nodes.Place(lane, add(start, number), offset) for number in range(count) for offset in offsets]
+
+
+def _is_numbers(slot: Slot) -> bool:
+    """Whether a row is a struct of numbers alone, none of which is a bool."""
+    parts = [each for each in slots_of(slot) if not isinstance(each, Row)]
+    rows = [each for each in slots_of(slot) if isinstance(each, Row)]
+    is_plain = all(not each.presence_words and each.unknown is None for each in rows)
+    return bool(parts) and is_plain and all(isinstance(each, Number) and each.scalar != "bool" for each in parts)
 
 
 def _if_any(stmt: nodes.Stmt, count: nodes.Expr, copy: nodes.Copy) -> bool:

@@ -257,7 +257,7 @@ def _rows_read(function: Function, loop: nodes.For) -> tuple[str, int] | None:
     scope, layout = function.scope, function.objects.layout
     if layout is None:
         return None
-    return rows_read(scope, loop, lambda lane: layout.lanes[lane].element, lambda lane: function.objects.row(scope, lane))
+    return rows_read(scope, loop, lambda lane: layout.lanes[lane].element, function.objects.row)
 
 
 def _rows(function: Function, loop: nodes.For, count: str, rows: str, least: int) -> None:

@@ -36,10 +36,12 @@ def _are_same(left: Any, right: Any) -> bool:
     return bool(left == right)
 
 
-def _array(dtype: "np.dtype[Any]", data: Any, count: int, at: int, copy: bool) -> "npt.NDArray[Any]":
-    """Numbers that lie in bytes as this machine has them: a copy, or a view that cannot be written to."""
-    found: npt.NDArray[Any] = _numbers_in(data, dtype, count, at)
-    return found.copy() if copy else found
+_copied = np.ndarray.copy
+
+
+def _as_it_is(numbers: Any) -> Any:
+    """A view of bytes, that cannot be written to."""
+    return numbers
 
 
 def _few(numbers: Any) -> Any:

@@ -35,7 +35,7 @@ class _LongText:
 
 def _utf8(text: str) -> Any:  # pyright: ignore[reportUnusedFunction]
     """A text as UTF-8."""
-    return _LongText(text) if len(text) >= _LONG_TEXT and text.isascii() else text.encode("utf-8", "surrogateescape")
+    return _LongText(text) if len(text) >= _LONG_TEXT and text.isascii() else text.encode()
 
 
 def _long(part: Any) -> Any:  # pyright: ignore[reportUnusedFunction]
