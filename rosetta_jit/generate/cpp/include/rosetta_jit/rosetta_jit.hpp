@@ -1673,6 +1673,12 @@ template <class Row, class Container> ROSETTA_JIT_INLINE const Row *shown_rows(c
     return reinterpret_cast<const Row *>(data_of(source));
 }
 
+/* Where they are, to copy their bytes. */
+template <class Row, class Container> ROSETTA_JIT_INLINE std::int64_t address_of(const Container &source) noexcept
+{
+    return static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(shown_rows<Row>(source)));
+}
+
 /* The numbers of an array that has a fixed count of them, as rows. */
 template <class Row, std::size_t Count, class Container> ROSETTA_JIT_INLINE Row *rows_of(Container &target) noexcept
 {
@@ -1727,7 +1733,9 @@ template <class Container> element_type<Container> *opened(Container &target, st
             }
         }
     }
-    resize_to(target, count);
+    if (count != count_of(target)) { /* as hardly ever when messages come again and again */
+        resize_to(target, count);
+    }
     return data_of(target);
 }
 
