@@ -1,31 +1,28 @@
-"""Encoders that find room for the whole message first, and write it then: all that says how long it is, an object has.
+"""Encoders that look at the object first, and whether there is room for the whole message, and write it then.
 
-They stand in the header, and begin anew elsewhere where there is no room: nobody is told which part of the message lacks it.
+They stand in the header, and begin anew elsewhere where anything is wrong: nobody is told which part of the message it is.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection
 
-from rosetta_jit.generate.c.positions import difference
+from rosetta_jit.generate.c.positions import bound_in, difference
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.nodes import Block, Expr, Stmt
-from rosetta_jit.kernel.rewrite import substituted
+from rosetta_jit.kernel.rewrite import locals_in, substituted
 from rosetta_jit.kernel.terms import END, add
 from rosetta_jit.kernel.walk import expressions_of, subexpressions
 
 
 def measured_first(body: Block, offsets: Collection[int]) -> Block:
-    """The statements of an encoder in that order; the same ones where what it writes is not as long as a sum says.
+    """The statements of an encoder in that order; where what it writes is longer than a sum says, room is looked at where it is needed.
 
     ``offsets`` are those of counts in the message's row, which are not negative.
     """
     *stmts, last = body
-    required = [stmt for stmt in stmts if isinstance(stmt, nodes.Require)]
-    first = [stmt for stmt in stmts if isinstance(stmt, nodes.Let | nodes.Expect)]
-    rest = [stmt for stmt in stmts if not isinstance(stmt, nodes.Let | nodes.Expect | nodes.Require)]
-    if not required or not isinstance(last, nodes.Return) or any(map(_reads_message, first)):
-        return body
+    first, rest = _parted(stmts)
+    required = [stmt for stmt in rest if isinstance(stmt, nodes.Require)]
     values, counts = dict[str, Expr](), set[str]()
     for stmt in (stmt for stmt in first if isinstance(stmt, nodes.Let)):
         match stmt.value:
@@ -33,11 +30,27 @@ def measured_first(body: Block, offsets: Collection[int]) -> Block:
                 counts.add(stmt.name)
             case value:
                 values[stmt.name] = substituted(value, values)
+    assert isinstance(last, nodes.Return)
     position = substituted(last.position, values)
-    ends = (difference(position, substituted(add(stmt.at, stmt.size), values)) for stmt in required)
-    if not all(end is not None and _is_size(end, counts) for end in ends):
-        return body
-    return (*first, nodes.Expect(nodes.Compare("ge", END, last.position), required[0].failure), *rest, last)
+    ends = [difference(position, substituted(add(stmt.at, stmt.size), values)) for stmt in required]
+    if not ends or not all(end is not None and _is_size(end, counts) for end in ends):
+        return (*first, *rest, last)
+    room = nodes.Expect(nodes.Compare("ge", END, last.position), required[0].failure)
+    return (*first, room, *(stmt for stmt in rest if not isinstance(stmt, nodes.Require)), last)
+
+
+def _parted(stmts: Collection[Stmt]) -> tuple[list[Stmt], list[Stmt]]:
+    """Locals and checks of what an object has, and the other statements with what needs these."""
+    first, rest, bound = list[Stmt](), list[Stmt](), set[str]()
+    for stmt in stmts:
+        needs = {name for expr in expressions_of(stmt) for name in locals_in(expr)}
+        is_guarded = isinstance(stmt, nodes.Let) and any(isinstance(each, nodes.Expect) for each in rest)
+        if isinstance(stmt, nodes.Let | nodes.Expect) and not needs & bound and not is_guarded and not _reads_message(stmt):
+            first.append(stmt)
+        else:
+            rest.append(stmt)
+            bound |= bound_in(stmt)
+    return first, rest
 
 
 def _reads_message(stmt: Stmt) -> bool:

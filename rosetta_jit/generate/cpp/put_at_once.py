@@ -56,9 +56,10 @@ def put_at_once(unit: Unit, manners: Manners, lanes: Lanes) -> str:
     kernel = with_numbers_apart(undamaged_kernel(kernel), unit.layout)
     empty = sorted(at for at, most in lists.items() if most == 0)
     body = _with_zeros(tuple(_checked(kernel.bodies[0], lists)), {*starts, *lists, *(at + 8 for at in empty)})
-    body = measured_first(reached(decided((*map(_is_empty, empty), *of_no_elements(body)))), {at + 8 for at in (*starts, *lists)})
+    body = reached(decided((*map(_is_empty, empty), *of_no_elements(body))))
     if not _is_short(body):
         return ""
+    body = measured_first(body, {at + 8 for at in (*starts, *lists)})
     words = lanes.words() | function_names() | {"data"}
     scope = Scope(Namespace(words), reached_by, set(), set(), set())
     function = Function(scope, kernel.sites, {}, read=read_names(body), otherwise="return -1;")
