@@ -1,8 +1,8 @@
 """Decoders that stand in the header, where a compiler sees the object, too, and makes no call: of messages that take a few statements.
 
-It is the first body of the kernel for messages whose lists are empty, or have few elements where messages have nothing else. It has
-nothing to do where something is wrong with a message: it says that it has not read it, and the decoder in the source file begins anew.
-So all checks come first, and branches that set nothing count as something wrong.
+It is the first body of the kernel for messages whose lists are empty, or have few elements. It has nothing to do where something is wrong
+with a message: it says that it has not read it, and the decoder in the source file begins anew. So all checks come first, and branches that
+set nothing count as something wrong.
 """
 
 from __future__ import annotations

@@ -70,8 +70,8 @@ def put_at_once(unit: Unit, manners: Manners, lanes: Lanes) -> str:
         else:
             print_block(function, (stmt,))
     arrays = [lane for lane in sorted(scope.touched) if lane in reached_by.given]
-    types = ("auto" if lane in reached_by.opened else f"const {lanes.type(lane)}" for lane in arrays)
-    names = [f"{type_} *const {lanes.rows(lane)}" for lane, type_ in zip(arrays, types, strict=True)]
+    types = ("const auto " if lane in reached_by.opened else f"const {lanes.type(lane)} *const " for lane in arrays)
+    names = [f"{type_}{lanes.rows(lane)}" for lane, type_ in zip(arrays, types, strict=True)]
     function.writer.lines[:0] = [f"        {name} = {reached_by.member(lane)};" for name, lane in zip(names, arrays, strict=True)]
     is_free = frozenset(scope.parameters) == PARAMETERS and all(map(is_shared, scope.support)) and not scope.tables
     return function.writer.text() if is_free else ""

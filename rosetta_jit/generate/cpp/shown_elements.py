@@ -28,7 +28,7 @@ class Shown:
 
 def shown_elements(walk: Walk, type_: Array, span: Span, at: str) -> Shown | None:
     """Those of a list that is called ``at``; None if they have anything else."""
-    lane, shown = walk.unit.layout.lanes[span.lane], Shown(f"rosetta_jit::detail::data_of({at})")
+    lane, shown = walk.unit.layout.lanes[span.lane], Shown(f"rosetta_jit::detail::elements_of({at})")
     if type_.fixed is not None or lane.links is not None or not isinstance(walk.unit.schema.resolve(type_.element), Struct):
         return None
     element = Spot(f"{walk.lanes.rows(span.lane)}[$index]")

@@ -1676,7 +1676,17 @@ template <class Row, class Container> ROSETTA_JIT_INLINE const Row *shown_rows(c
     return reinterpret_cast<const Row *>(data_of(source));
 }
 
-/* Where they are, to copy their bytes. */
+/* The elements of a list, by their index. */
+template <class Container> ROSETTA_JIT_INLINE auto elements_of(const Container &source) noexcept
+{
+    if constexpr (has_data<const Container>::value) {
+        return data_of(source);
+    } else {
+        return std::begin(source);
+    }
+}
+
+/* Where numbers are, to copy their bytes. */
 template <class Row, class Container> ROSETTA_JIT_INLINE std::int64_t address_of(const Container &source) noexcept
 {
     return static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(shown_rows<Row>(source)));
@@ -1727,6 +1737,7 @@ template <class Container> struct open_lane {
 /* Gives a list as many elements as follow in the message. */
 template <class Container> element_type<Container> *opened(Container &target, std::int64_t count)
 {
+    static_assert(has_data<Container>::value, "the elements of a list must lie one behind the other");
     if constexpr (std::is_constructible_v<element_type<Container>, without_values>) {
         const std::size_t wanted = static_cast<std::size_t>(count);
         if (wanted > target.size()) {
