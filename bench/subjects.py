@@ -54,13 +54,19 @@ POINT_CLOUD, POINT_CLOUD_2 = _ros("sensor_msgs/PointCloud2", ros_wire.point_clou
 
 TRANSFORMS = Subject("tf2_msgs/TFMessage", "ros1", written(Ros1(), ros_wire.transforms))
 DIAGNOSTICS = Subject("diagnostic_msgs/DiagnosticArray", "ros1", written(Ros1(), ros_wire.diagnostics))
+
+
+def _feedback(count: int) -> Subject:
+    elements = b"".join(struct.pack("<BBf", 1, each, 0.5) for each in range(count))
+    return Subject("sensor_msgs/JoyFeedbackArray", "ros1", struct.pack("<I", count) + elements)
+
+
 SHORT = {
     "Float64": Subject("std_msgs/Float64", "ros1", _doubles(1)),
     "Bool": Subject("std_msgs/Bool", "ros1", b"\1"),
     "Polygon, 4 points": Subject("geometry_msgs/Polygon", "ros1", struct.pack("<I12f", 4, *range(12))),
-    "JoyFeedbackArray, 4 elements": Subject(
-        "sensor_msgs/JoyFeedbackArray", "ros1", struct.pack("<I", 4) + b"".join(struct.pack("<BBf", 1, each, 0.5) for each in range(4))
-    ),
+    "JoyFeedbackArray, 4 elements": _feedback(4),
+    "JoyFeedbackArray, 2 elements": _feedback(2),
 }
 """Messages that take a few nanoseconds."""
 

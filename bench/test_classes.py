@@ -21,7 +21,7 @@ JOBS = {
     "turn": ("decoded, one of many in turn", "an object, used again", 1),
 }
 """What is done, what each makes, and the target. Messages of a few bytes are read in turn, too."""
-WRITTEN_AS_QUICKLY = frozenset({*SEVERAL_VARINTS, *LISTS})
+WRITTEN_AS_QUICKLY = frozenset({*SEVERAL_VARINTS, *LISTS, *SHORT})
 """What has a target for encoding, too."""
 WITHOUT_TARGET = frozenset({"Float64", "Bool", "LCM, 64 bools"})
 """What has none for decoding, as it takes as long in both, or longer: docs/cpp.md says why."""

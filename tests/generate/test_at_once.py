@@ -17,6 +17,10 @@ SEPARATOR = "=" * 80
 GAP, POINT = "MSG: rj/Gap\nuint8 kind\nfloat32 value\n", "MSG: rj/Point\nfloat32 x\nfloat32 y\nfloat32 z\n"
 GAPS = [{"kind": each, "value": 0.5 * each} for each in range(18)]
 POINTS = [{"x": each, "y": -each, "z": 0.25 * each} for each in range(18)]
+TRIANGLE, CORNER = "MSG: rj/Triangle\nuint32[3] corners\nint32 side\n", "MSG: rj/Corner\nfloat64 x\nfloat64 y\nfloat64 z\n"
+TRIANGLES = [{"corners": [each, each + 1, each + 2], "side": -each} for each in range(18)]
+POSE = "MSG: rj/Pose\nCorner position\nbyte kind\nCorner size\n"
+POSES = [{"position": {"x": each, "z": -0.5}, "kind": each, "size": {"y": 0.5 * each}} for each in range(6)]
 TYPES = {
     "numbers": (NUMBERS, {"flag": True, "x": 1.5, "small": -3, "covariance": [0.5 * i for i in range(36)], "three": [1, -2, 3], "y": 2.5}),
     "text": ("string data\n", {"data": "as it is"}),
@@ -33,6 +37,18 @@ TYPES = {
     "a list of numbers": (f"Point[] points\n{SEPARATOR}\n{POINT}", {"points": POINTS[:4]}),
     "a list of flags": (f"Flag[] flags\n{SEPARATOR}\nMSG: rj/Flag\nbool set\nuint8 rest\n", {"flags": [{"set": True, "rest": 2}] * 3}),
     "lists of texts": ("string[] names\nstring[] others\n", {}),
+    "triangles": (
+        f"Triangle[] triangles\nCorner[] corners\n{SEPARATOR}\n{TRIANGLE}\n{SEPARATOR}\n{CORNER}",
+        {"triangles": TRIANGLES[:3], "corners": POINTS[:2]},
+    ),
+    "poses between texts": (
+        f"string frame\nint16 number\nPose[] poses\nstring name\nuint8[] data\nPose pose\n{SEPARATOR}\n{POSE}\n{SEPARATOR}\n{CORNER}",
+        {"frame": "base_link", "number": -3, "poses": POSES[:2], "name": "n" * 20, "data": b"some", "pose": POSES[3]},
+    ),
+    "bytes and a list of texts": (
+        f"Kind[] kinds\nstring[] names\nKind[] others\n{SEPARATOR}\nMSG: rj/Kind\nuint8 kind\n",
+        {"kinds": [{"kind": each} for each in range(16)], "others": [{"kind": 7}]},
+    ),
     "arrays": ("string name\nfloat64[] many\nint16[] few\nuint8 last\n", {"name": "n", "many": [1.0, 2.0, 3.0], "few": [-1, 2], "last": 4}),
 }
 OTHERS = {
@@ -43,11 +59,16 @@ OTHERS = {
     "lists of texts": {"names": ["one"], "others": ["another", ""]},
     "lists of numbers": {"gaps": GAPS[:16], "points": POINTS[:17]},
     "a list of numbers": {"points": POINTS},
+    "triangles": {"triangles": TRIANGLES, "corners": POINTS[:17]},
+    "poses between texts": {"frame": "", "poses": POSES, "name": "\u00e4"},
+    "bytes and a list of texts": {"kinds": [{"kind": 3}] * 17, "names": ["one", ""]},
     "a list of flags": {"flags": [{"set": False, "rest": 1}] * 2},
 }
 """What the source file reads, as lists that have many elements, or texts that have nothing."""
 WRITTEN = {*TYPES}
 IN_HEADER = {*TYPES} - {"numbers behind bytes"}
+ALIGNED = {"poses between texts"}
+"""What lies elsewhere in each message of CDR: elements of a list whose places only a loop says."""
 
 
 def encoders(type_, encoding):
@@ -66,8 +87,9 @@ def schema(type_):
 def test_messages_that_are_harmed_get_the_same_answers(type_, encoding, tmp_path):
     options = {"encoding": encoding, "schema": schema(type_)}
     texts = generated(type_request("decode", "rj/Message", options), "cpp", BOTH, "unit")
-    assert ("static bool is_read(" in texts["unit.hpp"]) == (type_ in IN_HEADER)
-    assert ("put_at_once(" in texts["unit.hpp"]) == (type_ in WRITTEN)
+    is_found = encoding == "ros1" or type_ not in ALIGNED
+    assert ("static bool is_read(" in texts["unit.hpp"]) == (type_ in IN_HEADER and is_found)
+    assert ("put_at_once(" in texts["unit.hpp"]) == (type_ in WRITTEN and is_found)
     values = TYPES[type_][1]
     other = values | OTHERS.get(type_, {})
     encoders_ = encoders(type_, encoding)

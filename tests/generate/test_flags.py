@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+
 import pytest
 
 import rosetta_jit as rj
@@ -57,3 +59,31 @@ def test_bytes_of_a_class_are_set_where_they_are(tmp_path):
     text = read_alike(tmp_path, "ros1", Wishes(holder="ros1", include="rj_message.h"))
     assert "flags = rosetta_jit::detail::sized<uint8_t>(given_object.flags, count);" in text
     assert "nine = rosetta_jit::detail::rows_of<uint8_t, 9>(given_object.nine);" in text
+
+
+OF_BITS = """#include <array>
+#include <cstdint>
+#include <vector>
+namespace rj {
+struct Row { std::vector<bool> flags; std::int16_t number; std::array<bool, 5> five; };
+struct Message { std::vector<bool> flags; std::vector<Row> rows; bool nine[9]; std::uint8_t last; };
+}
+"""
+"""As people have them."""
+
+
+@cpp.needs_cpp
+def test_bits_of_a_class_are_read_and_written(tmp_path):
+    (tmp_path / "rj_message.h").write_text(OF_BITS)
+    read_alike(tmp_path, "ros1", Wishes(holder="ros2", include="rj_message.h"))
+
+
+@cpp.needs_cpp
+def test_bits_of_a_class_need_their_own_kind_of_classes(tmp_path):
+    (tmp_path / "rj_message.h").write_text(OF_BITS)
+    options = {"encoding": "ros1", "schema": SCHEMA}
+    wishes = Wishes(holder="ros1", include="rj_message.h")
+    cpp.write(tmp_path, generated(type_request("decode", "rj/Message", options), "cpp", BOTH, "unit", wishes))
+    command = ["g++", "-std=c++17", "-fsyntax-only", "-I.", "unit.cpp"]
+    found = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert "one whose arrays of bools are bool or std::vector<bool> is one as of `--holder ros2`" in found.stderr

@@ -273,12 +273,15 @@ def written(scope: Scope, place: nodes.Place, value: nodes.Expr) -> str:
 
 
 def _field(scope: Scope, place: nodes.Place, type_: nodes.Scalar) -> str | None:
-    found = scope.lanes.field(place.lane, bare(expression(scope, place.row)), place.offset, type_)
-    if found is not None and place.lane == 0 and (shown := scope.lanes.shown.get(place.offset)) is not None:
-        scope.takes("given_object")
-        return Template(shown).substitute(type=C_ROWS[type_])
-    scope.rows(place.lane)
-    return found
+    row = bare(expression(scope, place.row))
+    found = scope.lanes.field(place.lane, row, place.offset, type_)
+    shown = None if found is None else scope.lanes.shown.get((place.lane, place.offset))
+    if shown is None or place.lane:
+        scope.rows(place.lane)
+    if shown is None:
+        return found
+    scope.takes("given_object")
+    return Template(shown).substitute(type=C_ROWS[type_], index=row)
 
 
 def location(scope: Scope, address: nodes.Address) -> tuple[str, str]:

@@ -63,8 +63,7 @@ class Straight:
 
     It stands for `$value`, a number; or of a ``text`` for `$start` and `$size`, which say where it is in the message; or for the `$count`
     of a list, whose elements are those of ``lane`` from then on. `$index` is the number of the element that the field is of. Numbers that
-    are elements themselves may be ``copied`` at once, too. ``empty`` is the statement for a list of the message that has no elements,
-    ``first`` the pointer to the elements that a list has.
+    are elements themselves may be ``copied`` at once, too. ``empty`` is the statement for a list of the message that has no elements.
     """
 
     statement: str
@@ -72,7 +71,6 @@ class Straight:
     text: bool = False
     copied: bool = False
     empty: str = ""
-    first: str = ""
 
     @property
     def is_span(self) -> bool:
@@ -126,7 +124,7 @@ class Lanes:
     opened: frozenset[int] = frozenset()
     given: Mapping[int, Given] = field(default_factory=dict[int, "Given"])
     packed: Mapping[For, Packed] = field(default_factory=dict["For", "Packed"])
-    shown: Mapping[int, str] = field(default_factory=dict[int, str])
+    shown: Mapping[tuple[int, int], str] = field(default_factory=dict[tuple[int, int], str])
     shared: str = ""
     forward: bool = True
     renamed: Mapping[int, str] = field(default_factory=dict[int, str])

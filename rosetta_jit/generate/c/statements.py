@@ -60,8 +60,9 @@ class Function:
 
     ``read`` are the locals whose values anything needs; ``finish`` are the lines before a return of success. ``is_routine``: it
     returns the numbers of its own sites. ``numbers`` are the rows of the file's table that sites of the kernel have got, ``origins`` what
-    rules of the mapping name. ``role`` is what its kernel is for. ``known`` are positions of the message where the next statement
-    stands, ``aligned`` other forms of values that the block's locals have.
+    rules of the mapping name. ``role`` is what its kernel is for. ``otherwise`` is
+    what is done where a message cannot be, if nobody is told why. ``known`` are positions of the message where the next statement stands,
+    ``aligned`` other forms of values that the block's locals have.
     """
 
     scope: Scope
@@ -73,6 +74,7 @@ class Function:
     numbers: dict[int, int] = field(default_factory=lambda: {0: 0})
     origins: Sequence[Origin] = ()
     role: Role = "decode"
+    otherwise: str = ""
     known: Positions = NONE
     aligned: Mapping[str, nodes.Expr] = field(default_factory=dict[str, nodes.Expr])
     writer: Writer = field(default_factory=lambda: Writer(depth=1))
@@ -214,6 +216,9 @@ def _fail(function: Function, failure: nodes.Failure) -> None:
 
 def _failed(function: Function, site: str, at: str, indices: tuple[nodes.Expr, ...], about: ir.Site | None) -> None:
     """Leave the function. A routine leaves the indices to who calls it."""
+    if function.otherwise:
+        function.line(function.otherwise)
+        return
     function.scope.takes("failure")
     for number, each in enumerate(indices if not function.is_routine else ()):
         function.line(f"failure->indices[{number}] = {bare(expression(function.scope, each))};")

@@ -1,8 +1,8 @@
 """Decoders that stand in the header, where a compiler sees the object, too, and makes no call: of messages that take a few statements.
 
-It is the first body of the kernel for messages whose lists are empty, or have few elements where messages have nothing else. It has
-nothing to do where something is wrong with a message: it says that it has not read it, and the decoder in the source file begins anew.
-So all checks come first, and branches that set nothing count as something wrong.
+It is the first body of the kernel for messages whose lists are empty, or have few elements. It has nothing to do where something is wrong
+with a message: it says that it has not read it, and the decoder in the source file begins anew. So all checks come first, and branches that
+set nothing count as something wrong.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from rosetta_jit.generate.c.positions import after_binding, after_require
 from rosetta_jit.generate.c.scope import Scope
 from rosetta_jit.generate.c.statements import Function, lacks, print_block
 from rosetta_jit.generate.c.support import function_names
-from rosetta_jit.generate.cpp.checks import fewer
+from rosetta_jit.generate.cpp.checks import IMPLIED, fewer
 from rosetta_jit.generate.cpp.empty_lists import lanes_of_empty_lists, of_empty_lists
 from rosetta_jit.generate.cpp.few_elements import lanes_of_few_elements, of_few_elements
-from rosetta_jit.generate.cpp.opened import without_asking
+from rosetta_jit.generate.cpp.opened import without_asking, without_counting
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.reachable import read_names
 from rosetta_jit.generate.roundings import two_roundings
@@ -39,9 +39,12 @@ PARAMETERS = frozenset({"given_object", "bytes", "end"})
 """What such a decoder is given."""
 
 
-def at_once(kernel: Kernel, lanes: Lanes) -> str:
-    """The statements of such a decoder, empty where there is none; ``lanes`` say how the kernel reaches the object."""
-    found = _reached(kernel, lanes)
+def at_once(kernel: Kernel, lanes: Lanes, apart: tuple[Kernel, Lanes]) -> str:
+    """The statements of such a decoder, empty where there is none; ``lanes`` say how the kernel reaches the object.
+
+    ``apart`` are kernel and lanes of a decoder that opens all lists.
+    """
+    found = _reached(kernel, lanes, *apart)
     if found is None or two_roundings((kernel,)):
         return ""
     checks, effects, lanes = found
@@ -58,11 +61,11 @@ def at_once(kernel: Kernel, lanes: Lanes) -> str:
     return function.writer.text() if is_free and "given_object" in scope.parameters else ""
 
 
-def _reached(kernel: Kernel, lanes: Lanes) -> tuple[nodes.Block, nodes.Block, Lanes] | None:
+def _reached(kernel: Kernel, lanes: Lanes, apart: Kernel, open_lanes: Lanes) -> tuple[nodes.Block, nodes.Block, Lanes] | None:
     """What the decoder checks and what it sets, of lists that are empty or have few elements, and how it reaches the object."""
-    body = without_asking(kernel, lanes.opened).bodies[0]
+    body = without_counting(without_asking(apart, open_lanes.opened), open_lanes.given).bodies[0]
     ways = (
-        (of_few_elements(body, lanes), lanes_of_few_elements(lanes)),
+        (of_few_elements(body, open_lanes), lanes_of_few_elements(open_lanes)),
         (of_empty_lists(kernel.bodies[0], lanes), lanes_of_empty_lists(lanes)),
     )
     found = ((straightened, reached) for each, reached in ways if (straightened := _straightened(each)) is not None)
@@ -86,15 +89,15 @@ def _straightened(body: nodes.Block) -> tuple[nodes.Block, nodes.Block] | None:
                 effects.append(stmt)
             case nodes.If(_, (nodes.Copy(nodes.Place(), nodes.Wire()),), ()):
                 effects.append(stmt)
-            case nodes.For() if all(isinstance(each, nodes.Let | nodes.SetField) for each in stmt.body):
+            case nodes.For() if all(isinstance(each, nodes.Let | nodes.SetField | nodes.Copy) for each in stmt.body):
                 effects.append(stmt)
             case nodes.If(condition, then, ()) if _only_checks(then):
                 failure = nodes.Failure(0, nodes.Const("i64", 0))
                 checks.append(nodes.Expect(folded(nodes.Unary("not", condition)), failure))
             case _:
                 return None
-    is_all = isinstance(last, nodes.Return) and not last.registers and len(stmts) <= MOST and _starts_with_bytes(checks)
-    return (tuple(checks), tuple(effects)) if is_all else None
+    is_short = isinstance(last, nodes.Return) and not last.registers and sum(1 for _ in statements(body)) <= MOST
+    return (tuple(checks), tuple(effects)) if is_short and _starts_with_bytes(checks) else None
 
 
 def _has_length(lanes: Lanes, stmt: nodes.Stmt) -> bool:
@@ -137,11 +140,11 @@ def check(function: Function, stmt: nodes.Stmt, otherwise: str, *, marked: bool)
 
 
 def _failing(function: Function, stmt: nodes.Stmt) -> str | None:
-    """The condition under which a check fails; None of a local, which is printed."""
+    """The condition under which a check fails; None of a local, which is printed, and of what other checks say."""
     scope = function.scope
     match stmt:
-        case nodes.Require(at, size, _):
-            condition = lacks(function, at, size)
+        case nodes.Require(at, size, failure):
+            condition = None if failure == IMPLIED else lacks(function, at, size)
             function.known = after_require(function.known, at, size)
             return condition
         case nodes.Expect(nodes.IsText(nodes.Wire(at), size), _):
@@ -163,11 +166,7 @@ def _print_effects(function: Function, effects: nodes.Block) -> None:
     before, scope = len(lines), function.scope
     print_block(function, effects)
     lines[before:before] = [
-        f"        {_rows(lanes, lane)} *{'' if lane in scope.moved else 'const '}{lanes.rows(lane)} = {lanes.member(lane)};"
+        f"        {lanes.type(lane)} *{'' if lane in scope.moved else 'const '}{lanes.rows(lane)} = {lanes.member(lane)};"
         for lane in sorted(scope.touched)
+        if lanes.member(lane)
     ]
-
-
-def _rows(lanes: Lanes, lane: int) -> str:
-    """The type of rows, which may be elements."""
-    return "auto" if lane in lanes.opened else lanes.type(lane)

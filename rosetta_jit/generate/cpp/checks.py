@@ -6,7 +6,7 @@ looks at those of up to eight bytes: that a number is a constant, that it is les
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from rosetta_jit.generate.c.positions import NONE, after_binding, after_require, difference, is_position
 from rosetta_jit.generate.cpp.empty_lists import with_values
@@ -14,13 +14,16 @@ from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.nodes import Block, Expr, Scalar, Stmt
 from rosetta_jit.kernel.passes.fold import TRUE, folded
-from rosetta_jit.kernel.rewrite import substituted, with_expressions
+from rosetta_jit.kernel.rewrite import reads_memory, substituted, with_expressions
 from rosetta_jit.kernel.terms import END, add, index
+from rosetta_jit.startup.dataclass import replace
 
 Number = tuple[tuple[int, int], ...]
 """An unsigned number of the message: where each of its bytes lies, the lowest first, and which bits of that it has."""
 Bits = Mapping[int, tuple[int, int]]
 """For bytes of the message, by where they lie, which of their bits are known, and what they are."""
+IMPLIED = nodes.Failure(-1, index(0))
+"""What stands for a check that others have made: it says of places what is known."""
 WORDS: dict[int, Scalar] = {1: "u8", 2: "u16", 4: "u32", 8: "u64"}
 
 
@@ -37,8 +40,17 @@ def fewer(checks: Block, *, is_sized: bool) -> Block:
         rest = tuple(_where_it_ends(checks, index(sure)))
     else:
         known = nodes.Require(index(0), index(sure), first.failure)
-        rest = _to_the_end(tuple(each for each in checks if not _is_sure(each)), sure)
-    return (known, *_joined(rest, sure))
+        rest = _to_the_end(_as_one(each for each in checks if not _is_sure(each)), sure)
+    return (known, *texts_last(_joined(rest, sure)))
+
+
+def texts_last(checks: Iterable[Stmt]) -> Block:
+    """Checks of texts, which take longest, behind the others."""
+    return tuple(sorted(checks, key=_is_of_text))
+
+
+def _is_of_text(stmt: Stmt) -> bool:
+    return isinstance(stmt, nodes.Expect) and isinstance(stmt.condition, nodes.IsText)
 
 
 def _is_sure(stmt: Stmt) -> bool:
@@ -65,6 +77,29 @@ def _where_it_ends(checks: Block, size: nodes.Const) -> Iterator[Stmt]:
                 yield with_expressions(stmt, lambda each: substituted(each, {END.name: size}))
 
 
+def _as_one(checks: Iterable[Stmt]) -> Block:
+    """Checks in which bytes that must be there, and so many more behind them, are found to be there in one comparison.
+
+    Of both it is known then that they hold, and that their places lie in the message.
+    """
+    values, found, last = dict[str, Expr](), list[Stmt](), 0
+    for stmt in checks:
+        match stmt:
+            case nodes.Require(at, nodes.Const() as more, failure) if isinstance(before := found[last] if found else None, nodes.Require):
+                end = substituted(add(before.at, before.size), values)
+                if difference(substituted(at, values), end) == index(0):
+                    found[last : last + 1] = nodes.Require(before.at, add(before.size, more), failure), replace(before, failure=IMPLIED)
+                    found.append(replace(stmt, failure=IMPLIED))
+                    continue
+            case nodes.Let(name, value) if not reads_memory(value):
+                values[name] = substituted(value, values)
+            case _:
+                pass
+        last = len(found) if isinstance(stmt, nodes.Require) else last
+        found.append(stmt)
+    return tuple(found)
+
+
 def _to_the_end(checks: Block, sure: int) -> Block:
     """Checks in which bytes that must be there, and be the last ones, are found to be as many as are left, in one comparison."""
     values = {each.name: each.value for each in checks if isinstance(each, nodes.Let)}
@@ -82,7 +117,7 @@ def _to_the_end(checks: Block, sure: int) -> Block:
     for number, stmt in enumerate(checks):
         match stmt:
             case nodes.Require(at, size, failure):
-                for last, end in ends.items():
+                for last, end in ends.items() if failure != IMPLIED else ():
                     if is_position(known, at) and difference(end, add(at, size)) == index(0):
                         left = nodes.Expect(nodes.Compare("eq", size, nodes.Binary("sub", END, at)), failure)
                         return (*checks[:number], left, *checks[number + 1 : last], *checks[last + 1 :])

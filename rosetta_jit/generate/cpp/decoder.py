@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.c.lanes import Lanes, Straight
 from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place, uncounted
-from rosetta_jit.generate.cpp.lists_in_place import opened_lists
+from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
+from rosetta_jit.generate.cpp.numbers_apart import with_numbers_apart
 from rosetta_jit.generate.cpp.opened import in_place
 from rosetta_jit.generate.cpp.packed import packed_lists
 from rosetta_jit.generate.cpp.set_in_place import straight_numbers
@@ -19,16 +20,30 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.cpp.manners import Manners
 
 
+OBJECT = "given_object"
+
+
 def decoder_of(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes) -> tuple[Kernel, Lanes]:
     """The kernel of such a decoder, and how it reaches the fields."""
     walk = Walk(unit, lanes, manners, "decode")
+    lists = opened_lists(walk, OBJECT)
+    found, reached = _in_place(walk, kernel, lists)
+    return found, replace(reached, packed=packed_lists(walk, found, lists))
+
+
+def open_decoder_of(unit: Unit, manners: Manners, lanes: Lanes) -> tuple[Kernel, Lanes]:
+    """The same of a decoder that opens lists, too, whose elements lie in memory as rows do: it sets their numbers one by one."""
+    kernel = with_numbers_apart(unit.kernels["borrow"], unit.layout)
+    walk = Walk(replace(unit, kernels={**unit.kernels, "borrow": kernel}), lanes, manners, "decode")
+    return _in_place(walk, kernel, opened_lists(walk, OBJECT, with_taken=True))
+
+
+def _in_place(walk: Walk, kernel: Kernel, lists: list[Opened]) -> tuple[Kernel, Lanes]:
     straight = {(0, offset): Straight(statement) for offset, (_, statement) in straight_numbers(walk).items()}
-    lists = opened_lists(walk, "given_object")
     for each in lists:
         kernel, straight = in_place(kernel, each.fields) or kernel, straight | each.fields
     opened = frozenset(lane for each in lists for lane in each.containers.keys() - each.texts)
-    arrays = arrays_in_place(walk, "given_object")
+    arrays = arrays_in_place(walk, OBJECT)
     for each in arrays:
         kernel = uncounted(kernel, each) or kernel
-    packed, given = packed_lists(walk, kernel, lists), {each.lane: each.given for each in arrays}
-    return kernel, replace(lanes, straight=straight, opened=opened, given=given, packed=packed)
+    return kernel, replace(walk.lanes, straight=straight, opened=opened, given={each.lane: each.given for each in arrays})

@@ -1,53 +1,74 @@
-"""A decoder's statements for messages that have nothing but lists of structs of numbers, where each of these has few elements.
+"""A decoder's statements for messages whose lists have few elements, which are structs of numbers and of arrays of a fixed count of these.
 
 A list of few elements takes less time than a call does. One of many is read in the source file, where it may be copied at once.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from rosetta_jit.generate.c.lanes import Given, Lanes
 from rosetta_jit.generate.cpp.empty_lists import NOT_EMPTY
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.nodes import Block, Stmt
-from rosetta_jit.kernel.terms import index
+from rosetta_jit.kernel.terms import END, index
 from rosetta_jit.startup.dataclass import replace
 
-FEW = index(16)
-"""Elements that are read as soon as a function is called."""
+FEW, FEW_BYTES = 16, 256
+"""Elements of a list that are read as soon as a function is called, and the bytes that these have: more are soon copied."""
 TOO_MANY = NOT_EMPTY
 """What stands for a list of more: nothing is wrong with it, but other statements read it."""
+OPENED = Given("", "")
+"""Elements whose pointer is there once a list is opened."""
+
+
+def most_elements(size: int) -> int:
+    """How many elements are few, if each has so many bytes."""
+    return min(FEW, max(1, FEW_BYTES // size))
 
 
 def of_few_elements(body: Block, lanes: Lanes) -> Block:
-    """The statements of a body behind checks that its lists have few elements; the body itself if elements have anything but numbers."""
-    lists = _lists(lanes)
-    return tuple(_checked(body, lists)) if lists and frozenset(lists) == lanes.opened else body
+    """The statements of a body behind checks that its lists have few elements; the body itself if it opens others within these."""
+    lists, within = _lists(lanes)
+    return tuple(_checked(body)) if lists and lists | within == lanes.opened else body
 
 
 def lanes_of_few_elements(lanes: Lanes) -> Lanes:
-    """How such statements reach the object: rows are elements of its lists."""
-    given = {lane: Given("", first) for lane, first in _lists(lanes).items()}
-    return replace(lanes, given={**lanes.given, **given}, packed={})
+    """How such statements reach the object: rows are elements of its lists, whose pointers are declared where a list is opened."""
+    opened = frozenset[int]().union(*_lists(lanes))
+    straight = {
+        at: replace(each, statement=f"auto *const {each.statement}") if each.lane in opened else each for at, each in lanes.straight.items()
+    }
+    return replace(lanes, straight=straight, given={**lanes.given, **dict.fromkeys(opened, OPENED)}, packed={})
 
 
-def _lists(lanes: Lanes) -> Mapping[int, str]:
-    """The lists of the message whose elements have numbers alone, and the pointer to these."""
-    found = {each.lane: each.first for (lane, _), each in lanes.straight.items() if lane == 0 and each.first}
-    others = {lane for (lane, _), each in lanes.straight.items() if each.is_span or each.copied}
-    return {lane: first for lane, first in found.items() if lane not in others}
+def _lists(lanes: Lanes) -> tuple[frozenset[int], frozenset[int]]:
+    """The lists of the message, and the arrays of their elements."""
+    lists = frozenset(each.lane for (lane, _), each in lanes.straight.items() if lane == 0 and each.lane)
+    return lists, frozenset(each.lane for (lane, _), each in lanes.straight.items() if lane in lists and each.lane)
 
 
-def _checked(body: Block, lists: Mapping[int, str]) -> Iterator[Stmt]:
-    """A list's elements are counted by a loop; its rows in use need not be."""
-    counts = {stmt.count.name for stmt in body if isinstance(stmt, nodes.For) and isinstance(stmt.count, nodes.Local)}
+def _checked(body: Block) -> Iterator[Stmt]:
+    """A list is found to be short by its count, or by the bytes of the message where lists of numbers are all that may be long there."""
+    sizes = {stmt.count.name: 1 for stmt in body if isinstance(stmt, nodes.For) and isinstance(stmt.count, nodes.Local)}
+    others, sure = list[Stmt](), 0
     for stmt in body:
         match stmt:
-            case nodes.Advance(lane) if lane in lists:
-                pass
-            case nodes.Let(name) if name in counts:
-                yield stmt
-                yield nodes.Expect(nodes.Compare("le", nodes.Local("i64", name), FEW), TOO_MANY)
+            case nodes.Require(_, nodes.Const(_, size)):
+                sure += int(size)
+            case nodes.Require(_, nodes.Binary("mul", nodes.Local(_, name), nodes.Const(_, size))) if name in sizes:
+                sizes[name] = int(size)
+            case nodes.Require():
+                others.append(stmt)
             case _:
-                yield stmt
+                pass
+    most = {name: most_elements(size) for name, size in sizes.items()}
+    for stmt in body:
+        yield stmt
+        match stmt:
+            case nodes.Let(name) if name in most and others:
+                yield nodes.Expect(nodes.Compare("le", nodes.Local("i64", name), index(most[name])), TOO_MANY)
+            case nodes.Require(nodes.Const(_, 0)) if not others:
+                yield nodes.Expect(nodes.Compare("le", END, index(sure + sum(most[name] * size for name, size in sizes.items()))), TOO_MANY)
+            case _:
+                pass

@@ -11,7 +11,7 @@ from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.language import parts_of
 from rosetta_jit.generate.cleared import without_clearing
 from rosetta_jit.generate.cpp.at_once import at_once
-from rosetta_jit.generate.cpp.decoder import decoder_of
+from rosetta_jit.generate.cpp.decoder import decoder_of, open_decoder_of
 from rosetta_jit.generate.cpp.header import AtOnce, header
 from rosetta_jit.generate.cpp.manners import MANNERS, Manners
 from rosetta_jit.generate.cpp.opened import without_asking, without_counting
@@ -34,7 +34,7 @@ def files(unit: Unit) -> dict[str, str]:
     parts = parts_of(unit, lambda kernel, lanes, role: _printed(unit, manners, kernel, lanes, role), dialect="c++")
     decoder = decoder_of(unit, manners, unit.kernels["borrow"], parts.lanes) if "borrow" in unit.kernels else None
     there = AtOnce(
-        "" if decoder is None else at_once(*decoder),
+        "" if decoder is None else at_once(*decoder, open_decoder_of(unit, manners, parts.lanes)),
         put_at_once(unit, manners, parts.lanes) if "encode" in unit.kernels else "",
     )
     return {

@@ -20,7 +20,7 @@ from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import wires_of
 from rosetta_jit.model.layout import Number, Row, Slot, Span
 from rosetta_jit.model.types import Array, Bytes, Ref, String, Struct, Type
-from rosetta_jit.startup.dataclass import dataclass, field, replace
+from rosetta_jit.startup.dataclass import dataclass, field
 
 HOLDER = "std::declval<holder &>()"
 """An object, for types."""
@@ -63,13 +63,16 @@ class _Place:
     lane: int
 
 
-def opened_lists(walk: Walk, at: str, typed: str = HOLDER) -> list[Opened]:
-    """The lists that a decoder opens of an object, which statements call ``at`` and types ``typed``; none where rows stay."""
+def opened_lists(walk: Walk, at: str, typed: str = HOLDER, *, with_taken: bool = False) -> list[Opened]:
+    """The lists that a decoder opens of an object, which statements call ``at`` and types ``typed``; none where rows stay.
+
+    Those that are taken, as they lie in memory as rows do, are among them only if that is said.
+    """
     unit = walk.unit
     kernel = unit.kernels.get("borrow")
     if kernel is None or wires_of(unit):
         return []
-    lies = {each.direct.lane for each in taken(walk, at)}
+    lies = set[int]() if with_taken else {each.direct.lane for each in taken(walk, at)}
     found: list[Opened] = []
     for type_, slot, place in _spans(walk, Ref(unit.type), unit.layout.root, _Place(Spot(at), Spot(typed), 0)):
         opened = Opened(place.spot.at, slot.lane)
@@ -125,7 +128,7 @@ def _list(walk: Walk, opened: Opened, type_: Type, span: Span, place: _Place) ->
         words = {"lane": rows, "index": "$index", "start": "$start", "size": "$size"}
         opened.fields[span.lane, 0] = Straight(walk.text("text of a list", place.spot, **words), text=True)
         return True
-    opened.fields[place.lane, span.offset] = replace(_opening(walk, "open", span, place), first=walk.text("first", place.spot))
+    opened.fields[place.lane, span.offset] = _opening(walk, "open", span, place)
     opened.structs[span.lane] = resolved.element
     element = f"std::declval<rosetta_jit::detail::element_type<decltype({container})> &>()"
     place = _Place(Spot(f"{rows}[$index]"), Spot(element), span.lane)

@@ -141,7 +141,7 @@ MANNERS = (
         renamed=TIMES,
         framework="ros1",
     ),
-    Manners("ros2", "the structs of rclcpp", ("fields",), _joined, _ros2_header, framework="ros2"),
+    Manners("ros2", "the structs of rclcpp", ("fields",), _joined, _ros2_header, renamed=TIMES, framework="ros2"),
     Manners(
         "lcm",
         "the classes that lcm-gen generates",

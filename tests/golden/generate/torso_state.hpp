@@ -77,34 +77,33 @@ private:
     static std::int64_t put_at_once(const holder &given_object, unsigned char *__restrict bytes, std::int64_t end)
     {
         const float *const angles = rosetta_jit::detail::shown_rows<float>(given_object.angles());
-        const int64_t start = 0;
         const int64_t count = rosetta_jit::detail::count_of(given_object.angles());
+        if (ROSETTA_JIT_UNLIKELY(0 >= count)) {
+            return -1;
+        }
+        const float element = angles[0];
+        const double yaw = static_cast<double>(element) * 57.29577951308232;
+        if (ROSETTA_JIT_UNLIKELY(1 >= count)) {
+            return -1;
+        }
+        const float element_2 = angles[1];
+        const double roll = static_cast<double>(element_2) * 57.29577951308232;
+        if (ROSETTA_JIT_UNLIKELY(2 >= count)) {
+            return -1;
+        }
+        const float element_3 = angles[2];
+        const double pitch = static_cast<double>(element_3) * 57.29577951308232;
+        if (ROSETTA_JIT_UNLIKELY(count != 3)) {
+            return -1;
+        }
         if (ROSETTA_JIT_UNLIKELY(end < 32)) {
             return -1;
         }
         rosetta_jit::detail::store_i32_le(bytes + 0, 266);
         rosetta_jit::detail::store_i32_le(bytes + 4, 3);
-        if (ROSETTA_JIT_UNLIKELY(0 >= count)) {
-            return -1;
-        }
-        const float element = angles[start];
-        const double yaw = static_cast<double>(element) * 57.29577951308232;
         rosetta_jit::detail::store_f64_le(bytes + 8, yaw);
-        if (ROSETTA_JIT_UNLIKELY(1 >= count)) {
-            return -1;
-        }
-        const float element_2 = angles[start + 1];
-        const double roll = static_cast<double>(element_2) * 57.29577951308232;
         rosetta_jit::detail::store_f64_le(bytes + 16, roll);
-        if (ROSETTA_JIT_UNLIKELY(2 >= count)) {
-            return -1;
-        }
-        const float element_3 = angles[start + 2];
-        const double pitch = static_cast<double>(element_3) * 57.29577951308232;
         rosetta_jit::detail::store_f64_le(bytes + 24, pitch);
-        if (ROSETTA_JIT_UNLIKELY(count != 3)) {
-            return -1;
-        }
         return 32;
     }
 

@@ -44,9 +44,6 @@ rosetta_jit::detail::sized<$row>($at, $count)
 /* == open == */
 $lane = rosetta_jit::detail::opened($at, $count);
 
-/* == first == */
-rosetta_jit::detail::data_of($at)
-
 /* == open texts == */
 holder->$lane.open($at, $count);
 

@@ -62,6 +62,9 @@
 #define ROSETTA_JIT_LIES_AT(CLASS, FIELD, OFFSET, NUMBER) \
     (offsetof(CLASS, FIELD) == OFFSET && rosetta_jit::detail::same_numbers<decltype(std::declval<CLASS &>().FIELD), NUMBER>)
 
+#define ROSETTA_JIT_OTHER_ELEMENTS \
+    "the class has elements of another type than the schema; one whose arrays of bools are bool or std::vector<bool> is one as of `--holder ros2`"
+
 namespace rosetta_jit {
 
 /* What is wrong with a message. */
@@ -1510,7 +1513,7 @@ template <class Lane, class Span, class Container> void show_span(Lane &to, Span
 template <class Row, class Span, class Container> void point_span(Span &span, const Container &from)
 {
     using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(from))>>;
-    static_assert(same_numbers<Number, Row> || sizeof(Number) + sizeof(Row) == 2, "the class has elements of another type than the schema");
+    static_assert(same_numbers<Number, Row> || sizeof(Number) + sizeof(Row) == 2, ROSETTA_JIT_OTHER_ELEMENTS);
     span.start = static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(data_of(from)));
     span.count = count_of(from);
 }
@@ -1524,7 +1527,7 @@ template <class Row> struct shown {
     template <class Container> void read(const Container &from)
     {
         static_assert(same_numbers<std::remove_cv_t<std::remove_reference_t<decltype(*data_of(from))>>, Row>,
-                      "the class has elements of another type than the schema");
+                      ROSETTA_JIT_OTHER_ELEMENTS);
         rows = const_cast<Row *>(reinterpret_cast<const Row *>(data_of(from))); /* the functions that write messages change no row */
         capacity = used = count_of(from);
     }
@@ -1642,7 +1645,7 @@ private:
 /* The same of numbers and of the bytes of a text. */
 template <class Row, class Container> struct field_lane : container_lane<Row, Container> {
     using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(std::declval<Container &>()))>>;
-    static_assert(same_numbers<Number, Row>, "the class has elements of another type than the schema");
+    static_assert(same_numbers<Number, Row>, ROSETTA_JIT_OTHER_ELEMENTS);
 };
 
 /* The same of structs, where they lie in memory as rows do. */
@@ -1669,14 +1672,30 @@ template <class Row, class Number> ROSETTA_JIT_INLINE Row got(const Number &numb
 template <class Row, class Container> ROSETTA_JIT_INLINE const Row *shown_rows(const Container &source) noexcept
 {
     static_assert(same_numbers<std::remove_cv_t<std::remove_reference_t<decltype(*data_of(source))>>, Row>,
-                  "the class has elements of another type than the schema");
+                  ROSETTA_JIT_OTHER_ELEMENTS);
     return reinterpret_cast<const Row *>(data_of(source));
+}
+
+/* The elements of a list, by their index. */
+template <class Container> ROSETTA_JIT_INLINE auto elements_of(const Container &source) noexcept
+{
+    if constexpr (has_data<const Container>::value) {
+        return data_of(source);
+    } else {
+        return std::begin(source);
+    }
+}
+
+/* Where numbers are, to copy their bytes. */
+template <class Row, class Container> ROSETTA_JIT_INLINE std::int64_t address_of(const Container &source) noexcept
+{
+    return static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(shown_rows<Row>(source)));
 }
 
 /* The numbers of an array that has a fixed count of them, as rows. */
 template <class Row, std::size_t Count, class Container> ROSETTA_JIT_INLINE Row *rows_of(Container &target) noexcept
 {
-    static_assert(same_numbers<std::remove_reference_t<decltype(*data_of(target))>, Row>, "the class has elements of another type than the schema");
+    static_assert(same_numbers<std::remove_reference_t<decltype(*data_of(target))>, Row>, ROSETTA_JIT_OTHER_ELEMENTS);
     static_assert(sizeof(Container) == Count * sizeof(Row), "the class has another number of elements than the schema");
     return reinterpret_cast<Row *>(data_of(target));
 }
@@ -1684,7 +1703,7 @@ template <class Row, std::size_t Count, class Container> ROSETTA_JIT_INLINE Row 
 /* The same of an array that gets as many as are said. */
 template <class Row, class Container> ROSETTA_JIT_INLINE Row *sized(Container &target, std::int64_t count)
 {
-    static_assert(same_numbers<std::remove_reference_t<decltype(*data_of(target))>, Row>, "the class has elements of another type than the schema");
+    static_assert(same_numbers<std::remove_reference_t<decltype(*data_of(target))>, Row>, ROSETTA_JIT_OTHER_ELEMENTS);
     static_assert(can_resize<Container>::value, "the class has an array of a fixed length where the schema has none");
     if (count != count_of(target)) {
         resize_to(target, count);
@@ -1718,6 +1737,7 @@ template <class Container> struct open_lane {
 /* Gives a list as many elements as follow in the message. */
 template <class Container> element_type<Container> *opened(Container &target, std::int64_t count)
 {
+    static_assert(has_data<Container>::value, "the elements of a list must lie one behind the other");
     if constexpr (std::is_constructible_v<element_type<Container>, without_values>) {
         const std::size_t wanted = static_cast<std::size_t>(count);
         if (wanted > target.size()) {
@@ -1727,13 +1747,15 @@ template <class Container> element_type<Container> *opened(Container &target, st
             }
         }
     }
-    resize_to(target, count);
+    if (count != count_of(target)) { /* as hardly ever when messages come again and again */
+        resize_to(target, count);
+    }
     return data_of(target);
 }
 
 /* The same of numbers, of which there may be a fixed count. */
 template <class Container, class Row, std::size_t Fixed> struct number_lane : open_lane<Container> {
-    static_assert(same_numbers<typename open_lane<Container>::Element, Row>, "the class has elements of another type than the schema");
+    static_assert(same_numbers<typename open_lane<Container>::Element, Row>, ROSETTA_JIT_OTHER_ELEMENTS);
     static_assert(Fixed == 0 || sizeof(Container) == Fixed * sizeof(Row), "the class has another number of elements than the schema");
 };
 
