@@ -38,6 +38,7 @@ HOLDS = FRAMEWORK | {"runtime.holder", "runtime.holder.objects"}
 LOG_READER = REPORTS | {"logs.base", "logs.limits", "logs.reading", "logs.reading.storage", "logs.reading.walking"}
 TRANSPORT = REPORTS | {"transports"}
 PRINTS = REPORTS | {"model", "kernel", "kernel.passes", "backends", "generate"}
+PYTHON = {"generate.c.lanes", "generate.c.unit_lanes"} | {f"generate.python.{room}" for room in ("passes", "printing", "runtime")}
 ANYTHING = (
     COMPILER
     | API
@@ -184,7 +185,11 @@ MAY_IMPORT = {
     "generate": REPORTS | {"model", "kernel", "language"},
     "generate.c": PRINTS | {"backends.entry"},
     "generate.cpp": PRINTS | {"generate.c"},
-    "generate.python": PRINTS | {"generate.c.lanes", "generate.c.unit_lanes", "generate.python.runtime"},
+    "generate.python": PRINTS | PYTHON | {"generate.python.decoding", "generate.python.encoding"},
+    "generate.python.decoding": PRINTS | PYTHON,
+    "generate.python.encoding": PRINTS | PYTHON,
+    "generate.python.passes": PRINTS,
+    "generate.python.printing": PRINTS | PYTHON,
     "generate.python.runtime": set(),
     "generate.lisp": PRINTS | {"generate.c.lanes", "generate.c.rows", "generate.c.unit_lanes"},
     "generate.build": PRINTS | {"generate.c", "lowering.rules", "pipeline", "pipeline.request"},

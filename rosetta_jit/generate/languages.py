@@ -88,7 +88,7 @@ LANGUAGES = (
         low_byte_first=True,
         numpy=True,
         wires=True,
-        taken="rosetta_jit.generate.python.classes:NOT_MODULES",
+        taken="rosetta_jit.generate.python.printing.classes:NOT_MODULES",
     ),
     Language(
         "c",

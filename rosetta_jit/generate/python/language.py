@@ -10,16 +10,16 @@ from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.unit_lanes import named_lanes
-from rosetta_jit.generate.python.classes import WORDS, classes, names_of
-from rosetta_jit.generate.python.collecting import Collect
-from rosetta_jit.generate.python.decoder import print_decoder, taken_lanes
-from rosetta_jit.generate.python.encoder import encoder_in_parts
-from rosetta_jit.generate.python.functions import Attempt, beside_lanes, is_flat, print_kernel
-from rosetta_jit.generate.python.late_rows import Late, late_objects
-from rosetta_jit.generate.python.making import Make
-from rosetta_jit.generate.python.positions import NotInParts
-from rosetta_jit.generate.python.printed import Objects
-from rosetta_jit.generate.python.scope import CODES, TRUTH, Scope, view_name
+from rosetta_jit.generate.python.decoding.decoder import print_decoder, taken_lanes
+from rosetta_jit.generate.python.decoding.late_objects import Late, late_objects
+from rosetta_jit.generate.python.decoding.making import Make
+from rosetta_jit.generate.python.encoding.collecting import Collect
+from rosetta_jit.generate.python.encoding.encoder import encoder_in_parts
+from rosetta_jit.generate.python.passes.positions import NotInParts
+from rosetta_jit.generate.python.printing.classes import WORDS, classes, names_of
+from rosetta_jit.generate.python.printing.functions import Attempt, beside_lanes, is_flat, print_kernel
+from rosetta_jit.generate.python.printing.printed import Objects
+from rosetta_jit.generate.python.printing.scope import CODES, TRUTH, Scope, view_name
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
 from rosetta_jit.generate.unit import Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Kernel

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Writer
-from rosetta_jit.generate.python.classes import member_names
+from rosetta_jit.generate.python.printing.classes import member_names
 from rosetta_jit.generate.shares import Ways, changed_lanes, within
 from rosetta_jit.generate.unit import Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Kernel
@@ -18,8 +18,8 @@ from rosetta_jit.model.types import Optional, Struct
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.python.making import Make
-    from rosetta_jit.generate.python.printed import Attempt
+    from rosetta_jit.generate.python.decoding.making import Make
+    from rosetta_jit.generate.python.printing.printed import Attempt
 
 
 def wires_of(unit: Unit) -> dict[str, Role]:

@@ -1,0 +1,52 @@
+"""Rows that may become objects without lists (see `late_rows`), and the classes of such objects."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rosetta_jit.generate.python.decoding.making import arrays_of
+from rosetta_jit.generate.python.passes.direct import LateRow
+from rosetta_jit.generate.python.printing.late_lists import lists_of, lists_of_message, maker_without_lists, name_without_lists, print_maker
+from rosetta_jit.generate.unit import Unit
+from rosetta_jit.model.layout import Row
+from rosetta_jit.model.types import Struct
+from rosetta_jit.startup.dataclass import dataclass, field
+
+LEAST = 16
+"""Lists of a type from which on rows that have none get them late: half of the time is saved, and who asks for a list pays a sixth more."""
+
+
+def late_rows(unit: Unit) -> dict[int, LateRow]:
+    """The types of rows with many lists, by the lanes of arrays of them."""
+    found: dict[int, LateRow] = {}
+    for lane, type_ in arrays_of(unit).items():
+        struct, slot = unit.schema.resolve(type_), unit.layout.lanes[lane].element
+        if isinstance(struct, Struct) and isinstance(slot, Row) and (lists := lists_of(struct, slot, unit, LEAST)):
+            found[lane] = LateRow(struct, slot, lists)
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Late:
+    """Classes of objects without lists in a module: the ``lines`` that define them, and their names by the ``lists`` that objects have not.
+
+    These are the fields for their numbers of elements, by lane and offset.
+    """
+
+    lines: tuple[str, ...] = ()
+    lists: Mapping[tuple[int, int], str] = field(default_factory=dict[tuple[int, int], str])
+
+
+def late_objects(unit: Unit, names: Mapping[str, str], decoder: str) -> Late:
+    """The classes of objects without lists that the text of a decoder makes."""
+    lines, lists = dict[str, None](), dict[tuple[int, int], str]()
+    classes = [(0, names[unit.type], lists_of_message(unit), "")]
+    classes += [
+        (lane, names[each.struct.name], each.lists, print_maker(each, names[each.struct.name])) for lane, each in late_rows(unit).items()
+    ]
+    for lane, identifier, spans, maker in classes:
+        without_lists = name_without_lists(identifier)
+        if (f"{maker_without_lists(identifier)}(" if maker else f", {without_lists})") in decoder:
+            lines |= {f"{without_lists} = _without_lists({identifier})": None, **({f"\n\n{maker}\n": None} if maker else {})}
+            lists |= {(lane, each.offset + 8): without_lists for each in spans}
+    return Late(tuple(lines), lists)

@@ -1,0 +1,1 @@
+"""Encoders: objects taken apart, and the parts of a message joined."""

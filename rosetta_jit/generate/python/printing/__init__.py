@@ -1,0 +1,1 @@
+"""Kernels as Python: what decoders and encoders have in common."""

@@ -1,0 +1,60 @@
+"""Room for rows of lanes, as Python statements."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.python.printing.printed import Function
+    from rosetta_jit.generate.python.printing.scope import Scope
+
+
+def reserve(function: Function, lane: int, count: str) -> None:
+    """The lines that make room for more rows."""
+    scope, name = function.scope, function.scope.lanes.rows(lane)
+    if lane in scope.direct.appended and scope.direct.left is not None:
+        take(function, lane, count)
+        function.line(f"{name} = []")
+        return
+    if lane in scope.direct.appended:
+        with function.writer.indented(f"if {count} > most:"):
+            function.line(f"raise _Failed(0, 0, ({_path(scope, lane)},))")
+        function.line(f"{name} = []")
+        return
+    if lane and function.reserved[lane] == 1 and lane in function.outside and lane not in scope.rooms and not function.is_routine:
+        _reserve_once(function, lane, count)
+        return
+    used, room = scope.used(lane), scope.room(lane)
+    function.moved.add(lane)
+    free = room if lane == 0 else f"{room} - {used}"
+    path = _path(scope, lane)
+    with function.writer.indented(f"if {count} > {free}:"):
+        function.line(
+            f"{name}, {room} = _more({scope.view(lane, '')}, {room}, {count} - ({free}), {scope.lanes.stride(lane)}, most, {path})"
+        )
+        function.line(f"<views {lane}>")
+
+
+def take(function: Function, lane: int, count: str) -> None:
+    """The lines that count the rows of a lane which all messages of a type that contains itself share."""
+    left = function.scope.direct.left
+    assert left is not None
+    number = left.setdefault(lane, len(left))
+    function.line(f"left[{number}] -= {count}")
+    with function.writer.indented(f"if left[{number}] < 0:"):
+        function.line(f"raise _Failed(0, 0, ({_path(function.scope, lane)},))")
+
+
+def _reserve_once(function: Function, lane: int, count: str) -> None:
+    """Rows of a lane that has none yet, and gets no others."""
+    scope, stride = function.scope, function.scope.lanes.stride(lane)
+    with function.writer.indented(f"if {count} > most:"):
+        function.line(f"raise _Failed(0, 0, ({_path(scope, lane)},))")
+    size = count if stride == 1 else f"{stride} * ({count})" if " " in count else f"{stride} * {count}"
+    function.line(f"{scope.view(lane, '')} = bytearray({size})")
+    function.line(f"<views {lane}>")
+    function.moved.add(lane)
+
+
+def _path(scope: Scope, lane: int) -> str:
+    return ascii(scope.paths[lane]) if lane < len(scope.paths) else "''"

@@ -1,0 +1,343 @@
+"""Kernel statements as Python statements, one a line. What a message cannot be raises `_Failed`."""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from rosetta_jit.generate.origins import origin_of
+from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.python.passes.bools import Bools, bools_read
+from rosetta_jit.generate.python.passes.descents import Visit
+from rosetta_jit.generate.python.passes.groups import grouped, is_not_negative, scalar_of, turned
+from rosetta_jit.generate.python.passes.mentions import assigned
+from rosetta_jit.generate.python.printing.calls import host_call, pass_on, tuple_of
+from rosetta_jit.generate.python.printing.expressions import expression, is_small, location, slice_of
+from rosetta_jit.generate.python.printing.failures import fail, fail_if, lacks
+from rosetta_jit.generate.python.printing.printed import Function
+from rosetta_jit.generate.python.printing.reading import numbers_read, rows_read, takes_text
+from rosetta_jit.generate.python.printing.reserving import reserve, take
+from rosetta_jit.generate.python.printing.rows_at_once import rows_at_once
+from rosetta_jit.generate.python.printing.scope import CODES
+from rosetta_jit.kernel import nodes
+from rosetta_jit.kernel.passes.fold import FALSE, folded
+from rosetta_jit.kernel.terms import mul, type_of
+from rosetta_jit.model.layout import Span
+
+COPY = "<copy>"
+"""Stands for what functions of rows get besides, where some arrays are views of the message."""
+OF_SEVERAL_BYTES = {**dict.fromkeys(("read_varint", "read_element", "read_packed"), "_several_bytes"), "read_size": "_long_length"}
+"""Routines for integers of protobuf that often have several bytes, with the function that reads those that end by one call."""
+
+
+def print_block(function: Function, block: nodes.Block) -> None:
+    """The statements of a block."""
+    before, sums = len(function.writer.lines), dict(function.scope.sums)
+    for number, late in enumerate(function.scope.direct.fields):
+        if id(block) in late.cases:
+            function.line(f"<late {number}>")
+    for group in grouped(block):
+        if len(group) == 1:
+            print_statement(function, group[0])
+        else:
+            _together(function, group)
+    if len(function.writer.lines) == before:
+        function.line("pass")
+    function.scope.sums = sums
+    function.scope.forget(assigned(block))
+
+
+def _together(function: Function, group: list[nodes.Stmt]) -> None:
+    """Scalars that lie one behind the other, by one call."""
+    scope, found = function.scope, [each for stmt in group if (each := scalar_of(stmt)) is not None]
+    order = next((order for type_, _, order in found if nodes.WIDTH[type_] > 1), "<")
+    codes, at = "".join(CODES[type_] for type_, _, _ in found), function.text(found[0][1])
+    targets: list[str] = []
+    for stmt in group:
+        match stmt:
+            case nodes.Let(name, _):
+                targets.append(scope.locals.identifier(name) if name in function.read else "_")
+            case nodes.SetField(place, value):
+                targets.append(_target(function, place, value))
+            case nodes.Store(_, value, _):
+                targets.append(function.text(value))
+            case _:
+                raise AssertionError(stmt)
+    if isinstance(group[0], nodes.Store):
+        function.line(f"{scope.struct(order, codes, 'store')}(data, {at}, {', '.join(targets)})")
+    else:
+        function.line(f"{', '.join(targets)} = {scope.struct(order, codes, 'load')}(data, {at})")
+
+
+def print_statement(function: Function, stmt: nodes.Stmt) -> None:
+    """One statement."""
+    match stmt:
+        case nodes.Require(at, size, failure):
+            fail_if(function, lacks(function, at, size), failure)
+        case nodes.Expect(condition, failure):
+            if condition == FALSE:
+                fail(function, failure)
+            elif (taken := takes_text(function.scope, condition)) is not None:
+                _taken(function, taken, failure)
+            else:
+                fail_if(function, function.text(folded(nodes.Unary("not", condition))), failure)
+        case nodes.Let(name, value) | nodes.Var(name, value) | nodes.Assign(name, value):
+            function.scope.note(name, is_small=isinstance(stmt, nodes.Let) and is_small(value, function.scope.small))
+            if name in function.read:
+                text = function.text(value)
+                function.line(f"{function.scope.locals.identifier(name)} = {text}{_origin(function, stmt)}")
+                function.scope.forget({name} if isinstance(stmt, nodes.Assign) else set())
+                if isinstance(stmt, nodes.Let) and isinstance(value, nodes.Binary) and value.op == "add":
+                    function.scope.sums[value] = function.scope.locals.identifier(name)
+        case nodes.SetField(place) if place in function.unasked:
+            pass
+        case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
+            _effect(function, stmt)
+        case nodes.Reserve(lane, count):
+            reserve(function, lane, function.text(count))
+        case nodes.Advance(lane, count):
+            function.line(f"{function.scope.used(lane)} += {function.text(count)}")
+        case nodes.Return():
+            _return(function, stmt)
+        case nodes.For() | nodes.While() | nodes.If() | nodes.Switch():
+            _nested(function, stmt)
+        case nodes.Call():
+            _call(function, stmt)
+        case nodes.HostCall():
+            host_call(function, stmt)
+        case _:
+            assert_never(stmt)
+
+
+def _return(function: Function, stmt: nodes.Return) -> None:
+    """The end of an attempt that has succeeded."""
+    position, objects = function.text(stmt.position), function.objects
+    if stmt.registers:
+        function.scope.from_call.add("registers")
+        words = "".join(f"call_registers[{number}], " for number, _ in stmt.registers)
+        values = "".join(f"{function.text(value)}, " for _, value in stmt.registers)
+        function.line(f"{words}call_end = {values}{position}")
+        position = "call_end"
+    for line in objects.settings(function.scope):
+        function.line(line)
+    result = objects.result(function.scope, position)
+    if names := objects.inner_names(function.scope) if function.scope.direct.left is None else []:
+        made = function.scope.locals.identifier("made\0message")
+        function.line(f"{made} = {result}")
+        function.line(f"del {', '.join(names)}")
+        result = made
+    function.line(f"return {result}")
+
+
+def _origin(function: Function, stmt: nodes.Stmt) -> str:
+    line = origin_of(stmt, function.origins) if function.origins else None
+    return "" if line is None else f"  # {ascii(line)[1:-1]}"
+
+
+def _effect(function: Function, stmt: nodes.Effect) -> None:
+    scope, origin = function.scope, _origin(function, stmt)
+    match stmt:
+        case nodes.Store(at, value, order):
+            type_, where, text = type_of(value), function.text(at), function.text(value)
+            if type_ in ("u8", "bool"):
+                function.line(f"data[{where}] = {text}{origin}")
+            else:
+                function.line(
+                    f"{scope.struct('<' if nodes.WIDTH[type_] == 1 else order, CODES[type_], 'store')}(data, {where}, {text}){origin}"
+                )
+        case nodes.SetField(nodes.Place(lane), _) if lane in scope.direct.gathered:
+            if lane not in scope.direct.listed:
+                function.line(f"{scope.lanes.rows(lane)}.append({slice_of(scope, *scope.direct.gathered[lane])}){origin}")
+        case nodes.SetField(nodes.Place(lane, _, offset), _) if (lane, offset) in scope.direct.pieces:
+            function.line(f"{scope.piece(lane, offset)} = {slice_of(scope, *scope.direct.pieces[lane, offset])}{origin}")
+        case nodes.SetField(nodes.Place(lane) as place, _) if place in scope.direct.rows.get(lane, ()):
+            number = [*scope.direct.rows[lane]].index(place)
+            function.line(f"{scope.element(lane, number)} = {_row_of(function, lane, *scope.direct.rows[lane][place])}{origin}")
+        case nodes.SetField(place, value):
+            target = _target(function, place, value)
+            text = function.text(value)
+            if type_of(value) == "f32" and text.startswith("_single(") and target.endswith("]"):
+                text = bare(text.removeprefix("_single"))  # a view rounds by itself
+            function.line(f"{target} = {text}{origin}")
+        case nodes.Copy(nodes.Place(lane), nodes.Wire(at), size) if lane in scope.direct.whole:
+            function.line(f"{scope.lanes.rows(lane)} = {_list(function, lane, at, size, '<')}{origin}")
+        case nodes.Copy(target, source, size):
+            (to, first), (of, begin), length = location(scope, target), location(scope, source), expression(scope, size)
+            function.line(f"{to}[{first} : {first} + {length}] = {of}[{begin} : {begin} + {length}]{origin}")
+        case nodes.Fill(nodes.Place(0, _, offset), nodes.Const(_, size), _) if scope.flat:
+            function.line(f"<row {offset} {int(size)}>")
+        case nodes.Fill(target, size, byte):
+            (to, first), length = location(scope, target), expression(scope, size)
+            filling = f"bytes({bare(length)})" if byte == 0 else f"bytes([{byte}]) * {length}"
+            function.line(f"{to}[{first} : {first} + {length}] = {filling}{origin}")
+        case _:
+            assert_never(stmt)
+
+
+def _target(function: Function, place: nodes.Place, value: nodes.Expr) -> str:
+    """What a field is assigned to."""
+    return function.scope.place(place, type_of(value), lambda: expression(function.scope, place.row))
+
+
+def _taken(function: Function, taken: str, failure: nodes.Failure) -> None:
+    """A text, which is not valid where it cannot be decoded."""
+    with function.writer.indented("try:"):
+        function.line(taken)
+    with function.writer.indented("except UnicodeDecodeError:"):
+        fail(function, failure)
+
+
+def _list(function: Function, lane: int, at: nodes.Expr, size: nodes.Expr, order: str) -> str:
+    """An array that lies in the message."""
+    scope, objects = function.scope, function.objects
+    assert objects.layout is not None
+    return numbers_read(scope, lane, objects.layout.lanes[lane].element, lambda: objects.row(scope, lane), at, size, order)
+
+
+def _row_of(function: Function, lane: int, at: nodes.Expr, size: nodes.Expr) -> str:
+    """A row, of an array of arrays, that lies in the message."""
+    objects = function.objects
+    assert objects.layout is not None
+    inner = objects.layout.lanes[lane].element
+    assert isinstance(inner, Span)
+    return slice_of(function.scope, at, size) if lane in objects.blobs else _list(function, inner.lane, at, size, "<")
+
+
+def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
+    scope = function.scope
+    if isinstance(stmt, nodes.For | nodes.While):
+        scope.forget(assigned(stmt.body))
+    match stmt:
+        case nodes.For(_, count, _) if (found := turned(stmt)) is not None:
+            _turn(function, count, found, decodes=isinstance(stmt.body[-1], nodes.SetField))
+        case nodes.For(variable, count, _) if (bools := bools_read(stmt)) is not None and bools.first.lane in scope.direct.whole:
+            _bools(function, variable, count, bools)
+        case nodes.For(_, count) if (rows := _rows_read(function, stmt)) is not None:
+            _rows(function, stmt, "" if isinstance(count, nodes.Const) else function.text(count), *rows)
+        case nodes.For():
+            layout = function.objects.layout
+            at_once = None if layout is None else rows_at_once(scope, stmt, layout)
+            if at_once is None:
+                _loop(function, stmt)
+                return
+            with function.writer.indented(f"if {at_once.condition}:"):
+                for line in at_once.lines:
+                    function.line(line)
+            with function.writer.indented("else:"):
+                _loop(function, stmt)
+        case nodes.While(condition, body):
+            with function.writer.indented(f"while {function.text(condition)}:"):
+                print_block(function, body)
+        case nodes.If(condition, then, otherwise):
+            if not then:
+                condition, then, otherwise = folded(nodes.Unary("not", condition)), otherwise, ()
+            with function.writer.indented(f"if {function.text(condition)}:"):
+                print_block(function, then)
+            if otherwise:
+                with function.writer.indented("else:"):
+                    print_block(function, otherwise)
+        case nodes.Switch(value, cases, default):
+            with function.writer.indented(f"match {function.text(value)}:"):
+                for head, body in (*((f"case {number}:", body) for number, body in cases), ("case _:", default)):
+                    with function.writer.indented(head), scope.locals.case(body):
+                        print_block(function, body)
+        case _:
+            assert_never(stmt)
+
+
+def _loop(function: Function, loop: nodes.For) -> None:
+    scope = function.scope
+    with function.writer.indented(f"for {scope.locals.identifier(loop.variable)} in range({function.text(loop.count)}):"):
+        print_block(function, loop.body)
+        if (lane := scope.direct.loops.get(loop.variable)) is not None and lane not in scope.direct.listed:
+            function.line(f"{scope.lanes.rows(lane)}.append({function.objects.row(scope, lane)})")
+
+
+def _rows_read(function: Function, loop: nodes.For) -> tuple[str, int] | None:
+    """The rows that a loop takes from the message, if these are read by one call."""
+    scope, layout = function.scope, function.objects.layout
+    if layout is None:
+        return None
+    return rows_read(scope, loop, lambda lane: layout.lanes[lane].element, function.objects.row)
+
+
+def _rows(function: Function, loop: nodes.For, count: str, rows: str, least: int) -> None:
+    """Rows that are read by one call, which fewer than the ``least`` are not."""
+    line = f"{function.scope.lanes.rows(function.scope.direct.loops[loop.variable])} += {rows}"
+    if not count or not least:
+        function.line(line)
+        return
+    with function.writer.indented(f"if {count} >= {least}:"):
+        function.line(line)
+    with function.writer.indented("else:"):
+        _loop(function, loop)
+
+
+def _bools(function: Function, variable: str, count: nodes.Expr, bools: Bools) -> None:
+    """An array of bools, which begins with as many bytes that are 0 or 1 as there are until another one comes."""
+    assert bools.check is not None
+    scope, number, length = function.scope, function.scope.locals.identifier(variable), expression(function.scope, count)
+    begin = expression(scope, bools.base)
+    part = f"data[{bare(begin)} : {begin} + {length}]" if begin != "0" else f"data[:{bare(length)}]"
+    function.line(f'{number} = {length} - len({part}.lstrip(b"\\0\\1"))')
+    with function.writer.indented(f"if {number} < {length}:"):
+        print_block(function, bools.before) if bools.before else None
+        fail(function, bools.check.failure)
+    function.line(f"{scope.lanes.rows(bools.first.lane)} = {_list(function, bools.first.lane, bools.base, count, '<')}")
+
+
+def _turn(function: Function, count: nodes.Expr, found: tuple[nodes.Place, nodes.Expr, str], *, decodes: bool) -> None:
+    """An array whose numbers have their high byte first, as a whole."""
+    place, base, type_ = found
+    scope, size = function.scope, f"{expression(function.scope, count)} * {nodes.WIDTH[type_]}"
+    if place.lane in scope.direct.whole:
+        function.line(f"{scope.lanes.rows(place.lane)} = {_list(function, place.lane, base, mul(count, nodes.WIDTH[type_]), '>')}")
+        return
+    (lane, first), begin = location(scope, place), expression(scope, base)
+    rows, part = f"{lane}[{first} : {first} + {size}]", f"data[{bare(begin)} : {begin} + {size}]"
+    target, source = (rows, part) if decodes else (part, rows)
+    with function.writer.indented(f"if {function.text(count)} > 0:"):
+        function.line(f'{target} = _turned({source}, "{CODES[type_]}")')
+
+
+def _call(function: Function, call: nodes.Call) -> None:
+    """A routine gets the numbers of the sites at which the caller fails where it does, and the indices there."""
+    if (visit := function.scope.direct.visits.get(call.routine)) is not None:
+        _visit(function, call, visit)
+        return
+    scope, routine = function.scope, function.routines[call.routine]
+    pass_on(function.scope, routine)
+    results = [scope.locals.identifier(result.name) for result in call.results]
+    called = next(each for each in function.kernel.routines if each.name == call.routine)
+    for result, own in zip(call.results, called.results, strict=True):
+        limits = (each.right for each in called.ensures if isinstance(each, nodes.Compare) and (each.op, each.left) == ("le", own))
+        scope.note(result.name, is_small=own.type == "u64" and any(is_small(limit, ()) for limit in limits))
+    sites = [f"sites[{each - 1}]" if function.is_routine else str(each) for each in call.sites]
+    indices = "indices" if function.is_routine else tuple_of([function.text(each) for each in call.indices])
+    arguments = ", ".join(["data", "end", tuple_of(sites), indices, *routine.needs, *(function.text(each) for each in call.arguments)])
+    bound = f"{', '.join(results)}{',' if len(results) == 1 else ''} = " if results else ""
+    if routine.is_mostly_a_byte:
+        at, (value, after) = expression(scope, call.arguments[0]), results
+        least = "" if is_not_negative(call.arguments[0], function.positive) else "0 <= "
+        function.line(f"{value} = data[{bare(at)}]" + (f" if {least}{at} < end else 128" if routine.may_lack else ""))
+        function.line(f"{after} = {at} + 1")
+        function.line(f"if {value} >= 128:")
+        if call.routine in OF_SEVERAL_BYTES:
+            function.line(f"    {value}, {after} = {OF_SEVERAL_BYTES[call.routine]}(data, {bare(at)})")
+            function.line(f"if not {after}:")
+        bound = f"    {bound}"
+    function.line(f"{bound}{routine.name}({arguments})")
+
+
+def _visit(function: Function, call: nodes.Call, visit: Visit) -> None:
+    """The messages of an array, of a type that contains itself, each read by a function."""
+    scope = function.scope
+    name, at, count = scope.visited(visit), scope.locals.identifier(call.results[0].name), function.text(visit.count)
+    function.line(f"{name} = []")
+    function.line(f"{at} = {function.text(call.arguments[0])}")
+    with function.writer.indented(f"if {count} > 0:"):
+        take(function, visit.lane, count)
+        if visit.shallow is not None:
+            print_statement(function, visit.shallow)
+        with function.writer.indented(f"for _ in range({count}):"):
+            function.line(f"element, {at} = {scope.reader(visit.lane)}(data, end, left, {at}, {function.text(visit.depth)}{COPY})")
+            function.line(f"{name}.append(element)")
