@@ -10,9 +10,9 @@ set .text.count = size
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from rosetta_jit.generate.python.passes.mentions import blocks_within, changes, counted_lanes, places_of, reads_any
+from rosetta_jit.generate.python.passes.mentions import blocks_within, changed_lane, changes, counted_lanes, places_of, readers_of
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks, with_bodies
 from rosetta_jit.kernel.terms import index
@@ -39,7 +39,8 @@ def borrowed(kernel: ir.Kernel, layout: Layout) -> ir.Kernel:
 
 def borrowed_block(block: nodes.Block, kernel: ir.Kernel, layout: Layout) -> nodes.Block:
     """A block of a kernel without them."""
-    blocks, parts = blocks_within(block), [stmt for stmt, _ in statements(block)]
+    changing, parts = _changing(block), [stmt for stmt, _ in statements(block)]
+    readers = readers_of(parts)
     mentions: dict[int, set[int]] = {}
     for stmt in (*parts, *(stmt for routine in kernel.routines for stmt, _ in statements(routine.body))):
         for lane in {each.lane for each in places_of(stmt)} | counted_lanes(stmt):
@@ -48,7 +49,7 @@ def borrowed_block(block: nodes.Block, kernel: ir.Kernel, layout: Layout) -> nod
     for lane, mentioned in mentions.items():
         if not _is_of_texts(lane, layout):
             continue
-        copies = [_copy(inner, lane, parts) for inner in blocks if any(changes(each, lane) for each in inner)]
+        copies = [_copy(inner, lane, readers) for inner in changing.get(lane, ())]
         found = [each for each in copies if each is not None]
         if mentioned == {id(stmt) for each in found for stmt in each.copying}:
             for each in found:
@@ -58,13 +59,23 @@ def borrowed_block(block: nodes.Block, kernel: ir.Kernel, layout: Layout) -> nod
     return _rewritten(block, instead) if instead else block
 
 
+def _changing(block: nodes.Block) -> dict[int, list[nodes.Block]]:
+    """The blocks within a block with statements that take rows of a lane, or set them, by the lane."""
+    found: dict[int, list[nodes.Block]] = {}
+    for inner in blocks_within(block):
+        for lane in dict.fromkeys(map(changed_lane, inner)):
+            if lane is not None:
+                found.setdefault(lane, []).append(inner)
+    return found
+
+
 def _is_of_texts(lane: int, layout: Layout) -> bool:
     """Whether a lane has bytes for its rows."""
     element = layout.lanes[lane].element if 0 < lane < len(layout.lanes) else None
     return isinstance(element, Number) and element.scalar == "u8"
 
 
-def _copy(block: nodes.Block, lane: int, parts: Sequence[nodes.Stmt]) -> _Copy | None:
+def _copy(block: nodes.Block, lane: int, readers: Mapping[str, set[int]]) -> _Copy | None:
     """What a block copies into a lane."""
     match [each for each in block if changes(each, lane)]:
         case (
@@ -74,7 +85,7 @@ def _copy(block: nodes.Block, lane: int, parts: Sequence[nodes.Stmt]) -> _Copy |
             nodes.Copy(nodes.Place(_, nodes.Local(_, begin), 0), nodes.Wire(at), size_3) as copy,
         ) as copying if start == begin and size == size_2 == size_3:
             starts = [each for each in block if isinstance(each, nodes.SetField) and each.value == nodes.Local("i64", start)]
-            if {id(each) for each in parts if reads_any(each, {start})} != {id(copy), *map(id, starts)} or len(starts) != 1:
+            if readers.get(start) != {id(copy), *map(id, starts)} or len(starts) != 1:
                 return None
             place = nodes.Place(starts[0].place.lane, starts[0].place.row, starts[0].place.offset + 8)
             counts = [each for each in block if isinstance(each, nodes.SetField) and (each.place, each.value) == (place, size)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
@@ -32,15 +32,30 @@ def places_of(stmt: nodes.Stmt) -> Iterator[nodes.Place]:
                     pass
 
 
+def changed_lane(stmt: nodes.Stmt) -> int | None:
+    """The lane of which a statement takes rows, or sets them."""
+    match stmt:
+        case nodes.Reserve(lane) | nodes.Advance(lane) | nodes.Let(_, nodes.Used(lane)):
+            return lane
+        case nodes.SetField(nodes.Place(lane)) | nodes.Copy(nodes.Place(lane)) | nodes.Fill(nodes.Place(lane)):
+            return lane
+        case _:
+            return None
+
+
 def changes(stmt: nodes.Stmt, lane: int) -> bool:
     """Whether a statement takes rows of a lane, or sets them."""
-    match stmt:
-        case nodes.Reserve(of) | nodes.Advance(of) | nodes.Let(_, nodes.Used(of)):
-            return of == lane
-        case nodes.SetField(nodes.Place(of)) | nodes.Copy(nodes.Place(of)) | nodes.Fill(nodes.Place(of)):
-            return of == lane
-        case _:
-            return False
+    return changed_lane(stmt) == lane
+
+
+def readers_of(stmts: Iterable[nodes.Stmt]) -> dict[str, set[int]]:
+    """The statements that read a local, by their identity."""
+    found: dict[str, set[int]] = {}
+    for stmt in stmts:
+        for expr in expressions_of(stmt):
+            for name in locals_in(expr):
+                found.setdefault(name, set()).add(id(stmt))
+    return found
 
 
 def reads_any(stmt: nodes.Stmt, names: set[str]) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from rosetta_jit.generate.python.passes.direct import Direct
-from rosetta_jit.generate.python.passes.mentions import changes, counted_lanes, places_of, reads_any
+from rosetta_jit.generate.python.passes.mentions import changes, counted_lanes, places_of, readers_of
 from rosetta_jit.generate.python.passes.slots import spans_of
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.rewrite import locals_in
@@ -23,7 +23,7 @@ class Texts:
     """Looks for texts and bytes in a block that fills a row; what is found goes to ``direct``, the statements ``instead`` of others by id.
 
     ``mentions`` are the statements that have to do with a lane, ``fields`` those with a field of its rows, ``readers`` those that read a
-    local; ``checks`` says how often a text is checked.
+    local, ``read_here`` those of them in the block, by their identity; ``checks`` says how often a text is checked.
     """
 
     def __init__(
@@ -34,6 +34,7 @@ class Texts:
         self.mentions: dict[int, list[nodes.Stmt]] = {}
         self.fields: dict[tuple[int, int], list[nodes.Stmt]] = {}
         self.readers: dict[str, list[nodes.Stmt]] = {}
+        self.read_here = readers_of(stmt for stmt, _ in statements(block))
         self.checks: dict[tuple[nodes.Expr, nodes.Expr], int] = {}
         for part in (block, *(routine.body for routine in kernel.routines)):
             for stmt, _ in statements(part):
@@ -152,7 +153,7 @@ class Texts:
                 elsewhere = [each for each in self.mentions[lane] if id(each) not in {*map(id, own)}]
                 alone = not any(changes(each, lane) and not isinstance(each, nodes.Let) for each in elsewhere)
                 alone = alone and not any(place.lane == lane for each in elsewhere for place in places_of(each))
-                read = {id(each) for each, _ in statements(self.block) if reads_any(each, {row})} == {id(first), id(second)}
+                read = self.read_here.get(row) == {id(first), id(second)}
                 checked = self.checks.get((at, size), 0)
                 is_text = checked == 1 and any(_checks(each, at, size) for each in block)
                 if alone and read and (is_text or (lane in self.blobs and not checked)):

@@ -10,7 +10,7 @@ from rosetta_jit.kernel import nodes
 
 def pass_on(scope: Scope, routine: Attempt) -> None:
     """What a routine needs its caller needs, too."""
-    for lane in range(len(scope.lanes.all)):
+    for lane in range(len(scope.lanes.all)) if routine.needs else ():  # most need nothing
         for code in ("", *set(CODES.values())):
             if view_name(scope.lanes, lane, code) in routine.needs:
                 scope.views.add((lane, code))
