@@ -6,6 +6,7 @@ import atexit
 import subprocess
 import tempfile
 from functools import cache
+from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from rosetta_jit.kernel.passes.alone import alone
 from tests.generate.lisp import COMMAND, MAIN
 
 CAPACITY = 40
+NUMBERS = count()
 
 
 @cache
@@ -51,12 +53,12 @@ def asked(form: str) -> str:
 @cache
 def loaded(kernel):
     """The kernel in the process: its package, its lanes, how many attempts it has, and which of its sites its table has."""
-    package, kernel = f"kernel-{loaded.cache_info().misses}", alone(kernel)
+    package, kernel = f"kernel-{next(NUMBERS)}", alone(kernel)
     named = [Lane("message" if k == 0 else f"lane_{k}", "", stride, None) for k, stride in enumerate(kernel.strides)]
     lanes: Lanes = lanes_of(named, len(named))
     printed = print_kernel(kernel, lanes, "decode", About(paths=[f"lane{k}" for k in range(len(named))]))
     path = machine()[1] / f"{package}.lisp"
-    path.write_text(f"(in-package #:{package})\n{codec(lanes)}\n{printed.text}")
+    path.write_text(f"(in-package #:{package})\n{codec(lanes, spilled=printed.spilled)}\n{printed.text}")
     assert asked(f'(kernel "{package}" "{path}")') == "ready"
     return package, lanes, printed
 

@@ -17,6 +17,8 @@ from tests.kernel.random_kernels import random_kernel
 
 pytestmark = needs_sbcl
 
+OF_ONE_MESSAGE = [*filter(has_one_message, kernels.DECODERS)]
+
 
 @pytest.fixture(autouse=True)
 def through_lisp(monkeypatch):
@@ -32,7 +34,7 @@ def through_lisp(monkeypatch):
         monkeypatch.setattr(module, "outcome", outcome)
 
 
-@pytest.mark.parametrize("kernel", [*filter(has_one_message, kernels.DECODERS)], ids=lambda each: each.name)
+@pytest.mark.parametrize("kernel", OF_ONE_MESSAGE, ids=lambda each: each.name)
 def test_decodes_like_the_interpreter(kernel):
     for message in hostile(kernel.name):
         expected = engines.outcome("interpreter", kernel, message, rows(kernel))

@@ -112,16 +112,19 @@ class _Source:
         """What can be wrong: the sites that the kernel's function names."""
         sites = self.unit.kernels[role].sites
         lines = Lines()
-        with lines.form(f"(defparameter *{self.verbs[role]}-sites*"), lines.form("(vector"):
-            lines.line(f'(site :count "" {literal(NO_MEMORY)} "")')
+        with lines.form(f"(defparameter *{self.verbs[role]}-sites*"), lines.form("(sites"):
+            lines.line(f'\'((:count "" {literal(NO_MEMORY)} "")')
+            lines.column += 2
             for number in self.printed[role].sites[1:]:
                 lines.line(self._site(sites[number]))
+            lines.column -= 2
+            lines.close()
         return lines.text()
 
     def _site(self, site: Site) -> str:
-        parts = f" :parts '({' '.join(map(_part, site.parts))})" if site.parts else ""
-        scratch = "" if site.detail_lane is None else f" :scratch #'codec.{self.lanes.rows(site.detail_lane)}"
-        return f"(site :{site.kind} {literal(site.path)} {literal(site.detail)} {literal(site.line)}{parts}{scratch})"
+        parts = f" :parts ({' '.join(map(_part, site.parts))})" if site.parts else ""
+        scratch = "" if site.detail_lane is None else f" :scratch codec.{self.lanes.rows(site.detail_lane)}"
+        return f"(:{site.kind} {literal(site.path)} {literal(site.detail)} {literal(site.line)}{parts}{scratch})"
 
     def _walks(self) -> list[str]:
         found: list[str] = []
@@ -140,7 +143,8 @@ class _Source:
         changed = sorted({lane for role in self.unit.shares if wire_of(role) for lane in changed_lanes(self.unit.kernels[role])})
         more = [f"({self.lanes.rows(lane)}.saved (no-octets) :type octets)" for lane in (0, *changed)] if self.wires else []
         more += ["(writer nil)"] if self.wires and "encode" in self.unit.kernels else []
-        return codec(self.lanes, self.unit.state, more)
+        spilled = max(each.spilled for each in self.printed.values())
+        return codec(self.lanes, self.unit.state, more, spilled)
 
     def _needs_measures(self) -> bool:
         """Whether an encoder reads what measuring has left in lanes that the holder does not have, as sizes of messages within others."""
@@ -199,10 +203,10 @@ def _tidy(text: str) -> str:
     return re.sub(r"\n +(?=\n)|\n +(?=\))", "", text)
 
 
-def codec(lanes: Lanes, state: Sequence[tuple[str, int]] = (), more: Sequence[str] = ()) -> str:
+def codec(lanes: Lanes, state: Sequence[tuple[str, int]] = (), more: Sequence[str] = (), spilled: int = 0) -> str:
     """The structure with a vector for each lane, and how many of its rows are in use; one of its own for a mapping that has state.
 
-    ``more`` are the slots of a mapping of several wires.
+    ``more`` are the slots of a mapping of several wires, ``spilled`` the bytes that kernels need for locals.
     """
     lines = Lines()
     if state:
@@ -212,6 +216,7 @@ def codec(lanes: Lanes, state: Sequence[tuple[str, int]] = (), more: Sequence[st
                 lines.line(str(word), name)
     included = "".join(f" ({each}-registers (apply #'registers *initial-state*))" for each in ("first", "unpack", "pack") if state)
     included += " (forget 'forget-rows)" if more else ""
+    included += f" (spilled (make-array {spilled} :element-type 'u8))" if spilled else ""
     options = "(:conc-name codec.) (:constructor make-codec ()) (:copier nil) (:predicate nil)"
     with lines.form(f"(defstruct (codec (:include codec-state{included}) {options})"):
         lines.line('"Memory that is kept from one message to the next. Each thread needs its own."')

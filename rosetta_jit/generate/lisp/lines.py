@@ -38,6 +38,10 @@ class Lines:
         self.lines.append(Line(self.column, first, text))
         self.lines += [Line(0, each) for each in others]
 
+    def said(self, text: str) -> None:
+        """A comment of a line."""
+        self.lines.append(Line(self.column, f";; {comment(text)}"))
+
     def slots(self, slots: Sequence[Sequence[str]]) -> None:
         """The list of a class's slots, of which each is a name and its options: in one line where that fits, else an option a line."""
         if not slots:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from types import MappingProxyType
 from typing import assert_never
 
 from rosetta_jit.generate.lisp.expressions import Scope, access, expression, got, location, state_word, zero
@@ -15,6 +16,11 @@ from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import END, add, type_of
 from rosetta_jit.startup.dataclass import dataclass, field
+
+NOTHING: Mapping[str, str] = MappingProxyType({})
+
+BOXED: frozenset[nodes.Scalar] = frozenset({"u64"})
+"""Numbers of these types are boxed where they are arguments of more than 62 bits. Positions and counts never have so many."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +39,8 @@ class Function:
     ``read`` are the locals whose values anything needs. ``is_routine``: it gives the number of its own site that failed, or 0.
     ``routines`` are the functions of routines by name. ``numbers`` are the rows of the table that sites of the kernel have got, ``paths``
     the fields that lanes belong to, ``functions`` those of the mapping by name.
-    ``staying`` are lanes of which a message leaves rows to others.
+    ``staying`` are lanes of which a message leaves rows to others. ``spilled`` are locals that lie in the codec, each with the form that
+    reads and sets it there, and ``passed`` what functions that see no variables of each other get.
     """
 
     name: str
@@ -47,6 +54,8 @@ class Function:
     read: frozenset[str] = frozenset()
     is_routine: bool = False
     staying: Sequence[int] = ()
+    spilled: Mapping[str, str] = NOTHING
+    passed: str = ""
     lines: Lines = field(default_factory=Lines)
 
     def line(self, form: str, said: str = "") -> None:
@@ -67,7 +76,7 @@ class Function:
 def print_block(function: Function, block: nodes.Block, finish: Callable[[], None] | None = None, lanes: Sequence[Variable] = ()) -> None:
     """The statements of a block, and what finishes it, within variables for lanes and those that it binds."""
     block = tuple(stmt for stmt in block if not (isinstance(stmt, nodes.Let | nodes.Var | nodes.Assign) and stmt.name not in function.read))
-    first = next((number for number, stmt in enumerate(block) if not isinstance(stmt, nodes.Let | nodes.Var)), len(block))
+    first = next((number for number, stmt in enumerate(block) if not _binds_at_once(function, stmt)), len(block))
     found = [each for number, stmt in enumerate(block) for each in _bound_by(function, stmt, first=number < first)]
     with bound(function.lines, [*lanes, *found]):
         for stmt in block[first:]:
@@ -76,17 +85,20 @@ def print_block(function: Function, block: nodes.Block, finish: Callable[[], Non
             finish()
 
 
+def _binds_at_once(function: Function, stmt: nodes.Stmt) -> bool:
+    return isinstance(stmt, nodes.Let | nodes.Var) and stmt.name not in function.spilled
+
+
 def _bound_by(function: Function, stmt: nodes.Stmt, *, first: bool) -> Iterator[Variable]:
     """The variables of a statement: those before the first other statement have their own values, others have zero until they are set."""
     match stmt:
         case nodes.Let(name, value) | nodes.Var(name, value):
             type_ = type_of(value)
-            yield Variable(function.scope.locals.symbol(name), LISP_TYPES[type_], function.form(value) if first else zero(type_))
+            if name not in function.spilled:
+                yield Variable(function.scope.locals.symbol(name), LISP_TYPES[type_], function.form(value) if first else zero(type_))
         case nodes.Call(_, _, results):
-            for each in results:
-                if each.name in function.read:
-                    yield _unset(function, each)
-        case nodes.HostCall(_, _, result):
+            yield from (_unset(function, each) for each in results if each.name in function.read and each.name not in function.spilled)
+        case nodes.HostCall(_, _, result) if result.name not in function.spilled:
             yield _unset(function, result)
         case _:
             return
@@ -99,18 +111,32 @@ def _unset(function: Function, local: nodes.Local) -> Variable:
 @contextmanager
 def bound(lines: Lines, variables: Sequence[Variable]) -> Generator[None]:
     """A `let*` of variables, if there are any, around what is written until the end of the `with`."""
-    if not variables:
+    with _with_names(lines, "let*", [(each.name, each.value) for each in variables]):
+        if variables:
+            lines.line(declaration(variables))
+        yield
+
+
+@contextmanager
+def named_forms(lines: Lines, forms: Mapping[str, str]) -> Generator[None]:
+    """Names for forms, if there are any, within what is written until the end of the `with`."""
+    with _with_names(lines, "symbol-macrolet", list(forms.items())):
+        yield
+
+
+@contextmanager
+def _with_names(lines: Lines, operator: str, names: Sequence[tuple[str, str]]) -> Generator[None]:
+    if not names:
         yield
         return
-    start = len(lines.lines)
-    lines.column += 7
-    for each in variables:
-        lines.line(f"({each.name} {each.value})")
+    start, opened = len(lines.lines), f"({operator} ("
+    lines.column += len(opened)
+    for name, form in names:
+        lines.line(f"({name} {form})")
     lines.close()
-    lines.column -= 5
-    lines.lines[start].column -= 7
-    lines.lines[start].text = f"(let* ({lines.lines[start].text}"
-    lines.line(declaration(variables))
+    lines.column -= len(opened) - 2
+    lines.lines[start].column -= len(opened)
+    lines.lines[start].text = f"{opened}{lines.lines[start].text}"
     yield
     lines.column -= 2
     lines.close()
@@ -229,8 +255,7 @@ def _rows(function: Function, stmt: nodes.Reserve | nodes.Advance) -> None:
 def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
     match stmt:
         case nodes.For(variable, count, body):
-            with function.lines.form(f"(for ({function.scope.locals.symbol(variable)} {function.form(count)})"):
-                print_block(function, body)
+            _for(function, variable, function.form(count), body)
         case nodes.While(condition, body):
             with function.lines.form(f"(while {function.form(condition)}"):
                 print_block(function, body)
@@ -245,6 +270,16 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
                     print_block(function, default)
         case _:
             assert_never(stmt)
+
+
+def _for(function: Function, variable: str, count: str, body: nodes.Block) -> None:
+    """A loop; where parts of it use the variable, it counts with one of its own."""
+    name = function.scope.locals.symbol(variable)
+    own = function.scope.locals.symbol(f"{variable} here") if variable in function.spilled else name
+    with function.lines.form(f"(for ({own} {count})"):
+        if own != name:
+            function.line(f"(setf {name} {own})")
+        print_block(function, body)
 
 
 def _if(function: Function, condition: nodes.Expr, then: nodes.Block, otherwise: nodes.Block) -> None:
@@ -266,14 +301,24 @@ def _if(function: Function, condition: nodes.Expr, then: nodes.Block, otherwise:
 
 
 def _call(function: Function, call: nodes.Call) -> None:
-    """What a routine gives is the number of its own site that failed, or 0; its results are left in the codec, where no number is boxed."""
-    called = f"({function.routines[call.routine]}{''.join(f' {function.form(each)}' for each in call.arguments)})"
+    """What a routine gives is the number of its own site that failed, or 0; its results, and bits that it gets, pass by way of the codec.
+
+    A part of the function gives what the function does, or 0.
+    """
+    if call.routine not in function.routines:
+        function.line(f"(run-part ({call.routine}{function.passed}) {function.name})")
+        return
+    boxed = [each for each in call.arguments if type_of(each) in BOXED]
+    for register, each in zip(registers(map(type_of, boxed)), boxed, strict=True):
+        function.line(f"(setf {register} {function.form(each)})")
+    arguments = "".join(f" {function.form(each)}" for each in call.arguments if type_of(each) not in BOXED)
+    called = f"({function.routines[call.routine]}{function.passed}{arguments})"
     problem = function.scope.locals.symbol(f"{call.routine} problem")
     if not call.sites:
         function.line(called)
     else:
         _call_that_fails(function, call, called, problem)
-    for result, register in zip(call.results, registers(call.results), strict=True):
+    for result, register in zip(call.results, registers(each.type for each in call.results), strict=True):
         if result.name in function.read:
             function.line(f"(setf {function.scope.locals.symbol(result.name)} {register})")
 
@@ -295,13 +340,13 @@ def _passed_on(function: Function, problem: str, call: nodes.Call) -> str:
     return f"(fail-there codec {site}{indices})"
 
 
-def registers(results: Sequence[nodes.Local]) -> list[str]:
-    """Where a routine leaves its results: slots of the codec, by their types."""
+def registers(types: Iterable[nodes.Scalar]) -> list[str]:
+    """Where values pass between a routine and its callers: slots of the codec, by their types."""
     counts: dict[str, int] = {}
     found: list[str] = []
-    for each in results:
-        counts[each.type] = counts.get(each.type, 0) + 1
-        found.append(f"(codec-state-{each.type}-result-{counts[each.type]} codec)")
+    for each in types:
+        counts[each] = counts.get(each, 0) + 1
+        found.append(f"(codec-state-{each}-passed-{counts[each]} codec)")
     return found
 
 

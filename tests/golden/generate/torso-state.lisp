@@ -46,35 +46,29 @@
   (scratch-0-used 0 :type fixnum))
 
 (defparameter *decode-sites*
-  (vector
-    (site :count "" "the message asks for more memory than its size allows" "")
-    (site :trailing "" "not of the usual length" "")
-    (site :tag "" "must be 266" "")
-    (site :count "" "must be 3" "")
-    (site :truncated "" "the message ends here" "")
-    (site :truncated
-          ""
-          "the message ends here"
-          ""
-          :parts
-          '((0 4 0 "") (4 8 0 ".yaw") (12 8 0 ".roll") (20 8 0 ".pitch")))
-    (site :trailing "" "bytes are left over" "")
-    (site :tag "" "must be one of 266, 256" "")
-    (site :truncated
-          ""
-          "the message ends here"
-          ""
-          :parts
-          '((0 4 0 "")
-            (4 4 0 ".yaw")
-            (8 8 0 ".yaw")
-            (16 4 0 ".roll")
-            (20 8 0 ".roll")
-            (28 4 0 ".pitch")
-            (32 8 0 ".pitch")))
-    (site :tag ".yaw" "must be 10" "")
-    (site :tag ".roll" "must be 10" "")
-    (site :tag ".pitch" "must be 10" "")))
+  (sites
+    '((:count "" "the message asks for more memory than its size allows" "")
+      (:trailing "" "not of the usual length" "")
+      (:tag "" "must be 266" "")
+      (:count "" "must be 3" "")
+      (:truncated "" "the message ends here" "")
+      (:truncated "" "the message ends here" "" :parts ((0 4 0 "") (4 8 0 ".yaw") (12 8 0 ".roll") (20 8 0 ".pitch")))
+      (:trailing "" "bytes are left over" "")
+      (:tag "" "must be one of 266, 256" "")
+      (:truncated ""
+                  "the message ends here"
+                  ""
+                  :parts
+                  ((0 4 0 "")
+                   (4 4 0 ".yaw")
+                   (8 8 0 ".yaw")
+                   (16 4 0 ".roll")
+                   (20 8 0 ".roll")
+                   (28 4 0 ".pitch")
+                   (32 8 0 ".pitch")))
+      (:tag ".yaw" "must be 10" "")
+      (:tag ".roll" "must be 10" "")
+      (:tag ".pitch" "must be 10" ""))))
 
 (defun decode-kernel (codec data end attempt)
   (declare (optimize (speed 1) (safety 0) (debug 0) (compilation-speed 2)) (type codec codec) (type octets data)
@@ -155,19 +149,18 @@
     (case attempt (1 (decode-1)) (t (decode-2)))))
 
 (defparameter *encode-sites*
-  (vector
-    (site :count "" "the message asks for more memory than its size allows" "")
-    (site :length ".angles" "the holder is damaged" "")
-    (site :length
-          ""
-          "no room for the message"
-          ""
-          :parts
-          '((0 4 0 "") (4 4 0 "") (8 8 0 ".yaw") (16 8 0 ".roll") (24 8 0 ".pitch")))
-    (site :index ".angles[{}]" "no such element" "torso_state.mapping:11:3")
-    (site :index ".angles[{}]" "no such element" "torso_state.mapping:12:3")
-    (site :index ".angles[{}]" "no such element" "torso_state.mapping:13:3")
-    (site :rejected "" "`len(.angles)` is not `3`, as the mapping says" "torso_state.mapping:10:3")))
+  (sites
+    '((:count "" "the message asks for more memory than its size allows" "")
+      (:length ".angles" "the holder is damaged" "")
+      (:length ""
+               "no room for the message"
+               ""
+               :parts
+               ((0 4 0 "") (4 4 0 "") (8 8 0 ".yaw") (16 8 0 ".roll") (24 8 0 ".pitch")))
+      (:index ".angles[{}]" "no such element" "torso_state.mapping:11:3")
+      (:index ".angles[{}]" "no such element" "torso_state.mapping:12:3")
+      (:index ".angles[{}]" "no such element" "torso_state.mapping:13:3")
+      (:rejected "" "`len(.angles)` is not `3`, as the mapping says" "torso_state.mapping:10:3"))))
 
 (defun encode-kernel (codec data end attempt)
   (declare (optimize (speed 1) (safety 0) (debug 0) (compilation-speed 2)) (type codec codec) (type octets data)
@@ -217,9 +210,9 @@
     (encode-1)))
 
 (defparameter *size-sites*
-  (vector
-    (site :count "" "the message asks for more memory than its size allows" "")
-    (site :length ".angles" "the holder is damaged" "")))
+  (sites
+    '((:count "" "the message asks for more memory than its size allows" "")
+      (:length ".angles" "the holder is damaged" ""))))
 
 (defun size-kernel (codec data end attempt)
   (declare (optimize (speed 1) (safety 0) (debug 0) (compilation-speed 2)) (type codec codec) (type octets data)

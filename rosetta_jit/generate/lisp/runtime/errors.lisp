@@ -59,6 +59,14 @@
 (defstruct (site (:constructor site (kind path detail line &key parts scratch)) (:copier nil) (:predicate nil))
   kind path detail line parts scratch)
 
+(defun sites (rows)
+  "A vector of sites. Each row has what SITE takes, with forms in place of texts that are not in ASCII."
+  (labels ((value (tree)
+             (cond ((atom tree) tree)
+                   ((eq (first tree) 'text) (apply #'text (rest tree)))
+                   (t (mapcar #'value tree)))))
+    (map 'vector (lambda (row) (apply #'site (value row))) rows)))
+
 (defstruct (failure (:copier nil) (:predicate nil))
   "How an attempt to read or write ended."
   (site 0 :type fixnum)
@@ -82,7 +90,8 @@
 
 (defstruct (codec-state (:copier nil) (:predicate nil))
   "What all codecs have: the last failure and the farthest one, what the mapping asks of its host, its state, what
-forgets rows that messages have left, and results of routines."
+forgets rows that messages have left, locals that several parts of a kernel use, and what passes between routines and
+their callers."
   (failure (make-failure) :type failure)
   (farthest (make-failure) :type failure)
   (most 0 :type i64)
@@ -94,16 +103,17 @@ forgets rows that messages have left, and results of routines."
   (first-registers (registers) :type registers)
   (unpack-registers (registers) :type registers)
   (pack-registers (registers) :type registers)
-  (u64-result-1 0 :type u64)
-  (u64-result-2 0 :type u64)
-  (u64-result-3 0 :type u64)
-  (u64-result-4 0 :type u64)
-  (i64-result-1 0 :type i64)
-  (i64-result-2 0 :type i64)
-  (i64-result-3 0 :type i64)
-  (i64-result-4 0 :type i64)
-  (i64-result-5 0 :type i64)
-  (i64-result-6 0 :type i64))
+  (spilled (no-octets) :type octets)
+  (u64-passed-1 0 :type u64)
+  (u64-passed-2 0 :type u64)
+  (u64-passed-3 0 :type u64)
+  (u64-passed-4 0 :type u64)
+  (i64-passed-1 0 :type i64)
+  (i64-passed-2 0 :type i64)
+  (i64-passed-3 0 :type i64)
+  (i64-passed-4 0 :type i64)
+  (i64-passed-5 0 :type i64)
+  (i64-passed-6 0 :type i64))
 
 (defun reset (codec)
   "Forget all messages: the mapping's state becomes what it is at first."

@@ -12,6 +12,14 @@
 (defmacro while (condition &body body)
   `(loop (unless ,condition (return)) ,@body))
 
+(defmacro run-part (part function)
+  "Run a part of FUNCTION, which gives 0, or what the function ends with: it has failed."
+  (let ((ended (gensym "ENDED")))
+    `(let ((,ended ,part))
+       (declare (type fixnum ,ended))
+       (unless (= ,ended 0)
+         (return-from ,function ,ended)))))
+
 (defmacro row (stride index &optional (offset 0))
   "The byte of a lane where a row begins, or a field of it."
   `(the fixnum (+ (the fixnum (* ,stride (the fixnum ,index))) ,offset)))
