@@ -46,6 +46,12 @@ class Warmed:
     error: ReportError | None = None
 
 
+def members(name: str) -> Iterable[str]:
+    """The mappings in a folder; what is no folder stands for itself."""
+    folder = Path(name)
+    return sorted(map(str, folder.rglob(f"*{SUFFIX}"))) if folder.is_dir() else (name,)
+
+
 def programs_of(
     names: Iterable[str],
     directions: Sequence[Direction] = DIRECTIONS,
@@ -62,7 +68,7 @@ def programs_of(
         if _is_mapping(name)
         else Request(direction, type=name, encoding=encoding)
         for each in names
-        for name in _members(each)
+        for name in members(each)
         for direction in directions
     ]
     return tuple(dict.fromkeys(found))
@@ -98,12 +104,6 @@ def warm(programs: Iterable[Request], jobs: int | None = None, *, usual: bool = 
 def _start_method() -> str:
     """How processes begin: as copies of this one, which has imported the compiler, where no other thread can hold a lock meanwhile."""
     return "fork" if sys.platform == "linux" and threading.active_count() == 1 else "spawn"
-
-
-def _members(name: str) -> Iterable[str]:
-    """The mappings in a folder; what is no folder stands for itself."""
-    folder = Path(name)
-    return sorted(map(str, folder.rglob(f"*{SUFFIX}"))) if folder.is_dir() else (name,)
 
 
 def _is_mapping(name: str) -> bool:

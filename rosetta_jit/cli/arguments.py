@@ -43,8 +43,10 @@ def add_mapping_or_type(command: ArgumentParser) -> None:
 
 
 def add_mappings(command: ArgumentParser) -> None:
-    """The same, several."""
-    command.add_argument("mappings", metavar="MAPPING", nargs="+", help="a mapping's path, or its name on the search path")
+    """The same, several; a folder stands for the mappings in it."""
+    command.add_argument(
+        "mappings", metavar="MAPPING|FOLDER", nargs="+", help="a mapping's path, its name on the search path, or a folder of mappings"
+    )
 
 
 def add_encoding(command: ArgumentParser) -> None:
@@ -83,6 +85,13 @@ def _parameter(text: str) -> tuple[str, object]:
     except TypeError as error:
         raise ArgumentTypeError(str(error)) from error
     return name, found
+
+
+def mappings_of(arguments: Namespace) -> list[str]:
+    """The mappings that the user named, by themselves or by folders; a folder without any stands for itself, which no mapping is."""
+    from rosetta_jit.api.warm import members
+
+    return [mapping for name in cast("list[str]", arguments.mappings) for mapping in members(name) or (name,)]
 
 
 def parameters_of(arguments: Namespace) -> dict[str, object]:

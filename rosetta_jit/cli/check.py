@@ -7,10 +7,9 @@ import json
 import sys
 from collections import Counter
 from contextlib import suppress
-from typing import cast
 
 from rosetta_jit.catalogue import pipeline as words
-from rosetta_jit.cli.arguments import Commands, add_command, add_mappings
+from rosetta_jit.cli.arguments import Commands, add_command, add_mappings, mappings_of
 from rosetta_jit.diagnostics import Diagnostic, render_all, to_json
 from rosetta_jit.errors import ReportError
 from rosetta_jit.terminal import printable
@@ -33,7 +32,7 @@ def add(commands: Commands) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Exit code 1 if any mapping has an error; warnings are shown, and forgiven unless `--strict` is given."""
     encoding = _encoding_of(arguments.log) if arguments.log and not arguments.encoding else arguments.encoding
-    reports = [(each, _diagnostics(each, encoding, arguments.framework)) for each in cast("list[str]", arguments.mappings)]
+    reports = [(each, _diagnostics(each, encoding, arguments.framework)) for each in mappings_of(arguments)]
     for mapping, diagnostics in reports:
         if arguments.json:
             print(json.dumps(_plain(mapping, diagnostics)))

@@ -6,9 +6,9 @@ import argparse
 import json
 import sys
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_mappings
+from rosetta_jit.cli.arguments import Commands, add_command, add_mappings, mappings_of
 from rosetta_jit.terminal import columns, printable
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rosetta_jit.explain.operations import operations
 
     found: dict[str, Uses] = {}
-    mappings = cast("list[str]", arguments.mappings)
+    mappings = mappings_of(arguments)
     for mapping in mappings:
         try:
             found[mapping] = operations(mapping)

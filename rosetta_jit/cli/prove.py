@@ -7,9 +7,9 @@ import json
 import sys
 from dataclasses import asdict
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_mappings, add_parameters, encoding_of, parameters_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_mappings, add_parameters, encoding_of, mappings_of, parameters_of
 
 if TYPE_CHECKING:
     from rosetta_jit.explain.proof import Judge, MappingProof
@@ -36,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
         print("error: --second needs z3, which is not installed: pip install 'rosetta-jit[prove]'", file=sys.stderr)
         return 1
     judge, proven = _judge() if arguments.second else None, True
-    for mapping in cast("list[str]", arguments.mappings):
+    for mapping in mappings_of(arguments):
         try:
             found = proof(mapping, encoding=encoding_of(arguments), parameters=parameters_of(arguments), judge=judge)
         except ReportError as error:

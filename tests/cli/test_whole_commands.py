@@ -103,3 +103,14 @@ def test_texts_that_are_no_utf_8_are_written_as_they_came(environment, tmp_path)
     arguments = [sys.executable, "-m", "rosetta_jit", "decode", "a.mapping", "a.bin", "--json"]
     ran = subprocess.run(arguments, env={**environment, "PYTHONUTF8": "1"}, cwd=tmp_path, capture_output=True, check=False)
     assert (ran.returncode, ran.stdout) == (0, b'{"s": "\xff"}\n'), ran.stderr
+
+
+def test_a_folder_stands_for_its_mappings(command, tmp_path):
+    for name in ("b", "inner/a"):
+        path = tmp_path / "all" / f"{name}.mapping"
+        path.parent.mkdir(exist_ok=True, parents=True)
+        path.write_text("data-holder: no.Such\n")
+    shown = command("check", "--json", "all", expected=1).stdout.splitlines()
+    assert [json.loads(line)["mapping"] for line in shown] == ["all/b.mapping", "all/inner/a.mapping"]
+    (tmp_path / "none").mkdir()
+    assert 'there is no mapping "none"' in command("check", "none", expected=1).stderr
