@@ -234,9 +234,7 @@ def test_numbers_are_read_and_written_without_allocating(tmp_path):
         read = f'(consed "{unit}" (lambda () ({unit}:decode *octets-{number}* :codec *codec-{number}* :before *object-{number}*)))'
         write = f'(consed "{unit}" (lambda () ({unit}:encode-into *octets-{number}* *object-{number}* :codec *codec-{number}*)))'
         forms += [LOOP.replace("%s", read), LOOP.replace("%s", write)]
-    *others, varints = lisp.run(*forms, cwd=tmp_path).splitlines()
-    assert others == [f"unit-{number} 0" for number in (0, 0, 1, 1, 2)]
-    assert int(varints.split()[1]) <= 16, "an integer of more than 62 bits may be boxed where a varint is written"
+    assert lisp.run(*forms, cwd=tmp_path).splitlines() == [f"unit-{number} 0" for number in (0, 0, 1, 1, 2, 2)]
 
 
 @lisp.needs_sbcl

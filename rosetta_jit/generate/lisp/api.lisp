@@ -57,7 +57,7 @@ Signals DECODE-ERROR, and changes nothing then. What arrays hold that several wi
   $tell)
 
 (defun size-of-rows (codec)
-  (or ($begin (attempts codec #'size-kernel (no-octets) (ash 1 60) 1))
+  (or ($begin (attempts codec #'size-kernel (load-time-value (no-octets) t) (ash 1 60) 1))
       (signal-failure codec *size-sites* nil)))
 
 (defun encode-rows (codec data)

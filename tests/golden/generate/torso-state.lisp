@@ -285,7 +285,7 @@ Signals DECODE-ERROR. With a codec and an object that are used again, numbers ar
       (error 'encode-error :kind :range :path "" :detail (remove #\Newline (princ-to-string condition))))))
 
 (defun size-of-rows (codec)
-  (or (with-floats (attempts codec #'size-kernel (no-octets) (ash 1 60) 1))
+  (or (with-floats (attempts codec #'size-kernel (load-time-value (no-octets) t) (ash 1 60) 1))
       (signal-failure codec *size-sites* nil)))
 
 (defun encode-rows (codec data)
