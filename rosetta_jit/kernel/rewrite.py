@@ -14,6 +14,9 @@ from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.walk import NESTED, blocks_of, expressions_of, flat, operands, parts_of, statements, subexpressions
 from rosetta_jit.startup.dataclass import replace
 
+OF_MEMORY = frozenset((nodes.Load, nodes.Get, nodes.Used, nodes.IsText, nodes.Nearest))
+"""The kinds of expressions that look at the message or the holder."""
+
 NO_NAMES: Mapping[str, str] = MappingProxyType({})
 
 
@@ -184,7 +187,7 @@ def names_read(block: nodes.Block) -> set[str]:
 
 def reads_memory(expr: nodes.Expr) -> bool:
     """Whether an expression looks at the message or the holder."""
-    return any(isinstance(part, nodes.Load | nodes.Get | nodes.Used | nodes.IsText | nodes.Nearest) for part in subexpressions(expr))
+    return any(type(part) in OF_MEMORY for part in subexpressions(expr))
 
 
 def ends(block: nodes.Block) -> bool:

@@ -9,7 +9,14 @@ from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.limits import MAX_BLOCKS, MAX_EXPRESSION
 from rosetta_jit.kernel.state import INDEX_WORDS
 from rosetta_jit.kernel.terms import BEGIN, END, ROW
-from rosetta_jit.kernel.walk import bound_names, expressions_of, operands, parts_of, statements, subexpressions
+from rosetta_jit.kernel.walk import bound_names, expressions_of, operands, statements
+
+OF_A_BODY = frozenset[type[nodes.Stmt | nodes.Expr]](
+    (nodes.Return, nodes.Reserve, nodes.Advance, nodes.HostCall, nodes.Used, nodes.HostValue, nodes.Register)
+)
+"""Kinds of statements and expressions that a routine has none of: its end, rows of lanes, what the host tells or does, and registers."""
+
+TOO_DEEP = "an expression is nested too deep"
 
 
 def shape_error(kernel: ir.Kernel) -> str | None:
@@ -27,17 +34,19 @@ def shape_error(kernel: ir.Kernel) -> str | None:
         if problem is not None:
             return f"routine {routine.name}: {problem}"
     inner = [pair for body in kernel.bodies for pair in statements(body)]
-    problem = _registers_error(kernel.registers, [stmt for stmt, _ in inner])
+    every = [stmt for stmt, _ in inner]
+    parts = _parts(every)
+    if parts is None:
+        return TOO_DEEP
+    problem = _registers_error(kernel.registers, every, parts)
     if problem is not None:
         return problem
     return _statements_error(inner, (BEGIN.name, END.name, ROW.name), len(kernel.sites), kernel.routines)
 
 
-def _registers_error(count: int, every: list[nodes.Stmt]) -> str | None:
+def _registers_error(count: int, every: list[nodes.Stmt], parts: list[nodes.Expr]) -> str | None:
     changed = [[number for number, _ in stmt.registers] for stmt in every if isinstance(stmt, nodes.Return)]
-    named = {part.number for part in parts_of(every) if isinstance(part, nodes.Register)} | {
-        number for numbers in changed for number in numbers
-    }
+    named = {part.number for part in parts if isinstance(part, nodes.Register)} | {number for numbers in changed for number in numbers}
     unknown = [number for number in named if not 0 <= number < count]
     if unknown:
         return f"no register {unknown[0]}"
@@ -50,10 +59,10 @@ def _routine_error(routine: ir.Routine, before: tuple[ir.Routine, ...]) -> str |
     if any(result.type not in ("i64", "u64") for result in routine.results):
         return "a result that is no integer of 64 bits"
     inside = list(statements(routine.body))
-    if any(
-        isinstance(stmt, nodes.Return | nodes.Reserve | nodes.Advance | nodes.HostCall) or any(map(_of_a_body, expressions_of(stmt)))
-        for stmt, _ in inside
-    ):
+    parts = _parts([stmt for stmt, _ in inside])
+    if parts is None:
+        return TOO_DEEP
+    if not OF_A_BODY.isdisjoint([type(stmt) for stmt, _ in inside]) or not OF_A_BODY.isdisjoint(map(type, parts)):
         return "something that only a body can do"
     names = BEGIN.name, END.name, *(parameter.name for parameter in routine.parameters)
     if len(set(names)) < len(names):
@@ -61,16 +70,9 @@ def _routine_error(routine: ir.Routine, before: tuple[ir.Routine, ...]) -> str |
     return _statements_error(inside, names, len(routine.sites), before)
 
 
-def _of_a_body(expr: nodes.Expr) -> bool:
-    """Whether an expression asks for a used length, for what the host tells, or for a register."""
-    return any(isinstance(part, nodes.Used | nodes.HostValue | nodes.Register) for part in subexpressions(expr))
-
-
 def _statements_error(
     inside: list[tuple[nodes.Stmt, int]], names: tuple[str, ...], sites: int, routines: tuple[ir.Routine, ...]
 ) -> str | None:
-    if _are_deep([stmt for stmt, _ in inside]):
-        return "an expression is nested too deep"
     bound = set(names)
     known = {routine.name: routine for routine in routines}
     for stmt, depth in inside:
@@ -109,11 +111,12 @@ def _failing_error(named: tuple[int, ...], indices: tuple[nodes.Expr, ...], site
     return "too many indices" if len(indices) > INDEX_WORDS else None
 
 
-def _are_deep(stmts: list[nodes.Stmt]) -> bool:
-    """Whether an expression of some statements is nested too deep: all are looked through together, level by level."""
-    level = [expr for stmt in stmts for expr in expressions_of(stmt)]
+def _parts(stmts: list[nodes.Stmt]) -> list[nodes.Expr] | None:
+    """All expressions of some statements, and all inside them, level by level; None where one is nested too deep."""
+    level, found = [expr for stmt in stmts for expr in expressions_of(stmt)], list[nodes.Expr]()
     for _ in range(1 + MAX_EXPRESSION):
         if not level:
-            return False
+            return found
+        found += level
         level = [part for expr in level for part in operands(expr)]
-    return True
+    return None

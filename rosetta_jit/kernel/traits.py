@@ -32,7 +32,7 @@ LARGE_WITHOUT_RULES = 500
 
 def is_large(kernel: ir.Kernel, limit: int = LARGE) -> bool:
     """Whether a kernel has so many statements that it is not worth while to improve it again and again."""
-    return _are_more(every_statement(kernel), limit)
+    return _are_more((pair for body in kernel.bodies for pair in statements(body)), limit)
 
 
 class Counted(NamedTuple):

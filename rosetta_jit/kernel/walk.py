@@ -102,9 +102,9 @@ _OPERANDS: dict[type[nodes.Expr], Callable[[Any], tuple[nodes.Expr, ...]]] = {
 }
 
 
-def every_statement(kernel: ir.Kernel) -> Iterator[nodes.Stmt]:
+def every_statement(kernel: ir.Kernel) -> list[nodes.Stmt]:
     """The statements of all bodies of a kernel."""
-    return (stmt for body in kernel.bodies for stmt, _ in statements(body))
+    return [stmt for body in kernel.bodies for stmt in flat(body)]
 
 
 def extents_of(call: nodes.HostCall) -> tuple[nodes.Extent, ...]:

@@ -135,19 +135,19 @@ class Outline:
 
     def _expression(self, expr: nodes.Expr) -> None:
         match expr:
-            case nodes.Local(type_, name):
-                is_fixed = name in FIXED
-                self._shape += (nodes.Local, type_, name if is_fixed else "")
+            case nodes.Local():
+                is_fixed = expr.name in FIXED
+                self._shape += (nodes.Local, expr.type, expr.name if is_fixed else "")
                 if not is_fixed:
-                    self.slots.append(_slot(("read", name, 0, 0, _ALONE, type_)))
-            case nodes.Const(type_, value):
+                    self.slots.append(_slot(("read", expr.name, 0, 0, _ALONE, expr.type)))
+            case nodes.Const():
                 is_integer = is_number(expr)
-                self._shape += (nodes.Const, type_, "" if is_integer else repr(value))
+                self._shape += (nodes.Const, expr.type, "" if is_integer else repr(expr.value))
                 if is_integer:
-                    self.slots.append(_slot(("number", "", int(value), 0, _ALONE, "i64")))
-            case nodes.Used(lane) | nodes.Capacity(lane):
+                    self.slots.append(_slot(("number", "", int(expr.value), 0, _ALONE, "i64")))
+            case nodes.Used() | nodes.Capacity():
                 self._shape.append(type(expr))
-                self._lane(lane)
+                self._lane(expr.lane)
             case _:
                 self._shape.append(type(expr))
                 self._parts(expr)

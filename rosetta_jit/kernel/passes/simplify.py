@@ -8,7 +8,7 @@ from itertools import repeat
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.passes.fold import FALSE, TRUE, folded
-from rosetta_jit.kernel.rewrite import ends, names_read, with_blocks, with_bodies, with_expressions, with_operands
+from rosetta_jit.kernel.rewrite import OF_MEMORY, ends, names_read, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, index, split, type_of
 from rosetta_jit.kernel.walk import NESTED, flat, parts_of, subexpressions
 from rosetta_jit.startup.dataclass import dataclass, field
@@ -36,17 +36,16 @@ class _Names:
         self.news.append(expr)
         self.kinds.add(type(expr))
 
-    def known(self, expr: nodes.Expr) -> nodes.Expr:
-        """What an expression is known to be, or itself. Of most nothing is known, which their kind tells in less time than their hash."""
-        return self.computed.get(expr, expr) if type(expr) in self.kinds else expr
-
     def simple(self, expr: nodes.Expr) -> nodes.Expr:
-        """The simplest form of an expression."""
-        if isinstance(expr, nodes.Const):
-            return expr
-        if isinstance(expr, nodes.Local):
-            return self.known(self.values.get(expr.name, expr))
-        return self.known(folded(with_operands(expr, self.simple)))
+        """The simplest form of an expression. Of most nothing is known, which their kind tells in less time than their hash."""
+        match expr:
+            case nodes.Const():
+                return expr
+            case nodes.Local():
+                found = self.values.get(expr.name, expr)
+            case _:
+                found = folded(with_operands(expr, self.simple))
+        return self.computed.get(found, found) if type(found) in self.kinds else found
 
 
 def simplify(kernel: ir.Kernel) -> ir.Kernel:
@@ -153,15 +152,13 @@ def _branch(block: nodes.Block, names: _Names, known: tuple[nodes.Expr, nodes.Ex
 def _is_settled(expr: nodes.Expr, names: _Names) -> bool:
     """Whether an expression keeps its value, and another that is equal as text has the same: 0.0 and -0.0 are equal, not the same."""
     for part in subexpressions(expr):
-        match part:
-            case nodes.Load() | nodes.Get() | nodes.Used() | nodes.IsText() | nodes.Nearest():
-                return False
-            case nodes.Local(_, name) if name not in names.fixed:
-                return False
-            case nodes.Const("f32" | "f64", 0):
-                return False
-            case _:
-                pass
+        kind = type(part)
+        if kind in OF_MEMORY:
+            return False
+        if isinstance(part, nodes.Local) and part.name not in names.fixed:
+            return False
+        if isinstance(part, nodes.Const) and not part.value and part.type in FLOATS:
+            return False
     return True
 
 

@@ -55,9 +55,8 @@ def bind(scope: Scope, routine: Routine, call: Call) -> None:
     for required in routine.requires:
         oblige(inner, condition(inner, required), claims.DEMANDS)
     moves = any(isinstance(value, Linear) and from_begin(value) for _, value in (inner.locals[p.name] for p in routine.parameters))
-    named = {name for ensured in routine.ensures for name in locals_in(ensured)}
     for result in routine.results:
-        is_position = moves and result.type == "i64" and result.name in named
+        is_position = moves and result.type == "i64" and any(result.name in locals_in(ensured) for ensured in routine.ensures)
         inner.locals[result.name] = result.type, variable(scope, result.type, relative=is_position)
     for ensured in routine.ensures:
         scope.facts.assume(condition(inner, ensured))

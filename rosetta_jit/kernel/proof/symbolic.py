@@ -118,27 +118,30 @@ def unknown(scope: Scope, type_: nodes.Scalar) -> Value:
 
 
 def evaluate(scope: Scope, expr: nodes.Expr) -> Typed:
-    """Type and value of an expression; raises UnprovenError where an obligation in it cannot be shown."""
+    """Type and value of an expression; raises UnprovenError where an obligation in it cannot be shown.
+
+    Patterns of the kinds that kernels are full of have no parts: to take an expression apart by them takes twice as long.
+    """
     match expr:
-        case nodes.Local(type_, name):
-            found = scope.locals.get(name)
-            if found is None or found[0] != type_:
-                raise UnprovenError(f"{name} is not visible here" if found is None else f"{name} is no {type_}")
+        case nodes.Local():
+            found = scope.locals.get(expr.name)
+            if found is None or found[0] != expr.type:
+                raise UnprovenError(f"{expr.name} is not visible here" if found is None else f"{expr.name} is no {expr.type}")
             return found
-        case nodes.Const(type_, value):
-            return type_, _constant(type_, value)
-        case nodes.Binary(op, left, right):
-            return _binary(scope, op, evaluate(scope, left), evaluate(scope, right))
-        case nodes.Load(type_, at, _):
-            check_wire(scope, integer(scope, at), Linear(nodes.WIDTH[type_]))
-            return type_, unknown(scope, type_)
-        case nodes.Get(type_, place):
-            check_field(scope, place, type_)
-            return type_, unknown(scope, type_)
+        case nodes.Const():
+            return expr.type, _constant(expr.type, expr.value)
+        case nodes.Binary():
+            return _binary(scope, expr.op, evaluate(scope, expr.left), evaluate(scope, expr.right))
+        case nodes.Compare():
+            return "bool", _compare(expr.op, evaluate(scope, expr.left), evaluate(scope, expr.right))
+        case nodes.Get():
+            check_field(scope, expr.place, expr.type)
+            return expr.type, unknown(scope, expr.type)
+        case nodes.Load():
+            check_wire(scope, integer(scope, expr.at), Linear(nodes.WIDTH[expr.type]))
+            return expr.type, unknown(scope, expr.type)
         case nodes.Convert() | nodes.Bits():
             return _converted(scope, expr)
-        case nodes.Compare(op, left, right):
-            return "bool", _compare(op, evaluate(scope, left), evaluate(scope, right))
         case nodes.Used(lane) | nodes.Capacity(lane):
             check_lane(scope, lane)
             return "i64", (scope.used if isinstance(expr, nodes.Used) else scope.capacity)[lane]

@@ -168,6 +168,12 @@ def nest(depth):
 
 
 CASES.add("a deep expression", "an expression is nested too deep", (Let("x", tower(101)),), (Let("x", tower(100)),))
+routine_case(
+    "a deep expression in a routine",
+    "routine skip: an expression is nested too deep",
+    (skip(body=(Let("x", tower(101)), need(AT, 1), Let("next", add(AT, 1)))),),
+    (skip(body=(Let("x", tower(100)), need(AT, 1), Let("next", add(AT, 1)))),),
+)
 CASES.add("deep blocks", "blocks are nested too deep", nest(101), nest(100))
 CASES.add("a negative stride", "a lane whose rows have less than no bytes", (), strides=(8, -8))
 CASES.accept("a negative stride", (), strides=(8, 0))
