@@ -11,6 +11,7 @@ from rosetta_jit.generate.c.source import run
 from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.always import directs
 from rosetta_jit.generate.cpp.lists import Listed, row_name, viewed
+from rosetta_jit.generate.cpp.lists_within import ListWithin, lists_within
 from rosetta_jit.generate.cpp.read_in_place import addressed_lanes, is_local
 from rosetta_jit.generate.cpp.spots import Direct
 from rosetta_jit.generate.cpp.walk import Walk
@@ -35,11 +36,20 @@ def addressed_in(unit: Unit, lanes: Lanes, manners: Manners) -> frozenset[int]:
     return addressed_lanes(unit, frozenset(each.lane for each in directs_of(Walk(unit, lanes, manners, "encode"), "source")))
 
 
+def within_in(unit: Unit, lanes: Lanes, manners: Manners) -> list[ListWithin]:
+    """The lists within lists that an encoder reads where they are."""
+    return lists_within(Walk(unit, lanes, manners, "encode", addressed=addressed_in(unit, lanes, manners)))
+
+
+def reader(unit: Unit, lanes: Lanes, manners: Manners) -> Walk:
+    """The walk of an encoder, which knows what is read where the object has it."""
+    within = frozenset(each.listed.direct.lane for each in within_in(unit, lanes, manners))
+    return Walk(unit, lanes, manners, "encode", addressed=addressed_in(unit, lanes, manners), within=within)
+
+
 def viewed_in(unit: Unit, lanes: Lanes, manners: Manners, at: str = "source") -> list[Listed]:
     """The lists of ``at``, an expression for the object, that an encoder views; none where rows stay."""
-    if wires_of(unit):
-        return []
-    return viewed(Walk(unit, lanes, manners, "encode", addressed=addressed_in(unit, lanes, manners)), at)
+    return [] if wires_of(unit) else viewed(reader(unit, lanes, manners), at)
 
 
 def writes_apart(unit: Unit) -> bool:
@@ -78,7 +88,7 @@ def unset(attempt: Attempt) -> str:
 
 def _copied(parts: Parts, directs: list[Direct], walk: Walk) -> list[int]:
     """The lanes whose rows an encoder puts together in the codec's memory."""
-    shown = {each.lane for each in directs} | walk.addressed
+    shown = {each.lane for each in directs} | walk.addressed | walk.within
     return [lane for lane in range(1, parts.lanes.own) if lane not in shown]
 
 
@@ -95,7 +105,7 @@ def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -
         members.append(("codec::state *", "state"))
         initial.append("state(&owner.kept)")
     views = {each.direct.lane: _view(walk, each) for each in viewed_in(unit, lanes, walk.manners)}
-    shown = {lane: f"shown<{lanes.type(lane)}>" for lane in range(1, lanes.own) if lane not in copied} | views
+    shown = {lane: f"shown<{lanes.type(lane)}>" for lane in range(1, lanes.own) if lane not in {*copied, *walk.within}} | views
     lines = [
         "/* What a message is written from: elements where an object has them, and those that are put together in the codec's memory. */",
         f"struct {unit.name}_source {{",

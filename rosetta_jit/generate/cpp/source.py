@@ -21,13 +21,14 @@ from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
 from rosetta_jit.generate.cpp.packed import packed_structs
 from rosetta_jit.generate.cpp.read_in_place import is_local
 from rosetta_jit.generate.cpp.reading import (
-    addressed_in,
     container_type,
     directs_of,
     encoder,
+    reader,
     source_struct,
     unset,
     viewed_in,
+    within_in,
     writes_apart,
 )
 from rosetta_jit.generate.cpp.set_in_place import straight_numbers
@@ -71,6 +72,7 @@ def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce, decoder: K
     directs = {name: directs_of(walk, at) for (name, walk), at in zip(walks.items(), ("target", "source"), strict=True)}
     containers = {each.lane: each.spot.at for each in directs_of(walks["decode"], HOLDER)}
     views, filled = viewed_in(unit, lanes, manners), _taken(walks["decode"], "target")
+    within = [each.listed for each in within_in(unit, lanes, manners)]
     walks["decode"].taken = frozenset(each.direct.lane for each in filled)
     directs["decode"] += [each.direct for each in filled]
     directs["encode"] += [each.direct for each in views]
@@ -86,7 +88,7 @@ def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce, decoder: K
         includes=_includes(called),
         structs="\n\n".join(_struct(unit, parts, each, walks["decode"].taken) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
-        holder=_row_structs(unit, parts, manners, [*views, *filled])
+        holder=_row_structs(unit, parts, manners, within, [*views, *filled])
         + ("" if decoder is None else packed_structs(walks["decode"], decoder, opened))
         + _holder(unit, parts, given, containers, listed, {lane: kind for each in opened for lane, kind in each.kinds.items()})
         + (source_struct(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
@@ -117,11 +119,12 @@ def _taken(walk: Walk, at: str) -> list[Listed]:
     return [] if wires_of(walk.unit) or "borrow" not in walk.unit.kernels else taken(walk, at)
 
 
-def _row_structs(unit: Unit, parts: Parts, manners: Manners, lists: list[Listed]) -> str:
-    """What is known of the elements of lists."""
-    walk = Walk(unit, parts.lanes, manners, "encode", addressed=addressed_in(unit, parts.lanes, manners))
+def _row_structs(unit: Unit, parts: Parts, manners: Manners, within: list[Listed], lists: list[Listed]) -> str:
+    """What is known of the elements of lists: of those ``within`` others, first of all, how to reach them."""
+    walk = reader(unit, parts.lanes, manners)
     each_once = {each.direct.lane: each for each in lists}
-    return "\n".join(row_struct(walk, each) for _, each in sorted(each_once.items()))
+    texts = [row_struct(walk, each, container_type(each.direct.spot.at)) for each in within]
+    return "\n".join([*texts, *(row_struct(walk, each) for _, each in sorted(each_once.items()))])
 
 
 def _includes(called: set[str]) -> str:
@@ -193,7 +196,9 @@ def _walks(unit: Unit, parts: Parts, walks: dict[str, Walk], directs: dict[str, 
         if not roles:
             continue
         walk.direct = frozenset(each.lane for each in directs[name]) - walk.taken
-        walk.addressed = addressed_in(unit, parts.lanes, walk.manners) if name == "encode" else frozenset()
+        if name == "encode":
+            known = reader(unit, parts.lanes, walk.manners)
+            walk.addressed, walk.within = known.addressed, known.within
         inner = [_walk(unit, parts, walk, lane, Ref(struct)) for lane, struct in unit.layout.recursive]
         walk.straight = frozenset(row for row, _ in straight_numbers(walk).values())
         whole = [_walk(unit, parts, walk, 0, Ref(unit.type), role) for role in roles]

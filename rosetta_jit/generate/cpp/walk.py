@@ -51,6 +51,7 @@ class Walk:
     direction: Direction
     direct: frozenset[int] = frozenset()
     addressed: frozenset[int] = frozenset()
+    within: frozenset[int] = frozenset()
     taken: frozenset[int] = frozenset()
     straight: frozenset[str] = frozenset()
     opened: frozenset[int] = frozenset()
@@ -182,6 +183,9 @@ class Walk:
         """Numbers, a text, bytes; or a list of anything else, element by element."""
         lane = self.lanes.rows(slot.lane)
         if slot.lane in self.direct or (self.direction == "decode" and slot.lane in self.opened):
+            return
+        if slot.lane in self.within:
+            self.lines("list within", spot, row=row)
             return
         if not isinstance(type_, Array) or isinstance(self.unit.layout.lanes[slot.lane].element, Number):
             if slot.lane in self.addressed:

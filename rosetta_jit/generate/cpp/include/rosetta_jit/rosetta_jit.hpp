@@ -1518,6 +1518,36 @@ template <class Row, class Span, class Container> void point_span(Span &span, co
     span.count = count_of(from);
 }
 
+/* The type of an element of a container. */
+template <class Container> using element_type = std::remove_cv_t<std::remove_reference_t<decltype(*std::begin(std::declval<const Container &>()))>>;
+
+/* Whether a pointer says where the elements of a list lie, one behind the other: that of some lists is to pointers. */
+template <class Container, class = void> struct lie_in_order : std::false_type {};
+template <class Container>
+struct lie_in_order<Container, std::enable_if_t<has_data<const Container>::value>>
+    : std::is_same<std::remove_cv_t<std::remove_reference_t<decltype(*data_of(std::declval<const Container &>()))>>, element_type<Container>> {};
+
+/* The elements of a list, by their index. */
+template <class Container> ROSETTA_JIT_INLINE auto elements_of(const Container &source) noexcept
+{
+    if constexpr (lie_in_order<Container>::value) {
+        return data_of(source);
+    } else {
+        return std::begin(source);
+    }
+}
+
+/* A list by an address: that of its elements, where they lie so, else its own. */
+template <class Span, class Container> ROSETTA_JIT_INLINE void point_list(Span &span, const Container &from)
+{
+    const void *at = std::addressof(from);
+    if constexpr (lie_in_order<Container>::value) {
+        at = elements_of(from);
+    }
+    span.start = static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(at));
+    span.count = count_of(from);
+}
+
 /* To write a message: rows that are the elements of a container; or anywhere in memory, by their addresses. */
 template <class Row> struct shown {
     Row *rows = nullptr;
@@ -1549,20 +1579,32 @@ template <class Element> void copy_elements(Element *target, const unsigned char
     }
 }
 
-/* The type of an element of a container. */
-template <class Container> using element_type = std::remove_cv_t<std::remove_reference_t<decltype(*std::begin(std::declval<const Container &>()))>>;
-
 /* To write a message: rows that are made of the elements of a container when they are read. `Rows` says how. */
 template <class Row, class Container, class Rows> struct view {
-    static constexpr bool LIES = has_data<const Container>::value && Rows::template lies<element_type<Container>>();
-    decltype(std::begin(std::declval<const Container &>())) elements = {};
+    static constexpr bool IN_ORDER = lie_in_order<Container>::value;
+    static constexpr bool LIES = IN_ORDER && Rows::template lies<element_type<Container>>();
+    using Elements = decltype(elements_of(std::declval<const Container &>()));
+    Elements elements = {};
     std::int64_t used = 0;
     std::int64_t capacity = 0;
 
     void read(const Container &from)
     {
-        elements = std::begin(from);
+        elements = elements_of(from);
         capacity = used = count_of(from);
+    }
+
+    /* The list that `point_list` has put there. */
+    ROSETTA_JIT_INLINE static view at(std::int64_t address)
+    {
+        view found;
+        const std::uintptr_t start = static_cast<std::uintptr_t>(address);
+        if constexpr (IN_ORDER) {
+            found.elements = reinterpret_cast<Elements>(start);
+        } else {
+            found.elements = std::begin(*reinterpret_cast<const Container *>(start));
+        }
+        return found;
     }
 
     ROSETTA_JIT_INLINE Row operator[](std::int64_t index) const { return Rows::of(elements[static_cast<std::ptrdiff_t>(index)]); }
@@ -1588,6 +1630,18 @@ template <class View> ROSETTA_JIT_INLINE void copy_rows(unsigned char *target, s
             size -= part;
             offset = 0;
             row++;
+        }
+    }
+}
+
+/* Bools from one on, as bytes that are 0 or 1. */
+template <class View> ROSETTA_JIT_INLINE void copy_flags_of(unsigned char *target, const View &from, std::int64_t row, std::int64_t count)
+{
+    if constexpr (View::IN_ORDER && sizeof(*from.elements) == 1) {
+        copy_flags(target, from.elements + row, count);
+    } else {
+        for (std::int64_t done = 0; done < count; done++) {
+            target[done] = from[row + done] != 0 ? 1 : 0;
         }
     }
 }
@@ -1674,16 +1728,6 @@ template <class Row, class Container> ROSETTA_JIT_INLINE const Row *shown_rows(c
     static_assert(same_numbers<std::remove_cv_t<std::remove_reference_t<decltype(*data_of(source))>>, Row>,
                   ROSETTA_JIT_OTHER_ELEMENTS);
     return reinterpret_cast<const Row *>(data_of(source));
-}
-
-/* The elements of a list, by their index. */
-template <class Container> ROSETTA_JIT_INLINE auto elements_of(const Container &source) noexcept
-{
-    if constexpr (has_data<const Container>::value) {
-        return data_of(source);
-    } else {
-        return std::begin(source);
-    }
 }
 
 /* Where numbers are, to copy their bytes. */
