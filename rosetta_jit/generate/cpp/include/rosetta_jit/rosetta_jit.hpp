@@ -498,6 +498,9 @@ inline void copy_few(void *target, std::int64_t to, const void *source, std::int
     unsigned char *const at = static_cast<unsigned char *>(target) + to;
     const unsigned char *const begin = static_cast<const unsigned char *>(source) + from;
     const unsigned char *const end = begin + size;
+    if (size <= 0) {
+        return;
+    }
     if (size > 32) {
         std::memcpy(at, begin, static_cast<std::size_t>(size));
     } else if (size >= 16) {
@@ -518,7 +521,7 @@ inline void copy_few(void *target, std::int64_t to, const void *source, std::int
         std::memcpy(&last, end - 4, 4);
         std::memcpy(at, &first, 4);
         std::memcpy(at + size - 4, &last, 4);
-    } else if (size > 0) {
+    } else {
         const unsigned char first = begin[0], middle = begin[size / 2], last = end[-1];
         at[0] = first;
         at[size / 2] = middle;
@@ -615,6 +618,9 @@ inline pair pair_at(const unsigned char *bytes) noexcept
 inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) noexcept
 {
     const unsigned char *const text = static_cast<const unsigned char *>(memory) + start;
+    if (size <= 0) {
+        return true;
+    }
     if (size >= 16) {
         pair any = pair_at(text) | pair_at(text + size - 16);
         if (size > 32) {
@@ -639,7 +645,7 @@ inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) 
         std::memcpy(&last, text + size - 4, sizeof last);
         return ((first | last) & 0x80808080u) == 0;
     }
-    return size <= 0 || (text[0] | text[size / 2] | text[size - 1]) < 128;
+    return (text[0] | text[size / 2] | text[size - 1]) < 128;
 }
 
 /* The number of the highest bit that is set; of 0 and 1 it is 0. */
@@ -1352,7 +1358,9 @@ ROSETTA_JIT_INLINE void assign(std::string &target, const unsigned char *bytes, 
 {
     const char *const first = reinterpret_cast<const char *>(bytes);
     const std::size_t size = static_cast<std::size_t>(count);
-    if (target.size() == size) {
+    if (size == 0) { /* as frames often are not named */
+        target.clear();
+    } else if (target.size() == size) {
         copy_few(&target[0], 0, bytes, 0, count);
     } else if (HAS_SHORT_TEXTS && target.capacity() < SHORT_TEXT) {
         if (size < SHORT_TEXT) {
