@@ -6,7 +6,8 @@ round, or as a class has them as others. Each row of them must be found by such 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
 from string import Template
 
 from rosetta_jit.generate.c.rows import path_to
@@ -18,7 +19,6 @@ from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Unit, kind_of, wires_of
 from rosetta_jit.kernel.nodes import Assign, Block, Copy, Expr, For, Get, Let, Place, Stmt, Var, While
-from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.layout import Number, Row, Slot, Span
 from rosetta_jit.model.types import Array, Ref, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass, replace
@@ -35,23 +35,57 @@ class ListWithin:
     within: Within
 
 
-def lists_within(walk: Walk) -> list[ListWithin]:
-    """Those that an encoder reads; ``walk`` knows the lanes whose texts it takes by their addresses."""
-    if wires_of(walk.unit) or not {"encode", "size"} & set(map(kind_of, walk.unit.kernels)):
-        return []
-    blocks, found = [*_blocks(walk.unit)], list[ListWithin]()
-    for each, lane, offset in _within(walk, Ref(walk.unit.type), walk.unit.layout.root, Spot(HOLDER), 0):
+@dataclass(frozen=True, slots=True)
+class _Uses:
+    """What kernels do that read objects: all that names a lane, by the lane; what locals are, by their names, which may change.
+
+    ``in_rounds`` are the lanes that a function reads one number after another.
+    """
+
+    by_lane: Mapping[int, list[Stmt | Expr]]
+    locals: Mapping[str, list[Expr]]
+    changed: frozenset[str]
+    in_rounds: frozenset[int]
+
+
+def lists_within(walk: Walk) -> dict[int, ListWithin]:
+    """Those that an encoder reads, by their lanes; ``walk`` knows the lanes whose texts it takes by their addresses."""
+    candidates = [] if wires_of(walk.unit) else [*_within(walk, Ref(walk.unit.type), walk.unit.layout.root, Spot(HOLDER), 0)]
+    if not candidates or not {"encode", "size"} & set(map(kind_of, walk.unit.kernels)):
+        return {}
+    uses, found = _uses(_blocks(walk.unit)), dict[int, ListWithin]()
+    for each, lane, offset in candidates:
         slot = walk.unit.layout.lanes[each.direct.lane].element
-        known = replace(walk, within=frozenset(inner.listed.direct.lane for inner in found))
-        if is_readable(known, each.element, slot) and (within := _found_by(walk, each, lane, offset, blocks)) is not None:
-            found.append(ListWithin(each, within))
+        if (
+            is_readable(replace(walk, within=found), each.element, slot)
+            and (within := _found_by(walk, each, lane, offset, uses)) is not None
+        ):
+            found[each.direct.lane] = ListWithin(each, within)
     return found
 
 
 def _blocks(unit: Unit) -> Iterator[Block]:
-    """What kernels do that read objects, as it is printed."""
+    """The blocks of these kernels, as they are printed."""
     for kernel in (undamaged_kernel(kernel) for role, kernel in unit.kernels.items() if kind_of(role) in ("encode", "size")):
         yield from (*kernel.bodies, *(routine.body for routine in kernel.routines))
+
+
+def _uses(blocks: Iterable[Block]) -> _Uses:
+    by_lane, known = defaultdict[int, list[Stmt | Expr]](list), defaultdict[str, list[Expr]](list)
+    changed, in_rounds = set[str](), set[int]()
+    for node in (node for block in blocks for node in nodes_of(block)):
+        for lane in lanes_of(node):
+            by_lane[lane].append(node)
+        match node:
+            case Let(name, value):
+                known[name].append(value)
+            case Var(name) | Assign(name) | For(name):
+                changed.add(name)
+            case While() if rounds_of(node) is not None:
+                in_rounds |= {lane for inner in nodes_of((node,)) for lane in lanes_of(inner)}
+            case _:
+                pass
+    return _Uses(by_lane, known, frozenset(changed), frozenset(in_rounds))
 
 
 def _within(walk: Walk, type_: Type, slot: Slot, spot: Spot, lane: int) -> Iterator[tuple[Listed, int, int]]:
@@ -64,49 +98,30 @@ def _within(walk: Walk, type_: Type, slot: Slot, spot: Spot, lane: int) -> Itera
                     yield from _within(walk, each.type, member.slot, walk.member_of(spot.at, name), lane)
         case Array(element), Span(offset, own) if walk.unit.layout.lanes[own].links is None:
             at, inner = walk.text("direct", spot), walk.unit.layout.lanes[own].element
-            if not isinstance(inner, Number):
-                yield from _within(walk, element, inner, Spot(ELEMENT.substitute(list=at)), own)
             is_number = isinstance(inner, Number)
+            if not is_number:
+                yield from _within(walk, element, inner, Spot(ELEMENT.substitute(list=at)), own)
             if lane and own not in walk.addressed and (not is_number or walk.text("laid out", spot)):
                 yield Listed(Direct(own, "", Spot(at)), element), lane, offset
         case _:
             return
 
 
-def _found_by(walk: Walk, listed: Listed, lane: int, offset: int, blocks: Iterable[Block]) -> Within | None:
-    """How kernels find the elements of a list; None where they use them in another way."""
+def _found_by(walk: Walk, listed: Listed, lane: int, offset: int, uses: _Uses) -> Within | None:
+    """How kernels find the elements of a list; None where they do more than to read fields of its rows and copy rows to the message."""
     own = listed.direct.lane
-    within = Within(f"{row_name(walk.lanes, own)}::list", lane, offset, frozenset())
-    starts, others = set[str](), set[str]()
-    for stmt in (stmt for block in blocks for stmt, _ in statements(block)):
-        match stmt:
-            case Let(name, value) if within.is_start(value):
-                starts.add(name)
-            case Let(name) | Var(name) | Assign(name) | For(name):
-                others.add(name)
-            case _:
-                pass
-    within = replace(within, starts=frozenset(starts - others))
-    element = walk.lanes.all[own].element
-    return within if all(_is_found(within, own, block, lambda get: _is_member(get, element)) for block in blocks) else None
-
-
-def _is_member(get: Get, element: object) -> bool:
-    return path_to(element, get.place.offset, get.type) is not None  # type: ignore[arg-type]
-
-
-def _is_found(within: Within, lane: int, block: Block, is_member: Callable[[Get], bool]) -> bool:
-    """Whether all that a block does with a lane is to read fields of its rows, or to copy rows to the message."""
+    within, element = Within(f"{row_name(walk.lanes, own)}::list", lane, offset, frozenset()), walk.lanes.all[own].element
+    starts = (name for name, values in uses.locals.items() if name not in uses.changed and all(map(within.is_start, values)))
+    within = replace(within, starts=frozenset(starts))
 
     def is_read(node: Stmt | Expr) -> bool:
         match node:
-            case Get(_, place):
-                return is_member(node) and element_of(place.row, within) is not None
+            case Get(type_, place):
+                is_member = element is not None and path_to(element, place.offset, type_) is not None
+                return is_member and element_of(place.row, within) is not None
             case Copy(target, Place(_, row, _)):
                 return not isinstance(target, Place) and element_of(row, within) is not None
             case _:
                 return False
 
-    at_once = (each for each, _ in statements(block) if isinstance(each, While) and rounds_of(each) is not None)
-    in_rounds = {used for each in at_once for node in nodes_of((each,)) for used in lanes_of(node)}
-    return lane not in in_rounds and all(is_read(node) for node in nodes_of(block) if lane in lanes_of(node))
+    return within if own not in uses.in_rounds and all(map(is_read, uses.by_lane.get(own, ()))) else None

@@ -11,12 +11,13 @@ from rosetta_jit.generate.c.source import run
 from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.always import directs
 from rosetta_jit.generate.cpp.lists import Listed, row_name, viewed
-from rosetta_jit.generate.cpp.lists_within import ListWithin, lists_within
+from rosetta_jit.generate.cpp.lists_within import lists_within
 from rosetta_jit.generate.cpp.read_in_place import addressed_lanes, is_local
 from rosetta_jit.generate.cpp.spots import Direct
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.model.layout import Row
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.language import Parts
@@ -36,20 +37,15 @@ def addressed_in(unit: Unit, lanes: Lanes, manners: Manners) -> frozenset[int]:
     return addressed_lanes(unit, frozenset(each.lane for each in directs_of(Walk(unit, lanes, manners, "encode"), "source")))
 
 
-def within_in(unit: Unit, lanes: Lanes, manners: Manners) -> list[ListWithin]:
-    """The lists within lists that an encoder reads where they are."""
-    return lists_within(Walk(unit, lanes, manners, "encode", addressed=addressed_in(unit, lanes, manners)))
-
-
 def reader(unit: Unit, lanes: Lanes, manners: Manners) -> Walk:
     """The walk of an encoder, which knows what is read where the object has it."""
-    within = frozenset(each.listed.direct.lane for each in within_in(unit, lanes, manners))
-    return Walk(unit, lanes, manners, "encode", addressed=addressed_in(unit, lanes, manners), within=within)
+    walk = Walk(unit, lanes, manners, "encode", addressed=addressed_in(unit, lanes, manners))
+    return replace(walk, within=lists_within(walk))
 
 
-def viewed_in(unit: Unit, lanes: Lanes, manners: Manners, at: str = "source") -> list[Listed]:
-    """The lists of ``at``, an expression for the object, that an encoder views; none where rows stay."""
-    return [] if wires_of(unit) else viewed(reader(unit, lanes, manners), at)
+def viewed_by(walk: Walk, at: str = "source") -> list[Listed]:
+    """The lists of ``at``, an expression for the object, that an encoder views; none where rows stay. ``walk`` is its `reader`."""
+    return [] if wires_of(walk.unit) else viewed(walk, at)
 
 
 def writes_apart(unit: Unit) -> bool:
@@ -88,7 +84,7 @@ def unset(attempt: Attempt) -> str:
 
 def _copied(parts: Parts, directs: list[Direct], walk: Walk) -> list[int]:
     """The lanes whose rows an encoder puts together in the codec's memory."""
-    shown = {each.lane for each in directs} | walk.addressed | walk.within
+    shown = {*(each.lane for each in directs), *walk.addressed, *walk.within}
     return [lane for lane in range(1, parts.lanes.own) if lane not in shown]
 
 
@@ -104,7 +100,7 @@ def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -
     if unit.state:
         members.append(("codec::state *", "state"))
         initial.append("state(&owner.kept)")
-    views = {each.direct.lane: _view(walk, each) for each in viewed_in(unit, lanes, walk.manners)}
+    views = {each.direct.lane: _view(walk, each) for each in viewed_by(walk, HOLDER)}
     shown = {lane: f"shown<{lanes.type(lane)}>" for lane in range(1, lanes.own) if lane not in {*copied, *walk.within}} | views
     lines = [
         "/* What a message is written from: elements where an object has them, and those that are put together in the codec's memory. */",
@@ -121,9 +117,8 @@ def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -
 
 def _view(walk: Walk, listed: Listed) -> str:
     """The type of a list that is viewed."""
-    lane = listed.direct.lane
-    (container,) = (each.direct.spot.at for each in viewed_in(walk.unit, walk.lanes, walk.manners, HOLDER) if each.direct.lane == lane)
-    return f"view<{walk.lanes.type(lane)}, {container_type(container)}, {row_name(walk.lanes, lane)}>"
+    lane, container = listed.direct.lane, container_type(listed.direct.spot.at)
+    return f"view<{walk.lanes.type(lane)}, {container}, {row_name(walk.lanes, lane)}>"
 
 
 def container_type(at: str) -> str:

@@ -27,8 +27,7 @@ from rosetta_jit.generate.cpp.reading import (
     reader,
     source_struct,
     unset,
-    viewed_in,
-    within_in,
+    viewed_by,
     writes_apart,
 )
 from rosetta_jit.generate.cpp.set_in_place import straight_numbers
@@ -39,6 +38,7 @@ from rosetta_jit.generate.shares import WHOLE, changed_lanes
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of, wires_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.model.types import Ref
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.language import Parts
@@ -64,15 +64,14 @@ SAID = """    if (where.scratch >= 0) { /* the mapping has put this text togethe
 def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce, decoder: Kernel | None) -> str:
     """The text of the source file; ``there`` as for `header`. ``decoder`` is the kernel that sets fields where the object has them."""
     printed, lanes = parts.printed, parts.lanes
-    walks = {direction: Walk(unit, lanes, manners, direction) for direction in ("decode", "encode")}
+    walks = {"decode": Walk(unit, lanes, manners, "decode"), "encode": reader(unit, lanes, manners)}
     opened = opened_lists(walks["decode"], "target") if "borrow" in printed else []
     given = frozenset(each.lane for each in arrays_in_place(walks["decode"], "target"))
     walks["decode"].opened = given.union(*(each.lanes for each in opened))
     walks["encode"].opened = frozenset(lane for each in opened for lane in each.containers)
     directs = {name: directs_of(walk, at) for (name, walk), at in zip(walks.items(), ("target", "source"), strict=True)}
     containers = {each.lane: each.spot.at for each in directs_of(walks["decode"], HOLDER)}
-    views, filled = viewed_in(unit, lanes, manners), _taken(walks["decode"], "target")
-    within = [each.listed for each in within_in(unit, lanes, manners)]
+    views, filled = viewed_by(walks["encode"]), _taken(walks["decode"], "target")
     walks["decode"].taken = frozenset(each.direct.lane for each in filled)
     directs["decode"] += [each.direct for each in filled]
     directs["encode"] += [each.direct for each in views]
@@ -88,7 +87,7 @@ def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce, decoder: K
         includes=_includes(called),
         structs="\n\n".join(_struct(unit, parts, each, walks["decode"].taken) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
-        holder=_row_structs(unit, parts, manners, within, [*views, *filled])
+        holder=_row_structs(walks["encode"], [*views, *filled])
         + ("" if decoder is None else packed_structs(walks["decode"], decoder, opened))
         + _holder(unit, parts, given, containers, listed, {lane: kind for each in opened for lane, kind in each.kinds.items()})
         + (source_struct(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
@@ -119,11 +118,11 @@ def _taken(walk: Walk, at: str) -> list[Listed]:
     return [] if wires_of(walk.unit) or "borrow" not in walk.unit.kernels else taken(walk, at)
 
 
-def _row_structs(unit: Unit, parts: Parts, manners: Manners, within: list[Listed], lists: list[Listed]) -> str:
-    """What is known of the elements of lists: of those ``within`` others, first of all, how to reach them."""
-    walk = reader(unit, parts.lanes, manners)
+def _row_structs(walk: Walk, lists: list[Listed]) -> str:
+    """What is known of the elements of lists: first of all, of those that an encoder reads within others, how it reaches them."""
+    walk = replace(walk, direct=frozenset(), straight=frozenset())
     each_once = {each.direct.lane: each for each in lists}
-    texts = [row_struct(walk, each, container_type(each.direct.spot.at)) for each in within]
+    texts = [row_struct(walk, each.listed, container_type(each.listed.direct.spot.at)) for each in walk.within.values()]
     return "\n".join([*texts, *(row_struct(walk, each) for _, each in sorted(each_once.items()))])
 
 
@@ -196,9 +195,6 @@ def _walks(unit: Unit, parts: Parts, walks: dict[str, Walk], directs: dict[str, 
         if not roles:
             continue
         walk.direct = frozenset(each.lane for each in directs[name]) - walk.taken
-        if name == "encode":
-            known = reader(unit, parts.lanes, walk.manners)
-            walk.addressed, walk.within = known.addressed, known.within
         inner = [_walk(unit, parts, walk, lane, Ref(struct)) for lane, struct in unit.layout.recursive]
         walk.straight = frozenset(row for row, _ in straight_numbers(walk).values())
         whole = [_walk(unit, parts, walk, 0, Ref(unit.type), role) for role in roles]

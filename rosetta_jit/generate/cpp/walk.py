@@ -12,6 +12,7 @@ characters that a message has once: the lane shows the elements of their contain
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from string import Template
 from typing import TYPE_CHECKING, Literal
 
@@ -30,6 +31,7 @@ from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.cpp.lists_within import ListWithin
     from rosetta_jit.generate.cpp.manners import Manners
     from rosetta_jit.generate.unit import Unit
 
@@ -41,7 +43,8 @@ IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 class Walk:
     """One of the functions being printed; ``in_rows`` is how many lists there are around a value, ``share`` what is set of it.
 
-    ``takes``: an encoder copies rows, whose lanes have memory of their own. ``taken`` are the lists that a decoder has put into the object
+    ``within`` are the lists within lists that an encoder reads where they are, by their lanes. ``takes``: it copies rows, whose lanes have
+    memory of their own. ``taken`` are the lists that a decoder has put into the object
     already, where their elements lie in memory as rows do, ``straight`` the numbers, as rows would have them, ``opened`` lists and texts.
     """
 
@@ -51,7 +54,7 @@ class Walk:
     direction: Direction
     direct: frozenset[int] = frozenset()
     addressed: frozenset[int] = frozenset()
-    within: frozenset[int] = frozenset()
+    within: Mapping[int, ListWithin] = field(default_factory=dict[int, "ListWithin"])
     taken: frozenset[int] = frozenset()
     straight: frozenset[str] = frozenset()
     opened: frozenset[int] = frozenset()
