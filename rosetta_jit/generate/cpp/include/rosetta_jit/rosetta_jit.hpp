@@ -1805,10 +1805,11 @@ template <class Container> element_type<Container> *opened(Container &target, st
     return data_of(target);
 }
 
-/* The same of numbers, of which there may be a fixed count. */
+/* The same of numbers, of which there may be a fixed count: an array has as many, or a vector gets them, as lcm-gen has both. */
 template <class Container, class Row, std::size_t Fixed> struct number_lane : open_lane<Container> {
     static_assert(same_numbers<typename open_lane<Container>::Element, Row>, ROSETTA_JIT_OTHER_ELEMENTS);
-    static_assert(Fixed == 0 || sizeof(Container) == Fixed * sizeof(Row), "the class has another number of elements than the schema");
+    static_assert(Fixed == 0 || can_resize<Container>::value || sizeof(Container) == Fixed * sizeof(Row),
+                  "the class has another number of elements than the schema");
 };
 
 /* The same of texts. Those that a list lacks are made of their characters where that can be. */
