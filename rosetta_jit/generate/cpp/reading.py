@@ -57,7 +57,7 @@ def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, st
     """The encoder; ``walk`` has printed what takes an object apart."""
     lanes, encode, size = parts.lanes, parts.printed["encode"], parts.printed["size"].attempts[0]
     is_straight, memory, row = is_local(walk, encode.hidden), "written_" if writes_apart(unit) else "memory_", lanes.type(0)
-    begun = (f"    holder->{lanes.rows(lane)}.reset();" for lane in _copied(parts, directs, walk))
+    begun = (f"    holder->{lanes.rows(lane)}.reset();" for lane in copied(parts, directs, walk))
     measure = Template(known["measure"]).substitute(no_room=str(len(encode.sites)), memory=memory) if encode.hidden else ""
     return Template(known["encode"]).substitute(
         words,
@@ -82,7 +82,7 @@ def unset(attempt: Attempt) -> str:
     return "" if "failure" in attempt.parameters else " = {0, 0, {0, 0, 0, 0}}"
 
 
-def _copied(parts: Parts, directs: list[Direct], walk: Walk) -> list[int]:
+def copied(parts: Parts, directs: list[Direct], walk: Walk) -> list[int]:
     """The lanes whose rows an encoder puts together in the codec's memory."""
     shown = {*(each.lane for each in directs), *walk.addressed, *walk.within}
     return [lane for lane in range(1, parts.lanes.own) if lane not in shown]
@@ -90,8 +90,8 @@ def _copied(parts: Parts, directs: list[Direct], walk: Walk) -> list[int]:
 
 def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -> str:
     """What kernels that write work on: a local of the encoder, so that a compiler need not put it into memory."""
-    lanes, copied = parts.lanes, _copied(parts, directs, walk)
-    members = [(f"rosetta_jit::detail::lane<{lanes.type(lane)}> &", lanes.rows(lane)) for lane in copied]
+    lanes, own = parts.lanes, copied(parts, directs, walk)
+    members = [(f"rosetta_jit::detail::lane<{lanes.type(lane)}> &", lanes.rows(lane)) for lane in own]
     members += [("rosetta_jit::detail::scratch *", "scratch")] if parts.hidden else []
     of_its_own = {lanes.rows(lane) for lane in walk.opened}
     initial = [f"{name}(memory.{'gathered.' if name in of_its_own else ''}{name})" for _, name in members]
@@ -101,7 +101,7 @@ def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -
         members.append(("codec::state *", "state"))
         initial.append("state(&owner.kept)")
     views = {each.direct.lane: _view(walk, each) for each in viewed_by(walk, HOLDER)}
-    shown = {lane: f"shown<{lanes.type(lane)}>" for lane in range(1, lanes.own) if lane not in {*copied, *walk.within}} | views
+    shown = {lane: f"shown<{lanes.type(lane)}>" for lane in range(1, lanes.own) if lane not in {*own, *walk.within}} | views
     lines = [
         "/* What a message is written from: elements where an object has them, and those that are put together in the codec's memory. */",
         f"struct {unit.name}_source {{",

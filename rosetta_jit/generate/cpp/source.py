@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
@@ -22,6 +22,7 @@ from rosetta_jit.generate.cpp.packed import packed_structs
 from rosetta_jit.generate.cpp.read_in_place import is_local
 from rosetta_jit.generate.cpp.reading import (
     container_type,
+    copied,
     directs_of,
     encoder,
     reader,
@@ -76,6 +77,7 @@ def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce, decoder: K
     directs["decode"] += [each.direct for each in filled]
     directs["encode"] += [each.direct for each in views]
     listed = {each.direct.lane: each.direct.spot.at for each in _taken(walks["decode"], HOLDER)}
+    kinds = {lane: kind for each in opened for lane, kind in each.kinds.items()}
     called = {name for each in printed.values() for name in each.support} | {"failure"}
     said = any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites)
     between = _walks(unit, parts, walks, directs)
@@ -89,7 +91,7 @@ def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce, decoder: K
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
         holder=_row_structs(walks["encode"], [*views, *filled])
         + ("" if decoder is None else packed_structs(walks["decode"], decoder, opened))
-        + _holder(unit, parts, given, containers, listed, {lane: kind for each in opened for lane, kind in each.kinds.items()})
+        + _holder(unit, parts, given, containers, listed, kinds, kinds.keys() & copied(parts, directs["encode"], walks["encode"]))
         + (source_struct(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
         support=SELDOM.sub(r"ROSETTA_JIT_COLD \g<0>", support(without_unused(called, printed))),
         kernels=_kernels(unit, parts),
@@ -141,9 +143,15 @@ def _struct(unit: Unit, parts: Parts, struct: RowStruct, taken: frozenset[int]) 
 
 
 def _holder(
-    unit: Unit, parts: Parts, given: frozenset[int], containers: dict[int, str], listed: dict[int, str], opened: dict[int, str]
+    unit: Unit,
+    parts: Parts,
+    given: frozenset[int],
+    containers: dict[int, str],
+    listed: dict[int, str],
+    opened: dict[int, str],
+    gathered: Collection[int],
 ) -> str:
-    """What kernels work on: the message's row and the lanes."""
+    """What kernels work on: the message's row and the lanes. ``gathered`` are opened ones of which an encoder makes rows."""
     lanes = parts.lanes
     lines = [
         "/* A message, and the elements of its arrays and texts. */",
@@ -161,8 +169,8 @@ def _holder(
         if lane in opened:
             kind = f"rosetta_jit::detail::{opened[lane]}"
         lines.append(f"    {kind} {lanes.rows(lane)};")
-    if opened and "encode" in parts.printed:
-        rows = (f"        rosetta_jit::detail::lane<{lanes.type(lane)}> {lanes.rows(lane)};" for lane in sorted(opened))
+    if gathered and "encode" in parts.printed:
+        rows = (f"        rosetta_jit::detail::lane<{lanes.type(lane)}> {lanes.rows(lane)};" for lane in sorted(gathered))
         lines += ["    struct {", *rows, "    } gathered; /* to write a message */"]
     lines += [f"    rosetta_jit::detail::scratch scratch[{parts.hidden}];"] if parts.hidden else []
     lines += ["    int64_t most = 0; /* rows that a message may ask for */", "    int64_t now = 0;", "    int64_t number = 0;"]
