@@ -117,3 +117,12 @@ READ = Get("i64", Place(1, NUMBER, 8))
 )
 def test_a_row_is_the_address_of_a_list_and_a_number(row, found):
     assert element_of(row, LIST) == found
+
+
+def test_lists_of_pointers_become_rows():
+    """A message of protoc's has pointers to its texts: they would be followed twice, to measure a message and to write it."""
+    schema = 'syntax = "proto3"; package t; message L { repeated string texts = 1; } message M { repeated L more = 1; }'
+    request = type_request("decode", "t.M", {"encoding": "protobuf", "schema": {"t.proto": schema}})
+    for holder, reads in (("protobuf", False), ("own", True)):
+        text = generated(request, "cpp", BOTH, "unit", Wishes(holder=holder))["unit.cpp"]
+        assert ("_row::list::at(" in text) == reads
