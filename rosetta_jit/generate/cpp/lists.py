@@ -14,7 +14,7 @@ from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import members_of, path_to
 from rosetta_jit.generate.cpp.always import spans
-from rosetta_jit.generate.cpp.spots import Direct, Spot
+from rosetta_jit.generate.cpp.spots import Direct, Listed, Spot
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import Unit, kind_of
 from rosetta_jit.kernel.nodes import Advance, Block, Capacity, Copy, Expr, Get, HostCall, Place, Reserve, Stmt, Used
@@ -25,14 +25,6 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
-
-
-@dataclass(frozen=True, slots=True)
-class Listed:
-    """A list that every message has: where it is, and what its elements are."""
-
-    direct: Direct
-    element: Type
 
 
 def viewed(walk: Walk, at: str) -> list[Listed]:

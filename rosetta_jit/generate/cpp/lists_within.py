@@ -14,8 +14,8 @@ from string import Template
 from rosetta_jit.generate.c.rows import path_to
 from rosetta_jit.generate.c.varint_loops import rounds_of
 from rosetta_jit.generate.c.within import Within, element_of
-from rosetta_jit.generate.cpp.lists import Listed, is_readable, lanes_of, nodes_of, row_name
-from rosetta_jit.generate.cpp.spots import Direct, Spot
+from rosetta_jit.generate.cpp.lists import is_readable, lanes_of, nodes_of, row_name
+from rosetta_jit.generate.cpp.spots import Direct, Listed, ListWithin, Spot
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Unit, kind_of, wires_of
@@ -26,14 +26,6 @@ from rosetta_jit.startup.dataclass import dataclass, replace
 
 HOLDER = "std::declval<const holder &>()"
 ELEMENT = Template("std::declval<const rosetta_jit::detail::element_type<decltype($list)> &>()")
-
-
-@dataclass(frozen=True, slots=True)
-class ListWithin:
-    """Such a list: what its elements are, and how kernels find it."""
-
-    listed: Listed
-    within: Within
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,10 +10,10 @@ from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.source import run
 from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.always import directs
-from rosetta_jit.generate.cpp.lists import Listed, row_name, viewed
+from rosetta_jit.generate.cpp.lists import row_name, viewed
 from rosetta_jit.generate.cpp.lists_within import lists_within
 from rosetta_jit.generate.cpp.read_in_place import addressed_lanes, is_local
-from rosetta_jit.generate.cpp.spots import Direct
+from rosetta_jit.generate.cpp.spots import Direct, Listed
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.model.layout import Row

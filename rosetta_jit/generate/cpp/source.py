@@ -16,7 +16,7 @@ from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place
 from rosetta_jit.generate.cpp.header import AtOnce, filled_in
-from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
+from rosetta_jit.generate.cpp.lists import row_name, row_struct, taken
 from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
 from rosetta_jit.generate.cpp.packed import packed_structs
 from rosetta_jit.generate.cpp.read_in_place import is_local
@@ -32,7 +32,7 @@ from rosetta_jit.generate.cpp.reading import (
     writes_apart,
 )
 from rosetta_jit.generate.cpp.set_in_place import straight_numbers
-from rosetta_jit.generate.cpp.spots import Direct, Spot
+from rosetta_jit.generate.cpp.spots import Direct, Listed, Spot
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.generate.shares import WHOLE, changed_lanes

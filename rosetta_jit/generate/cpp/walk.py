@@ -23,7 +23,7 @@ from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import members_of
 from rosetta_jit.generate.cpp.classes import names_of
 from rosetta_jit.generate.cpp.names import member_names
-from rosetta_jit.generate.cpp.spots import Spot
+from rosetta_jit.generate.cpp.spots import ListWithin, Spot
 from rosetta_jit.generate.shares import WHOLE, Ways, within
 from rosetta_jit.model.layout import Member, Number, Row, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Field, Map, Optional, Ref, String, Struct, Type, Union
@@ -31,7 +31,6 @@ from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.cpp.lists_within import ListWithin
     from rosetta_jit.generate.cpp.manners import Manners
     from rosetta_jit.generate.unit import Unit
 
@@ -54,7 +53,7 @@ class Walk:
     direction: Direction
     direct: frozenset[int] = frozenset()
     addressed: frozenset[int] = frozenset()
-    within: Mapping[int, ListWithin] = field(default_factory=dict[int, "ListWithin"])
+    within: Mapping[int, ListWithin] = field(default_factory=dict[int, ListWithin])
     taken: frozenset[int] = frozenset()
     straight: frozenset[str] = frozenset()
     opened: frozenset[int] = frozenset()
