@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 JOINTS, RAYS, POSES, POINTS = 32, 1080, 1000, 100_000
-TRANSFORMS, STATUSES, VALUES = 50, 20, 5
-"""Of a TFMessage; of a DiagnosticArray, and of each of its statuses."""
+TRANSFORMS, STATUSES, VALUES, MARKERS, CORNERS = 50, 20, 5, 10, 4
+"""Of a TFMessage; of a DiagnosticArray, and of each of its statuses; of a MarkerArray, and of each of its markers."""
 NUMBERS = np.random.default_rng(0).random(8 * POSES)
 
 
@@ -122,6 +122,24 @@ def transforms(wire: Ros1) -> None:
         wire.header()
         wire.text(b"left_arm_link_%d" % number)
         wire.numbers("d", 7)
+
+
+def markers(wire: Ros1) -> None:
+    """Lines of a few points, each of its own color."""
+    wire.pack("I", MARKERS)
+    for number in range(MARKERS):
+        wire.header()
+        wire.text(b"plan")
+        wire.pack("iii", number, 4, 0)
+        wire.numbers("d", 10)
+        wire.numbers("f", 4)
+        wire.pack("iiB", 0, 0, 1)
+        for form, each in (("d", 3), ("f", 4)):
+            wire.pack("I", CORNERS)
+            wire.numbers(form, CORNERS * each)
+        wire.text(b"marker_%d" % number)
+        wire.text(b"")
+        wire.pack("B", 0)
 
 
 def diagnostics(wire: Ros1) -> None:

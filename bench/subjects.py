@@ -53,6 +53,7 @@ IMAGE, IMAGE_2 = _ros("sensor_msgs/Image", ros_wire.image)
 POINT_CLOUD, POINT_CLOUD_2 = _ros("sensor_msgs/PointCloud2", ros_wire.point_cloud)
 
 TRANSFORMS = Subject("tf2_msgs/TFMessage", "ros1", written(Ros1(), ros_wire.transforms))
+MARKERS = Subject("visualization_msgs/MarkerArray", "ros1", written(Ros1(), ros_wire.markers))
 DIAGNOSTICS = Subject("diagnostic_msgs/DiagnosticArray", "ros1", written(Ros1(), ros_wire.diagnostics))
 
 
@@ -77,6 +78,15 @@ LCM_DOUBLES = Subject(
 )
 _EXAMPLE = struct.pack(">Qq7di", 3987159373929993494, 0, 1, 2, 3, 1, 0, 0, 0, 15) + struct.pack(">15h", *range(15))
 LCM_EXAMPLE = Subject("exlcm.example_t", "lcm", _EXAMPLE + struct.pack(">i", 15) + b"example string\0\1")
+
+
+def _matrices(each: int) -> bytes:
+    """Arrays of arrays of arrays of numbers, and arrays of short texts."""
+    head, texts = struct.pack(">Q3i", 0x3C0248E7BD699F76, each, each, each), 2 * each * struct.pack(">i3s", 3, b"ab\0")
+    return head + struct.pack(f">{each**3}i", *range(each**3)) + texts
+
+
+LCM_MATRICES = Subject("lcmtest.multidim_array_t", "lcm", _matrices(10))
 FLAGS = 64
 FLAGS_T = Path(__file__).with_name("native") / "rj" / "flags_t.lcm"
 LCM_FLAGS = Subject(

@@ -8,7 +8,21 @@ from bench.contest import Contender, Outcome, comparison
 from bench.peers import generated_classes as peers
 from bench.peers.generated_classes import Messages
 from bench.report import words
-from bench.subjects import DIAGNOSTICS, FLAGS_T, LCM_DOUBLES, LCM_EXAMPLE, LCM_FLAGS, LISTS, ROS_2, SCENE, SEVERAL_VARINTS, SHORT, SUBJECTS
+from bench.subjects import (
+    DIAGNOSTICS,
+    FLAGS_T,
+    LCM_DOUBLES,
+    LCM_EXAMPLE,
+    LCM_FLAGS,
+    LCM_MATRICES,
+    LISTS,
+    MARKERS,
+    ROS_2,
+    SCENE,
+    SEVERAL_VARINTS,
+    SHORT,
+    SUBJECTS,
+)
 from rosetta_jit.api.options import type_request
 
 CHAPTER = "Generated C++ in frameworks' classes"
@@ -21,13 +35,14 @@ JOBS = {
     "turn": ("decoded, one of many in turn", "an object, used again", 1),
 }
 """What is done, what each makes, and the target. Messages of a few bytes are read in turn, too."""
-WRITTEN_AS_QUICKLY = frozenset({*SEVERAL_VARINTS, *LISTS, *SHORT})
+NESTED = {"DiagnosticArray, 20 statuses": DIAGNOSTICS, "MarkerArray, 10 markers": MARKERS}
+"""Texts and structs in lists of lists; Debian has no struct of a TFMessage."""
+MATRICES = "LCM multidim_array_t, 10 x 10 x 10"
+WRITTEN_AS_QUICKLY = frozenset({*SEVERAL_VARINTS, *LISTS, *SHORT, *NESTED, MATRICES})
 """What has a target for encoding, too."""
 WITHOUT_TARGET = frozenset({"Float64", "Bool", "LCM, 64 bools"})
 """What has none for decoding, as it takes as long in both, or longer: docs/cpp.md says why."""
 ROS = ("Imu", "JointState, 32 joints", "LaserScan 1080", "PoseArray 1000", "Image 640x480")
-STATUSES = "DiagnosticArray, 20 statuses"
-"""Texts in lists of lists; Debian has no struct of a TFMessage."""
 PROTOBUF = {
     "RST JointAngles, packed": "angles.proto",
     "RST JointAngles, unpacked": "angles.proto",
@@ -40,6 +55,7 @@ LCM = {
     "LCM example_t": (LCM_EXAMPLE, peers.IDL / "lcm" / "exlcm" / "example_t.lcm"),
     "LCM, 1,000 doubles": (LCM_DOUBLES, peers.IDL / "lcm" / "rjtest" / "doubles_t.lcm"),
     "LCM, 64 bools": (LCM_FLAGS, FLAGS_T),
+    MATRICES: (LCM_MATRICES, peers.IDL / "lcm" / "lcmtest" / "multidim_array_t.lcm"),
 }
 
 
@@ -70,9 +86,9 @@ def against(tmp_path, effort, found, record):
 
 
 @pytest.mark.skipif(not peers.installed("ros1"), reason="roscpp is not installed")
-@pytest.mark.parametrize("name", [*ROS, STATUSES, *SHORT])
+@pytest.mark.parametrize("name", [*ROS, *NESTED, *SHORT])
 def test_structs_of_roscpp(name, against):
-    subject = {**SUBJECTS, STATUSES: DIAGNOSTICS, **SHORT}[name]
+    subject = {**SUBJECTS, **NESTED, **SHORT}[name]
     request = type_request("decode", subject.type, {"encoding": "ros1"})
     against(name, request, "ros1", Messages(subject.message, subject.message))
 

@@ -12,7 +12,7 @@ from bench.contest import Contender
 from bench.figures import Spread
 from bench.peers import generated_python, python_peers
 from bench.report import words
-from bench.subjects import LCM_EXAMPLE, SUBJECTS, Subject
+from bench.subjects import LCM_EXAMPLE, LCM_MATRICES, SUBJECTS, Subject
 from bench.tagged import TAGGED
 
 CHAPTER = "Generated Python"
@@ -72,19 +72,13 @@ def mesh(triangles: int) -> bytes:
     )
 
 
-def matrices(each: int) -> bytes:
-    """Arrays of arrays of arrays of numbers, and arrays of short texts."""
-    head, texts = struct.pack(">Q3i", 0x3C0248E7BD699F76, each, each, each), 2 * each * struct.pack(">i3s", 3, b"ab\0")
-    return head + struct.pack(f">{each**3}i", *range(each**3)) + texts
-
-
 MESSAGES = {
     "Twist": Subject("geometry_msgs/Twist", "ros1", struct.pack("<6d", *range(6))),
     "JointState, 7 joints": Subject("sensor_msgs/JointState", "ros1", joint_state(7)),
     "DiagnosticArray, 20 statuses": Subject("diagnostic_msgs/DiagnosticArray", "ros1", diagnostics(20)),
     "Mesh, 50 triangles": Subject("shape_msgs/Mesh", "ros1", mesh(50)),
     "LCM example_t": LCM_EXAMPLE,
-    "LCM multidim_array_t, 10 x 10 x 10": Subject("lcmtest.multidim_array_t", "lcm", matrices(10)),
+    "LCM multidim_array_t, 10 x 10 x 10": LCM_MATRICES,
     **{
         name: SUBJECTS[name]
         for name in ("Imu", "JointState, 32 joints", "LaserScan 1080", "PoseArray 1000", "LCM, 1,000 big-endian doubles")

@@ -1,4 +1,4 @@
-"""Classes as lcm-gen makes them: arrays of a fixed length are arrays of C, and numbers have their high byte first."""
+"""Classes as lcm-gen makes them: fixed arrays are arrays of C, but for those in arrays of another length; numbers are big-endian."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ struct grid_t {
     int32_t columns;
     float table[rows][columns];
     boolean known[columns];
+    float pairs[columns][2];
 }
 struct empty_t { }
 struct item_t { string name; int16_t three[3]; int32_t count; float many[count]; byte last; }
@@ -44,6 +45,7 @@ class grid_t {
 public:
     std::int64_t utime; double cells[2][3]; std::int16_t six[6]; float scale; std::int32_t rows, columns;
     std::vector<std::vector<float>> table; std::vector<std::int8_t> known;
+    std::vector<std::vector<float>> pairs;
 };
 class scale_t {
 public:
@@ -80,7 +82,8 @@ def compared(tmp_path, type_, values):
 def test_arrays_of_arrays_are_read_and_written(tmp_path):
     grid = {"utime": -7, "cells": [[1.5, 2.0, -3.0], [0.0, 1e300, 4.0]], "six": [*range(-3, 3)], "scale": 0.5}
     known = {"rows": 2, "columns": 3, "table": [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "known": [True, False, True]}
-    compared(tmp_path, "rj.grid_t", [grid | known, grid | {"rows": 0, "columns": 0, "table": [], "known": []}])
+    known["pairs"] = [[0.5, each] for each in range(3)]
+    compared(tmp_path, "rj.grid_t", [grid | known, grid | {"rows": 0, "columns": 0, "table": [], "known": [], "pairs": []}])
 
 
 @cpp.needs_cpp

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
+from rosetta_jit.generate.c.within import element_of
 from rosetta_jit.generate.c.words import C_ROWS, C_TYPES
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.kernel import nodes
@@ -272,7 +273,19 @@ def written(scope: Scope, place: nodes.Place, value: nodes.Expr) -> str:
     return f"{named} = {bare(text)};"
 
 
+def list_within(scope: Scope, lane: int, row: nodes.Expr) -> tuple[str, str]:
+    """What shows the list within another one that a row is in, and the number of its element."""
+    within = scope.lanes.within[lane]
+    found = element_of(row, within)
+    assert found is not None, row
+    start, number = (bare(expression(scope, each)) for each in found)
+    return f"{within.view}::at({start})", number
+
+
 def _field(scope: Scope, place: nodes.Place, type_: nodes.Scalar) -> str | None:
+    if place.lane in scope.lanes.within:
+        view, number = list_within(scope, place.lane, place.row)
+        return f"{view}[{number}]{scope.lanes.path(place.lane, place.offset, type_)}"
     row = bare(expression(scope, place.row))
     found = scope.lanes.field(place.lane, row, place.offset, type_)
     shown = None if found is None else scope.lanes.shown.get((place.lane, place.offset))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.expressions import expression
+from rosetta_jit.generate.c.expressions import expression, list_within
 from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expect, Expr, For, Get, Let, Load, Local, Place, SetField, Store
 from rosetta_jit.kernel.passes.fold import folded
 from rosetta_jit.kernel.rewrite import locals_in, substituted
@@ -68,6 +68,9 @@ def _is_behind(expr: Expr, variable: str) -> bool:
 def flags_done(scope: Scope, flags: Flags, count: str) -> str | None:
     """The expression or statement that does rounds of such a loop; None where rows are not bytes one behind the other."""
     lanes, lane = scope.lanes, flags.lane
+    if lane in lanes.within and not flags.is_read:
+        view = ", ".join(list_within(scope, lane, flags.row))
+        return f"rosetta_jit::detail::copy_flags_of({scope.takes('bytes')} + {expression(scope, flags.at)}, {view}, {count})"
     if lanes.dialect != "c++" or lane in lanes.addressed | lanes.viewed | lanes.opened or lanes.stride(lane) != 1:
         return None
     rows = f"{scope.rows(lane)} + {expression(scope, flags.row)}"

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from typing import Literal
 
 from rosetta_jit.generate.c.rows import Element, SpanType, Struct, path_to
+from rosetta_jit.generate.c.within import Within
 from rosetta_jit.generate.c.words import C_ROWS, RESERVED
 from rosetta_jit.kernel.nodes import Expr, For
 from rosetta_jit.startup.dataclass import dataclass, field
@@ -105,12 +106,12 @@ class Lanes:
     """Those of a kernel; ``prefix`` begins the names of the header, ``own`` are not hidden. Those of C++ make room for themselves.
 
     The rows of ``addressed`` lanes are bytes anywhere in memory, by their addresses; those of ``viewed`` lanes are made of an object's
-    elements when they are read. ``row``: the functions are given the message's row. ``straight`` are the fields, by lane and offset, that
-    no row keeps, as an object has them; the rows of ``opened`` lanes are elements of the object, and so are those of ``given`` ones, of
-    which each message has one array. ``packed`` are loops that may copy all elements at once. ``shared`` begins the names of functions of
-    the support, where they are those of a header. ``forward``: a message is written from its begin to its end, so that bytes behind those
-    that are written are not in use. ``renamed`` are fields of the message's row, by offset, whose paths have, as one
-    word, that of another one: what they are called as locals.
+    elements when they are read, and so are those of lists ``within`` others. ``row``: the functions are given the message's row.
+    ``straight`` are the fields, by lane and offset, that no row keeps, as an object has them; the rows of ``opened`` lanes are elements of
+    the object, and so are those of ``given`` ones, of which each message has one array. ``packed`` are loops that may copy all elements at
+    once. ``shared`` begins the names of functions of the support, where they are those of a header. ``forward``: a message is written from
+    its begin to its end, so that bytes behind those that are written are not in use. ``renamed`` are fields of the message's row, by
+    offset, whose paths have, as one word, that of another one: what they are called as locals.
     """
 
     prefix: str
@@ -119,6 +120,7 @@ class Lanes:
     dialect: Dialect = "c"
     addressed: frozenset[int] = frozenset()
     viewed: frozenset[int] = frozenset()
+    within: Mapping[int, Within] = field(default_factory=dict[int, "Within"])
     row: bool = False
     straight: Mapping[tuple[int, int], Straight] = field(default_factory=dict[tuple[int, int], Straight])
     opened: frozenset[int] = frozenset()
@@ -177,10 +179,14 @@ class Lanes:
         """The C type of a row."""
         return row_type(self.prefix, self.all[lane].element)
 
+    def path(self, lane: int, offset: int, scalar: str) -> str | None:
+        """How a scalar of a row is written behind the row, None where no member of that type lies there."""
+        element = self.all[lane].element
+        return None if element is None else path_to(element, offset, scalar)
+
     def field(self, lane: int, row: str, offset: int, scalar: str) -> str | None:
         """A scalar of a row by its name, None where no member of that type lies there."""
-        element = self.all[lane].element
-        path = None if element is None else path_to(element, offset, scalar)
+        path = self.path(lane, offset, scalar)
         if path is None:
             return None
         return f"{self.rows(lane)}->{path[1:]}" if lane == 0 else f"{self.rows(lane)}[{row}]{path}"

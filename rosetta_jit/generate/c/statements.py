@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.c.aligned import aligned
-from rosetta_jit.generate.c.expressions import expression, location, store, written
+from rosetta_jit.generate.c.expressions import expression, list_within, location, store, written
 from rosetta_jit.generate.c.flag_loops import flags_done, flags_of
 from rosetta_jit.generate.c.positions import (
     NONE,
@@ -177,9 +177,9 @@ def _effect(scope: Scope, stmt: nodes.Effect) -> str:
 
 def _copy(scope: Scope, target: nodes.Address, source: nodes.Address, count: nodes.Expr) -> str:
     size = bare(expression(scope, count))
-    if isinstance(source, nodes.Place) and source.lane in scope.lanes.viewed:
-        taken = (scope.rows(source.lane), bare(expression(scope, source.row)), str(source.offset))
-        return f"rosetta_jit::detail::copy_rows({', '.join((*location(scope, target), *taken, size))});"
+    if isinstance(source, nodes.Place) and (view := _shown(scope, source)) is not None:
+        taken = (*location(scope, target), *view, str(source.offset), size)
+        return f"rosetta_jit::detail::copy_rows({', '.join(taken)});"
     if scope.lanes.dialect == "c++" and isinstance(count, nodes.Const):
         return f"rosetta_jit::detail::copy_known<{size}>({', '.join((*location(scope, target), *location(scope, source)))});"
     copied = ", ".join((*location(scope, target), *location(scope, source), size))
@@ -189,6 +189,13 @@ def _copy(scope: Scope, target: nodes.Address, source: nodes.Address, count: nod
     if scope.lanes.dialect == "c++" and isinstance(source, nodes.Place):
         return f"rosetta_jit::detail::copy_few({copied});"
     return f"{scope.calls('copy_bytes')}({copied});"
+
+
+def _shown(scope: Scope, source: nodes.Place) -> tuple[str, str] | None:
+    """What shows a list of an object, and the number of an element, if rows are made of these."""
+    if source.lane in scope.lanes.within:
+        return list_within(scope, source.lane, source.row)
+    return (scope.rows(source.lane), bare(expression(scope, source.row))) if source.lane in scope.lanes.viewed else None
 
 
 def lacks(function: Function, at: nodes.Expr, size: nodes.Expr) -> str:

@@ -27,6 +27,7 @@ def decoder_of(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes) -> tu
     """The kernel of such a decoder, and how it reaches the fields."""
     walk = Walk(unit, lanes, manners, "decode")
     lists = opened_lists(walk, OBJECT)
+    kernel = with_numbers_apart(kernel, unit.layout, {lane for each in lists for lane in each.within})
     found, reached = _in_place(walk, kernel, lists)
     return found, replace(reached, packed=packed_lists(walk, found, lists))
 

@@ -16,7 +16,7 @@ from rosetta_jit.generate.cpp.header import AtOnce, header
 from rosetta_jit.generate.cpp.manners import MANNERS, Manners
 from rosetta_jit.generate.cpp.opened import without_asking, without_counting
 from rosetta_jit.generate.cpp.put_at_once import put_at_once
-from rosetta_jit.generate.cpp.reading import addressed_in, viewed_in
+from rosetta_jit.generate.cpp.reading import reader, viewed_by
 from rosetta_jit.generate.cpp.source import source
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of
@@ -67,9 +67,10 @@ def _manners(unit: Unit) -> Manners:
 def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: Role) -> Printed:
     """The functions of a kernel; those of encoders are given the message's row, and addresses, those of decoders the object."""
     if kind_of(role) in ("encode", "size"):
-        views = frozenset(each.direct.lane for each in viewed_in(unit, lanes, manners))
-        addressed, forward = addressed_in(unit, lanes, manners), not unit.layout.recursive
-        kernel, lanes = undamaged_kernel(kernel), replace(lanes, addressed=addressed, viewed=views, row=True, forward=forward)
+        walk, kernel = reader(unit, lanes, manners), undamaged_kernel(kernel)
+        views, within = frozenset(each.direct.lane for each in viewed_by(walk)), {lane: each.within for lane, each in walk.within.items()}
+        forward = not unit.layout.recursive
+        lanes = replace(lanes, addressed=walk.addressed, viewed=views, within=within, row=True, forward=forward)
     else:
         kernel, lanes = decoder_of(unit, manners, kernel, lanes)
         kernel = without_asking(kernel, lanes.opened)

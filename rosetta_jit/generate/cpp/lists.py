@@ -14,7 +14,7 @@ from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import members_of, path_to
 from rosetta_jit.generate.cpp.always import spans
-from rosetta_jit.generate.cpp.spots import Direct, Spot
+from rosetta_jit.generate.cpp.spots import Direct, Listed, Spot
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import Unit, kind_of
 from rosetta_jit.kernel.nodes import Advance, Block, Capacity, Copy, Expr, Get, HostCall, Place, Reserve, Stmt, Used
@@ -27,17 +27,9 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
 
 
-@dataclass(frozen=True, slots=True)
-class Listed:
-    """A list that every message has: where it is, and what its elements are."""
-
-    direct: Direct
-    element: Type
-
-
 def viewed(walk: Walk, at: str) -> list[Listed]:
     """The lists that an encoder views; ``walk`` knows the lanes whose texts it takes by their addresses."""
-    own = [each for each in _lists(walk, at) if _is_readable(walk, each.element, walk.unit.layout.lanes[each.direct.lane].element)]
+    own = [each for each in _lists(walk, at) if is_readable(walk, each.element, walk.unit.layout.lanes[each.direct.lane].element)]
 
     def is_read(node: Stmt | Expr) -> bool:
         """Whether a row is read, by a member that it has, or bytes of it are copied to the message."""
@@ -66,16 +58,16 @@ def _lists(walk: Walk, at: str) -> Iterator[Listed]:
             yield Listed(Direct(lane, row, Spot(walk.text("direct", spot), spot.owner, spot.field)), type_.element)
 
 
-def _is_readable(walk: Walk, type_: Type, slot: Slot) -> bool:
+def is_readable(walk: Walk, type_: Type, slot: Slot) -> bool:
     """Whether a row can be made of an element without memory for anything that it contains."""
     match walk.unit.schema.resolve(type_), slot:
         case _, Number():
             return True
         case ((String() | Bytes() | Array()), Span(_, lane)):
-            return lane in walk.addressed
+            return lane in walk.addressed or lane in walk.within
         case Struct(fields=fields), Row(members=members, unknown=None):
             parts = zip(fields, members, strict=True)
-            return all(member.presence is None and _is_readable(walk, each.type, member.slot) for each, member in parts)
+            return all(member.presence is None and is_readable(walk, each.type, member.slot) for each, member in parts)
         case _:
             return False
 
@@ -87,10 +79,10 @@ def _other_uses(unit: Unit, kinds: tuple[str, ...], allowed: Callable[[Stmt | Ex
     """The lanes that kernels of some kinds use in another way than is allowed."""
     kernels = [kernel for role, kernel in unit.kernels.items() if kind_of(role) in kinds]
     blocks = [block for kernel in kernels for block in (*kernel.bodies, *(routine.body for routine in kernel.routines))]
-    return {lane for block in blocks for node in _nodes(block) if not allowed(node) for lane in _lanes_of(node)}
+    return {lane for block in blocks for node in nodes_of(block) if not allowed(node) for lane in lanes_of(node)}
 
 
-def _nodes(block: Block) -> Iterator[Stmt | Expr]:
+def nodes_of(block: Block) -> Iterator[Stmt | Expr]:
     """The statements of a block, and their expressions."""
     for stmt, _ in statements(block):
         yield stmt
@@ -98,7 +90,7 @@ def _nodes(block: Block) -> Iterator[Stmt | Expr]:
             yield from subexpressions(expr)
 
 
-def _lanes_of(node: Stmt | Expr) -> set[int]:
+def lanes_of(node: Stmt | Expr) -> set[int]:
     """The lanes that a statement or expression names itself."""
     if isinstance(node, Reserve | Advance | Used | Capacity):
         return {node.lane}
@@ -145,8 +137,11 @@ def _numbers(walk: Walk, type_: Type, slot: Slot, element: object, around: Numbe
             yield from _numbers(walk, each.type, member.slot, own.type, NumberOf(inner, f"{row}.", offset, own.size))
 
 
-def row_struct(walk: Walk, listed: Listed) -> str:
-    """A struct with what is known of an element: whether it lies in memory as a row does, and the row of it."""
+def row_struct(walk: Walk, listed: Listed, container: str = "") -> str:
+    """A struct with what is known of an element: whether it lies in memory as a row does, and the row of it.
+
+    And what shows a list that is reached by its address, if that is a ``container``.
+    """
     lane = listed.direct.lane
     lanes, type_ = walk.lanes, walk.lanes.type(lane)
     walk.writer, walk.depth, walk.in_rows = Writer(depth=2), 0, 1
@@ -160,7 +155,10 @@ def row_struct(walk: Walk, listed: Listed) -> str:
         lines.append("        }")
     lines += ["        return false;", "    }", ""]
     lines += [f"    template <class Element> ROSETTA_JIT_INLINE static {type_} of(const Element &element)", "    {"]
-    lines += [f"        {type_} row = {{}};", *walk.writer.text().splitlines(), "        return row;", "    }", "};", ""]
+    lines += [f"        {type_} row = {{}};", *walk.writer.text().splitlines(), "        return row;", "    }"]
+    if container:
+        lines += ["", f"    using list = rosetta_jit::detail::view<{type_}, {container}, {row_name(lanes, lane)}>;"]
+    lines += ["};", ""]
     return "\n".join(lines)
 
 

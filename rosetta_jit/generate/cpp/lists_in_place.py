@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from rosetta_jit.generate.c.lanes import Straight
 from rosetta_jit.generate.cpp.always import is_plain
 from rosetta_jit.generate.cpp.lists import taken
+from rosetta_jit.generate.cpp.numbers_apart import with_numbers_apart
 from rosetta_jit.generate.cpp.opened import in_place
 from rosetta_jit.generate.cpp.reading import container_type
 from rosetta_jit.generate.cpp.spots import Spot
@@ -47,6 +48,11 @@ class Opened:
         return frozenset((self.lane, *self.containers))
 
     @property
+    def within(self) -> frozenset[int]:
+        """The lists of structs that elements have, whose numbers are set one by one: or all at once, where they lie so (`packed`)."""
+        return frozenset(self.structs) - {self.lane}
+
+    @property
     def kinds(self) -> dict[int, str]:
         """The types of lanes, by their lanes."""
         found = {lane: f"open_lane<{container_type(at)}>" for lane, at in self.containers.items()}
@@ -76,7 +82,9 @@ def opened_lists(walk: Walk, at: str, typed: str = HOLDER, *, with_taken: bool =
     found: list[Opened] = []
     for type_, slot, place in _spans(walk, Ref(unit.type), unit.layout.root, _Place(Spot(at), Spot(typed), 0)):
         opened = Opened(place.spot.at, slot.lane)
-        if slot.lane not in lies and _value(walk, opened, type_, slot, place) and in_place(kernel, opened.fields) is not None:
+        if slot.lane in lies or not _value(walk, opened, type_, slot, place):
+            continue
+        if in_place(with_numbers_apart(kernel, unit.layout, opened.within), opened.fields) is not None:
             found.append(opened)
     return found
 

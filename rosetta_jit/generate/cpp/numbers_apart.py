@@ -5,7 +5,7 @@ Where there are few elements, and a compiler sees the object, that takes less ti
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import cast
 
 from rosetta_jit.kernel import nodes
@@ -30,9 +30,10 @@ class _Rows:
         return bool(self.numbers) and sum(nodes.WIDTH[type_] for _, type_ in self.numbers) == self.size
 
 
-def with_numbers_apart(kernel: Kernel, layout: Layout) -> Kernel:
-    """The same of all lists of structs that have numbers alone, without gaps."""
-    found = {lane: _Rows(kernel.strides[lane], tuple(_numbers(each.element))) for lane, each in enumerate(layout.lanes) if lane}
+def with_numbers_apart(kernel: Kernel, layout: Layout, lanes: Collection[int] | None = None) -> Kernel:
+    """The same of all lists of structs that have numbers alone, without gaps, or of those of some ``lanes``."""
+    known = range(1, len(layout.lanes)) if lanes is None else lanes
+    found = {lane: _Rows(kernel.strides[lane], tuple(_numbers(layout.lanes[lane].element))) for lane in known}
     whole = {lane: each for lane, each in found.items() if each.is_whole}
     return with_bodies(kernel, tuple(_apart(body, whole) for body in kernel.bodies)) if whole else kernel
 

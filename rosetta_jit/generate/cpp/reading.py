@@ -10,12 +10,14 @@ from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.source import run
 from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.always import directs
-from rosetta_jit.generate.cpp.lists import Listed, row_name, viewed
+from rosetta_jit.generate.cpp.lists import row_name, viewed
+from rosetta_jit.generate.cpp.lists_within import lists_within
 from rosetta_jit.generate.cpp.read_in_place import addressed_lanes, is_local
-from rosetta_jit.generate.cpp.spots import Direct
+from rosetta_jit.generate.cpp.spots import Direct, Listed
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.model.layout import Row
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.language import Parts
@@ -35,11 +37,15 @@ def addressed_in(unit: Unit, lanes: Lanes, manners: Manners) -> frozenset[int]:
     return addressed_lanes(unit, frozenset(each.lane for each in directs_of(Walk(unit, lanes, manners, "encode"), "source")))
 
 
-def viewed_in(unit: Unit, lanes: Lanes, manners: Manners, at: str = "source") -> list[Listed]:
-    """The lists of ``at``, an expression for the object, that an encoder views; none where rows stay."""
-    if wires_of(unit):
-        return []
-    return viewed(Walk(unit, lanes, manners, "encode", addressed=addressed_in(unit, lanes, manners)), at)
+def reader(unit: Unit, lanes: Lanes, manners: Manners) -> Walk:
+    """The walk of an encoder, which knows what is read where the object has it."""
+    walk = Walk(unit, lanes, manners, "encode", addressed=addressed_in(unit, lanes, manners))
+    return replace(walk, within=lists_within(walk))
+
+
+def viewed_by(walk: Walk, at: str = "source") -> list[Listed]:
+    """The lists of ``at``, an expression for the object, that an encoder views; none where rows stay. ``walk`` is its `reader`."""
+    return [] if wires_of(walk.unit) else viewed(walk, at)
 
 
 def writes_apart(unit: Unit) -> bool:
@@ -51,7 +57,7 @@ def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, st
     """The encoder; ``walk`` has printed what takes an object apart."""
     lanes, encode, size = parts.lanes, parts.printed["encode"], parts.printed["size"].attempts[0]
     is_straight, memory, row = is_local(walk, encode.hidden), "written_" if writes_apart(unit) else "memory_", lanes.type(0)
-    begun = (f"    holder->{lanes.rows(lane)}.reset();" for lane in _copied(parts, directs, walk))
+    begun = (f"    holder->{lanes.rows(lane)}.reset();" for lane in copied(parts, directs, walk))
     measure = Template(known["measure"]).substitute(no_room=str(len(encode.sites)), memory=memory) if encode.hidden else ""
     return Template(known["encode"]).substitute(
         words,
@@ -76,16 +82,16 @@ def unset(attempt: Attempt) -> str:
     return "" if "failure" in attempt.parameters else " = {0, 0, {0, 0, 0, 0}}"
 
 
-def _copied(parts: Parts, directs: list[Direct], walk: Walk) -> list[int]:
+def copied(parts: Parts, directs: list[Direct], walk: Walk) -> list[int]:
     """The lanes whose rows an encoder puts together in the codec's memory."""
-    shown = {each.lane for each in directs} | walk.addressed
+    shown = {*(each.lane for each in directs), *walk.addressed, *walk.within}
     return [lane for lane in range(1, parts.lanes.own) if lane not in shown]
 
 
 def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -> str:
     """What kernels that write work on: a local of the encoder, so that a compiler need not put it into memory."""
-    lanes, copied = parts.lanes, _copied(parts, directs, walk)
-    members = [(f"rosetta_jit::detail::lane<{lanes.type(lane)}> &", lanes.rows(lane)) for lane in copied]
+    lanes, own = parts.lanes, copied(parts, directs, walk)
+    members = [(f"rosetta_jit::detail::lane<{lanes.type(lane)}> &", lanes.rows(lane)) for lane in own]
     members += [("rosetta_jit::detail::scratch *", "scratch")] if parts.hidden else []
     of_its_own = {lanes.rows(lane) for lane in walk.opened}
     initial = [f"{name}(memory.{'gathered.' if name in of_its_own else ''}{name})" for _, name in members]
@@ -94,8 +100,8 @@ def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -
     if unit.state:
         members.append(("codec::state *", "state"))
         initial.append("state(&owner.kept)")
-    views = {each.direct.lane: _view(walk, each) for each in viewed_in(unit, lanes, walk.manners)}
-    shown = {lane: f"shown<{lanes.type(lane)}>" for lane in range(1, lanes.own) if lane not in copied} | views
+    views = {each.direct.lane: _view(walk, each) for each in viewed_by(walk, HOLDER)}
+    shown = {lane: f"shown<{lanes.type(lane)}>" for lane in range(1, lanes.own) if lane not in {*own, *walk.within}} | views
     lines = [
         "/* What a message is written from: elements where an object has them, and those that are put together in the codec's memory. */",
         f"struct {unit.name}_source {{",
@@ -111,9 +117,8 @@ def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -
 
 def _view(walk: Walk, listed: Listed) -> str:
     """The type of a list that is viewed."""
-    lane = listed.direct.lane
-    (container,) = (each.direct.spot.at for each in viewed_in(walk.unit, walk.lanes, walk.manners, HOLDER) if each.direct.lane == lane)
-    return f"view<{walk.lanes.type(lane)}, {container_type(container)}, {row_name(walk.lanes, lane)}>"
+    lane, container = listed.direct.lane, container_type(listed.direct.spot.at)
+    return f"view<{walk.lanes.type(lane)}, {container}, {row_name(walk.lanes, lane)}>"
 
 
 def container_type(at: str) -> str:

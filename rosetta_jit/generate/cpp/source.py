@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
@@ -16,28 +16,30 @@ from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place
 from rosetta_jit.generate.cpp.header import AtOnce, filled_in
-from rosetta_jit.generate.cpp.lists import Listed, row_name, row_struct, taken
+from rosetta_jit.generate.cpp.lists import row_name, row_struct, taken
 from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
 from rosetta_jit.generate.cpp.packed import packed_structs
 from rosetta_jit.generate.cpp.read_in_place import is_local
 from rosetta_jit.generate.cpp.reading import (
-    addressed_in,
     container_type,
+    copied,
     directs_of,
     encoder,
+    reader,
     source_struct,
     unset,
-    viewed_in,
+    viewed_by,
     writes_apart,
 )
 from rosetta_jit.generate.cpp.set_in_place import straight_numbers
-from rosetta_jit.generate.cpp.spots import Direct, Spot
+from rosetta_jit.generate.cpp.spots import Direct, Listed, Spot
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.generate.shares import WHOLE, changed_lanes
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of, wires_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.model.types import Ref
+from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.language import Parts
@@ -63,18 +65,19 @@ SAID = """    if (where.scratch >= 0) { /* the mapping has put this text togethe
 def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce, decoder: Kernel | None) -> str:
     """The text of the source file; ``there`` as for `header`. ``decoder`` is the kernel that sets fields where the object has them."""
     printed, lanes = parts.printed, parts.lanes
-    walks = {direction: Walk(unit, lanes, manners, direction) for direction in ("decode", "encode")}
+    walks = {"decode": Walk(unit, lanes, manners, "decode"), "encode": reader(unit, lanes, manners)}
     opened = opened_lists(walks["decode"], "target") if "borrow" in printed else []
     given = frozenset(each.lane for each in arrays_in_place(walks["decode"], "target"))
     walks["decode"].opened = given.union(*(each.lanes for each in opened))
     walks["encode"].opened = frozenset(lane for each in opened for lane in each.containers)
     directs = {name: directs_of(walk, at) for (name, walk), at in zip(walks.items(), ("target", "source"), strict=True)}
     containers = {each.lane: each.spot.at for each in directs_of(walks["decode"], HOLDER)}
-    views, filled = viewed_in(unit, lanes, manners), _taken(walks["decode"], "target")
+    views, filled = viewed_by(walks["encode"]), _taken(walks["decode"], "target")
     walks["decode"].taken = frozenset(each.direct.lane for each in filled)
     directs["decode"] += [each.direct for each in filled]
     directs["encode"] += [each.direct for each in views]
     listed = {each.direct.lane: each.direct.spot.at for each in _taken(walks["decode"], HOLDER)}
+    kinds = {lane: kind for each in opened for lane, kind in each.kinds.items()}
     called = {name for each in printed.values() for name in each.support} | {"failure"}
     said = any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites)
     between = _walks(unit, parts, walks, directs)
@@ -86,9 +89,9 @@ def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce, decoder: K
         includes=_includes(called),
         structs="\n\n".join(_struct(unit, parts, each, walks["decode"].taken) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
-        holder=_row_structs(unit, parts, manners, [*views, *filled])
+        holder=_row_structs(walks["encode"], [*views, *filled])
         + ("" if decoder is None else packed_structs(walks["decode"], decoder, opened))
-        + _holder(unit, parts, given, containers, listed, {lane: kind for each in opened for lane, kind in each.kinds.items()})
+        + _holder(unit, parts, given, containers, listed, kinds, kinds.keys() & copied(parts, directs["encode"], walks["encode"]))
         + (source_struct(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
         support=SELDOM.sub(r"ROSETTA_JIT_COLD \g<0>", support(without_unused(called, printed))),
         kernels=_kernels(unit, parts),
@@ -117,11 +120,12 @@ def _taken(walk: Walk, at: str) -> list[Listed]:
     return [] if wires_of(walk.unit) or "borrow" not in walk.unit.kernels else taken(walk, at)
 
 
-def _row_structs(unit: Unit, parts: Parts, manners: Manners, lists: list[Listed]) -> str:
-    """What is known of the elements of lists."""
-    walk = Walk(unit, parts.lanes, manners, "encode", addressed=addressed_in(unit, parts.lanes, manners))
+def _row_structs(walk: Walk, lists: list[Listed]) -> str:
+    """What is known of the elements of lists: first of all, of those that an encoder reads within others, how it reaches them."""
+    walk = replace(walk, direct=frozenset(), straight=frozenset())
     each_once = {each.direct.lane: each for each in lists}
-    return "\n".join(row_struct(walk, each) for _, each in sorted(each_once.items()))
+    texts = [row_struct(walk, each.listed, container_type(each.listed.direct.spot.at)) for each in walk.within.values()]
+    return "\n".join([*texts, *(row_struct(walk, each) for _, each in sorted(each_once.items()))])
 
 
 def _includes(called: set[str]) -> str:
@@ -139,9 +143,15 @@ def _struct(unit: Unit, parts: Parts, struct: RowStruct, taken: frozenset[int]) 
 
 
 def _holder(
-    unit: Unit, parts: Parts, given: frozenset[int], containers: dict[int, str], listed: dict[int, str], opened: dict[int, str]
+    unit: Unit,
+    parts: Parts,
+    given: frozenset[int],
+    containers: dict[int, str],
+    listed: dict[int, str],
+    opened: dict[int, str],
+    gathered: Collection[int],
 ) -> str:
-    """What kernels work on: the message's row and the lanes."""
+    """What kernels work on: the message's row and the lanes. ``gathered`` are opened ones of which an encoder makes rows."""
     lanes = parts.lanes
     lines = [
         "/* A message, and the elements of its arrays and texts. */",
@@ -159,8 +169,8 @@ def _holder(
         if lane in opened:
             kind = f"rosetta_jit::detail::{opened[lane]}"
         lines.append(f"    {kind} {lanes.rows(lane)};")
-    if opened and "encode" in parts.printed:
-        rows = (f"        rosetta_jit::detail::lane<{lanes.type(lane)}> {lanes.rows(lane)};" for lane in sorted(opened))
+    if gathered and "encode" in parts.printed:
+        rows = (f"        rosetta_jit::detail::lane<{lanes.type(lane)}> {lanes.rows(lane)};" for lane in sorted(gathered))
         lines += ["    struct {", *rows, "    } gathered; /* to write a message */"]
     lines += [f"    rosetta_jit::detail::scratch scratch[{parts.hidden}];"] if parts.hidden else []
     lines += ["    int64_t most = 0; /* rows that a message may ask for */", "    int64_t now = 0;", "    int64_t number = 0;"]
@@ -193,7 +203,6 @@ def _walks(unit: Unit, parts: Parts, walks: dict[str, Walk], directs: dict[str, 
         if not roles:
             continue
         walk.direct = frozenset(each.lane for each in directs[name]) - walk.taken
-        walk.addressed = addressed_in(unit, parts.lanes, walk.manners) if name == "encode" else frozenset()
         inner = [_walk(unit, parts, walk, lane, Ref(struct)) for lane, struct in unit.layout.recursive]
         walk.straight = frozenset(row for row, _ in straight_numbers(walk).values())
         whole = [_walk(unit, parts, walk, 0, Ref(unit.type), role) for role in roles]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from rosetta_jit.generate.c.within import Within
+from rosetta_jit.model.types import Type
 from rosetta_jit.startup.dataclass import dataclass
 
 
@@ -21,3 +23,19 @@ class Direct:
     lane: int
     row: str
     spot: Spot
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """A list: where it is, and what its elements are."""
+
+    direct: Direct
+    element: Type
+
+
+@dataclass(frozen=True, slots=True)
+class ListWithin:
+    """A list that elements of lists have: what its own elements are, and how kernels find it."""
+
+    listed: Listed
+    within: Within

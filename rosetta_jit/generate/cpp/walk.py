@@ -12,6 +12,7 @@ characters that a message has once: the lane shows the elements of their contain
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from string import Template
 from typing import TYPE_CHECKING, Literal
 
@@ -22,7 +23,7 @@ from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import members_of
 from rosetta_jit.generate.cpp.classes import names_of
 from rosetta_jit.generate.cpp.names import member_names
-from rosetta_jit.generate.cpp.spots import Spot
+from rosetta_jit.generate.cpp.spots import ListWithin, Spot
 from rosetta_jit.generate.shares import WHOLE, Ways, within
 from rosetta_jit.model.layout import Member, Number, Row, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Field, Map, Optional, Ref, String, Struct, Type, Union
@@ -41,7 +42,8 @@ IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 class Walk:
     """One of the functions being printed; ``in_rows`` is how many lists there are around a value, ``share`` what is set of it.
 
-    ``takes``: an encoder copies rows, whose lanes have memory of their own. ``taken`` are the lists that a decoder has put into the object
+    ``within`` are the lists within lists that an encoder reads where they are, by their lanes. ``takes``: it copies rows, whose lanes have
+    memory of their own. ``taken`` are the lists that a decoder has put into the object
     already, where their elements lie in memory as rows do, ``straight`` the numbers, as rows would have them, ``opened`` lists and texts.
     """
 
@@ -51,6 +53,7 @@ class Walk:
     direction: Direction
     direct: frozenset[int] = frozenset()
     addressed: frozenset[int] = frozenset()
+    within: Mapping[int, ListWithin] = field(default_factory=dict[int, ListWithin])
     taken: frozenset[int] = frozenset()
     straight: frozenset[str] = frozenset()
     opened: frozenset[int] = frozenset()
@@ -182,6 +185,9 @@ class Walk:
         """Numbers, a text, bytes; or a list of anything else, element by element."""
         lane = self.lanes.rows(slot.lane)
         if slot.lane in self.direct or (self.direction == "decode" and slot.lane in self.opened):
+            return
+        if slot.lane in self.within:
+            self.lines("list within", spot, row=row)
             return
         if not isinstance(type_, Array) or isinstance(self.unit.layout.lanes[slot.lane].element, Number):
             if slot.lane in self.addressed:

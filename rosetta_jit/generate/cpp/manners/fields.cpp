@@ -24,6 +24,9 @@ rosetta_jit::detail::${how}_span(to.$lane, $row, $at);
 /* == address == */
 rosetta_jit::detail::point_span<$type>($row, $at);
 
+/* == list within == */
+rosetta_jit::detail::point_list($row, $at);
+
 /* == texts decode == */
 rosetta_jit::detail::assign_texts($at, from.$lane, $row, from.$texts, bytes);
 

@@ -498,6 +498,9 @@ inline void copy_few(void *target, std::int64_t to, const void *source, std::int
     unsigned char *const at = static_cast<unsigned char *>(target) + to;
     const unsigned char *const begin = static_cast<const unsigned char *>(source) + from;
     const unsigned char *const end = begin + size;
+    if (size <= 0) {
+        return;
+    }
     if (size > 32) {
         std::memcpy(at, begin, static_cast<std::size_t>(size));
     } else if (size >= 16) {
@@ -518,7 +521,7 @@ inline void copy_few(void *target, std::int64_t to, const void *source, std::int
         std::memcpy(&last, end - 4, 4);
         std::memcpy(at, &first, 4);
         std::memcpy(at + size - 4, &last, 4);
-    } else if (size > 0) {
+    } else {
         const unsigned char first = begin[0], middle = begin[size / 2], last = end[-1];
         at[0] = first;
         at[size / 2] = middle;
@@ -615,6 +618,9 @@ inline pair pair_at(const unsigned char *bytes) noexcept
 inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) noexcept
 {
     const unsigned char *const text = static_cast<const unsigned char *>(memory) + start;
+    if (size <= 0) {
+        return true;
+    }
     if (size >= 16) {
         pair any = pair_at(text) | pair_at(text + size - 16);
         if (size > 32) {
@@ -639,7 +645,7 @@ inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) 
         std::memcpy(&last, text + size - 4, sizeof last);
         return ((first | last) & 0x80808080u) == 0;
     }
-    return size <= 0 || (text[0] | text[size / 2] | text[size - 1]) < 128;
+    return (text[0] | text[size / 2] | text[size - 1]) < 128;
 }
 
 /* The number of the highest bit that is set; of 0 and 1 it is 0. */
@@ -1352,7 +1358,9 @@ ROSETTA_JIT_INLINE void assign(std::string &target, const unsigned char *bytes, 
 {
     const char *const first = reinterpret_cast<const char *>(bytes);
     const std::size_t size = static_cast<std::size_t>(count);
-    if (target.size() == size) {
+    if (size == 0) { /* as frames often are not named */
+        target.clear();
+    } else if (target.size() == size) {
         copy_few(&target[0], 0, bytes, 0, count);
     } else if (HAS_SHORT_TEXTS && target.capacity() < SHORT_TEXT) {
         if (size < SHORT_TEXT) {
@@ -1518,6 +1526,36 @@ template <class Row, class Span, class Container> void point_span(Span &span, co
     span.count = count_of(from);
 }
 
+/* The type of an element of a container. */
+template <class Container> using element_type = std::remove_cv_t<std::remove_reference_t<decltype(*std::begin(std::declval<const Container &>()))>>;
+
+/* Whether a pointer says where the elements of a list lie, one behind the other: that of some lists is to pointers. */
+template <class Container, class = void> struct lie_in_order : std::false_type {};
+template <class Container>
+struct lie_in_order<Container, std::enable_if_t<has_data<const Container>::value>>
+    : std::is_same<std::remove_cv_t<std::remove_reference_t<decltype(*data_of(std::declval<const Container &>()))>>, element_type<Container>> {};
+
+/* The elements of a list, by their index. */
+template <class Container> ROSETTA_JIT_INLINE auto elements_of(const Container &source) noexcept
+{
+    if constexpr (lie_in_order<Container>::value) {
+        return data_of(source);
+    } else {
+        return std::begin(source);
+    }
+}
+
+/* A list by an address: that of its elements, where they lie so, else its own. */
+template <class Span, class Container> ROSETTA_JIT_INLINE void point_list(Span &span, const Container &from)
+{
+    const void *at = std::addressof(from);
+    if constexpr (lie_in_order<Container>::value) {
+        at = elements_of(from);
+    }
+    span.start = static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(at));
+    span.count = count_of(from);
+}
+
 /* To write a message: rows that are the elements of a container; or anywhere in memory, by their addresses. */
 template <class Row> struct shown {
     Row *rows = nullptr;
@@ -1549,20 +1587,32 @@ template <class Element> void copy_elements(Element *target, const unsigned char
     }
 }
 
-/* The type of an element of a container. */
-template <class Container> using element_type = std::remove_cv_t<std::remove_reference_t<decltype(*std::begin(std::declval<const Container &>()))>>;
-
 /* To write a message: rows that are made of the elements of a container when they are read. `Rows` says how. */
 template <class Row, class Container, class Rows> struct view {
-    static constexpr bool LIES = has_data<const Container>::value && Rows::template lies<element_type<Container>>();
-    decltype(std::begin(std::declval<const Container &>())) elements = {};
+    static constexpr bool IN_ORDER = lie_in_order<Container>::value;
+    static constexpr bool LIES = IN_ORDER && Rows::template lies<element_type<Container>>();
+    using Elements = decltype(elements_of(std::declval<const Container &>()));
+    Elements elements = {};
     std::int64_t used = 0;
     std::int64_t capacity = 0;
 
     void read(const Container &from)
     {
-        elements = std::begin(from);
+        elements = elements_of(from);
         capacity = used = count_of(from);
+    }
+
+    /* The list that `point_list` has put there. */
+    ROSETTA_JIT_INLINE static view at(std::int64_t address)
+    {
+        view found;
+        const std::uintptr_t start = static_cast<std::uintptr_t>(address);
+        if constexpr (IN_ORDER) {
+            found.elements = reinterpret_cast<Elements>(start);
+        } else {
+            found.elements = std::begin(*reinterpret_cast<const Container *>(start));
+        }
+        return found;
     }
 
     ROSETTA_JIT_INLINE Row operator[](std::int64_t index) const { return Rows::of(elements[static_cast<std::ptrdiff_t>(index)]); }
@@ -1588,6 +1638,18 @@ template <class View> ROSETTA_JIT_INLINE void copy_rows(unsigned char *target, s
             size -= part;
             offset = 0;
             row++;
+        }
+    }
+}
+
+/* Bools from one on, as bytes that are 0 or 1. */
+template <class View> ROSETTA_JIT_INLINE void copy_flags_of(unsigned char *target, const View &from, std::int64_t row, std::int64_t count)
+{
+    if constexpr (View::IN_ORDER && sizeof(*from.elements) == 1) {
+        copy_flags(target, from.elements + row, count);
+    } else {
+        for (std::int64_t done = 0; done < count; done++) {
+            target[done] = from[row + done] != 0 ? 1 : 0;
         }
     }
 }
@@ -1676,16 +1738,6 @@ template <class Row, class Container> ROSETTA_JIT_INLINE const Row *shown_rows(c
     return reinterpret_cast<const Row *>(data_of(source));
 }
 
-/* The elements of a list, by their index. */
-template <class Container> ROSETTA_JIT_INLINE auto elements_of(const Container &source) noexcept
-{
-    if constexpr (has_data<const Container>::value) {
-        return data_of(source);
-    } else {
-        return std::begin(source);
-    }
-}
-
 /* Where numbers are, to copy their bytes. */
 template <class Row, class Container> ROSETTA_JIT_INLINE std::int64_t address_of(const Container &source) noexcept
 {
@@ -1753,10 +1805,11 @@ template <class Container> element_type<Container> *opened(Container &target, st
     return data_of(target);
 }
 
-/* The same of numbers, of which there may be a fixed count. */
+/* The same of numbers, of which there may be a fixed count: an array has as many, or a vector gets them, as lcm-gen has both. */
 template <class Container, class Row, std::size_t Fixed> struct number_lane : open_lane<Container> {
     static_assert(same_numbers<typename open_lane<Container>::Element, Row>, ROSETTA_JIT_OTHER_ELEMENTS);
-    static_assert(Fixed == 0 || sizeof(Container) == Fixed * sizeof(Row), "the class has another number of elements than the schema");
+    static_assert(Fixed == 0 || can_resize<Container>::value || sizeof(Container) == Fixed * sizeof(Row),
+                  "the class has another number of elements than the schema");
 };
 
 /* The same of texts. Those that a list lacks are made of their characters where that can be. */

@@ -1,0 +1,119 @@
+"""Lists within lists that an encoder reads where the object has them: a row of an element has the address of its list, and their count.
+
+That is so of lists of structs, texts and lists, whatever has them; and of numbers that a kernel reads one by one, as it turns their bytes
+round, or as a class has them as others. The class has the elements themselves: where it has pointers to them, as protoc's, rows are read in
+less time, once to measure a message and once to write it. Each row of them must be found by such an address, which a local has or a row.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from string import Template
+
+from rosetta_jit.generate.c.rows import path_to
+from rosetta_jit.generate.c.varint_loops import rounds_of
+from rosetta_jit.generate.c.within import Within, element_of
+from rosetta_jit.generate.cpp.lists import is_readable, lanes_of, nodes_of, row_name
+from rosetta_jit.generate.cpp.spots import Direct, Listed, ListWithin, Spot
+from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.undamaged import undamaged_kernel
+from rosetta_jit.generate.unit import Unit, kind_of, wires_of
+from rosetta_jit.kernel.nodes import Assign, Block, Copy, Expr, For, Get, Let, Place, Stmt, Var, While
+from rosetta_jit.model.layout import Number, Row, Slot, Span
+from rosetta_jit.model.types import Array, Ref, Struct, Type
+from rosetta_jit.startup.dataclass import dataclass, replace
+
+HOLDER = "std::declval<const holder &>()"
+ELEMENT = Template("std::declval<const rosetta_jit::detail::element_type<decltype($list)> &>()")
+
+
+@dataclass(frozen=True, slots=True)
+class _Uses:
+    """What kernels do that read objects: all that names a lane, by the lane; what locals are, by their names, which may change.
+
+    ``in_rounds`` are the lanes that a function reads one number after another.
+    """
+
+    by_lane: Mapping[int, list[Stmt | Expr]]
+    locals: Mapping[str, list[Expr]]
+    changed: frozenset[str]
+    in_rounds: frozenset[int]
+
+
+def lists_within(walk: Walk) -> dict[int, ListWithin]:
+    """Those that an encoder reads, by their lanes; ``walk`` knows the lanes whose texts it takes by their addresses."""
+    candidates = [] if wires_of(walk.unit) else [*_within(walk, Ref(walk.unit.type), walk.unit.layout.root, Spot(HOLDER), 0)]
+    if not candidates or not {"encode", "size"} & set(map(kind_of, walk.unit.kernels)):
+        return {}
+    uses, found = _uses(_blocks(walk.unit)), dict[int, ListWithin]()
+    for each, lane, offset in candidates:
+        slot = walk.unit.layout.lanes[each.direct.lane].element
+        if (
+            is_readable(replace(walk, within=found), each.element, slot)
+            and (within := _found_by(walk, each, lane, offset, uses)) is not None
+        ):
+            found[each.direct.lane] = ListWithin(each, within)
+    return found
+
+
+def _blocks(unit: Unit) -> Iterator[Block]:
+    """The blocks of these kernels, as they are printed."""
+    for kernel in (undamaged_kernel(kernel) for role, kernel in unit.kernels.items() if kind_of(role) in ("encode", "size")):
+        yield from (*kernel.bodies, *(routine.body for routine in kernel.routines))
+
+
+def _uses(blocks: Iterable[Block]) -> _Uses:
+    by_lane, known = defaultdict[int, list[Stmt | Expr]](list), defaultdict[str, list[Expr]](list)
+    changed, in_rounds = set[str](), set[int]()
+    for node in (node for block in blocks for node in nodes_of(block)):
+        for lane in lanes_of(node):
+            by_lane[lane].append(node)
+        match node:
+            case Let(name, value):
+                known[name].append(value)
+            case Var(name) | Assign(name) | For(name):
+                changed.add(name)
+            case While() if rounds_of(node) is not None:
+                in_rounds |= {lane for inner in nodes_of((node,)) for lane in lanes_of(inner)}
+            case _:
+                pass
+    return _Uses(by_lane, known, frozenset(changed), frozenset(in_rounds))
+
+
+def _within(walk: Walk, type_: Type, slot: Slot, spot: Spot, lane: int) -> Iterator[tuple[Listed, int, int]]:
+    """Lists that elements of lists have, the innermost ones first, and where their spans lie: ``lane`` has the row of a value."""
+    resolved = walk.unit.schema.resolve(type_)
+    match resolved, slot:
+        case Struct(), Row(members=members):
+            for each, name, member in zip(resolved.fields, walk.names(resolved), members, strict=True):
+                if member.presence is None:
+                    yield from _within(walk, each.type, member.slot, walk.member_of(spot.at, name), lane)
+        case Array(element), Span(offset, own) if walk.unit.layout.lanes[own].links is None:
+            at, inner = walk.text("direct", spot), walk.unit.layout.lanes[own].element
+            if not isinstance(inner, Number):
+                yield from _within(walk, element, inner, Spot(ELEMENT.substitute(list=at)), own)
+            if lane and own not in walk.addressed and walk.text("laid out", spot):
+                yield Listed(Direct(own, "", Spot(at)), element), lane, offset
+        case _:
+            return
+
+
+def _found_by(walk: Walk, listed: Listed, lane: int, offset: int, uses: _Uses) -> Within | None:
+    """How kernels find the elements of a list; None where they do more than to read fields of its rows and copy rows to the message."""
+    own = listed.direct.lane
+    within, element = Within(f"{row_name(walk.lanes, own)}::list", lane, offset, frozenset()), walk.lanes.all[own].element
+    starts = (name for name, values in uses.locals.items() if name not in uses.changed and all(map(within.is_start, values)))
+    within = replace(within, starts=frozenset(starts))
+
+    def is_read(node: Stmt | Expr) -> bool:
+        match node:
+            case Get(type_, place):
+                is_member = element is not None and path_to(element, place.offset, type_) is not None
+                return is_member and element_of(place.row, within) is not None
+            case Copy(target, Place(_, row, _)):
+                return not isinstance(target, Place) and element_of(row, within) is not None
+            case _:
+                return False
+
+    return within if own not in uses.in_rounds and all(map(is_read, uses.by_lane.get(own, ()))) else None
