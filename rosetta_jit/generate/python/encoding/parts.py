@@ -20,6 +20,7 @@ from rosetta_jit.generate.python.passes.defaults import asked_first, reads_of
 from rosetta_jit.generate.python.passes.positions import NotInParts, Positions
 from rosetta_jit.generate.python.passes.presence import bit_tested, case_tested, places_read, words_tested
 from rosetta_jit.generate.python.passes.slots import lanes_within
+from rosetta_jit.generate.python.passes.stored import stored_as_read
 from rosetta_jit.generate.python.printing.expressions import expression
 from rosetta_jit.generate.python.printing.failures import fail
 from rosetta_jit.generate.python.printing.late_lists import LACKS, runs_of_lists
@@ -50,7 +51,7 @@ class Parts(Loops):
         super().__init__(unit, function, scope, needed)
         self.body, self.routines, self.called, self.depth = body, routines, set[str](), function.writer.depth
         self.lengths, self.words = set[str](), dict[str, nodes.Place]()
-        self.reads = reads_of(body)
+        self.reads, self.stored = reads_of(body), stored_as_read(body)
         self.binder.late = taken_late(body)
         self.lists: Mapping[tuple[int, int], int] = {}
 
@@ -177,7 +178,9 @@ class Parts(Loops):
             case _:
                 pass
         self.positions.constant(stmt.name, stmt.value)
-        if stmt.name in self.function.read and stmt.name not in self.tested:
+        if stmt.name in self.stored and isinstance(stmt.value, nodes.Get) and self.scope.is_number(stmt.value.place):
+            self.line(f"{self.scope.locals.identifier(stmt.name)} = {self.scope.given(stmt.value.place)}")
+        elif stmt.name in self.function.read and stmt.name not in self.tested:
             print_statement(self.function, stmt)
 
     def _note(self, condition: nodes.Expr) -> None:
