@@ -91,6 +91,9 @@ TAGGED = {
     "20 messages of 20 lists, one of which is there": _subject(
         f"message Row {{ {_lists(20)} }} repeated Row rows = 1;", _sized(10, _sized(10, b"abc")) * 20
     ),
+    "20 messages of 40 lists, one of which is there": _subject(
+        f"message Row {{ {_lists(40)} }} repeated Row rows = 1;", _sized(10, _sized(10, b"abc")) * 20
+    ),
     "a oneof of 12 cases": _subject(
         f"oneof which {{ {' '.join(f'{type_} f{n} = {n};' for n, type_ in enumerate(_KINDS[:12], 1))} }}", b"\x0a\x01a"
     ),

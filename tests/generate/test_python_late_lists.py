@@ -66,6 +66,11 @@ def has_lists(unit, message) -> bool:
     return type(message) is unit.M
 
 
+def lacking(unit, message) -> str:
+    """Which of the groups of nine lists an object lacks."""
+    return "".join(str(group) for group in range(3) if unit._lacking.get(type(message), 0) >> group & 1)
+
+
 def test_messages_have_some_of_their_lists(unit):
     """None, each alone, several, in any order; with fields that the schema does not know; and broken."""
     programs = rj.Decoder.of("t.M", **GIVEN), rj.Encoder.of("t.M", **GIVEN)
@@ -82,10 +87,12 @@ def test_nothing_is_made_before_somebody_asks(unit):
     found = unit.decode(message)
     assert (found.first, found.text, found.said, found.inner.texts, found.unknown_fields) == (7, "ä", True, ["a", ""], b"")
     assert unit.encode(found) == message
-    assert not has_lists(unit, found)
-    assert len(found.l20) == 0
-    assert has_lists(unit, found)
-    assert has_lists(unit, unit.decode(encoded({"l3": [True]})))
+    assert lacking(unit, found) == "012"
+    assert (len(found.l20), lacking(unit, found)) == (0, "01")
+    assert (len(found.m31), lacking(unit, found)) == (0, "01")
+    assert (len(found.l1), len(found.l10), has_lists(unit, found)) == (0, 0, True)
+    assert lacking(unit, unit.decode(encoded({"l3": [True]}))) == "12"
+    assert has_lists(unit, unit.decode(encoded({"l3": [True], "l12": [b""], "inners": [{}]})))
 
 
 def test_it_is_what_an_object_with_lists_is(unit):
@@ -138,10 +145,10 @@ def test_patterns_match_it(unit):
 
 
 def test_whatever_is_set_is_encoded(unit):
-    for name, value in (("l1", ["a"]), ("first", 8), ("m31", {1: "b"}), ("text", "")):
+    for name, value, lacks in (("l1", ["a"], "12"), ("first", 8, "012"), ("m31", {1: "b"}, "01"), ("text", "", "012")):
         found = without_lists(unit)
         setattr(found, name, value)
-        assert has_lists(unit, found)
+        assert lacking(unit, found) == lacks
         assert getattr(unit.decode(unit.encode(found)), name) == value
     found = without_lists(unit)
     found.l1.append("a")

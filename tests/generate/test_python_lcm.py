@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -181,3 +182,25 @@ def test_arrays_of_arrays_whose_lengths_are_fields_are_read_at_once():
     assert (found.a, found.b, found.c) == (values[3]["a"], values[3]["b"], values[3]["c"])
     lengths = [good[:8] + struct.pack(">ii", n, k) + good[16:] for n in (-1, 0, 3, 65536, 65537) for k in (-1, 0, 1, 3, 99, 100, 2**31 - 1)]
     answers_as_the_library(unit, (decode, encode), [*lengths, *(good[:end] for end in range(len(good)))])
+
+
+@pytest.mark.parametrize("wishes", ARRAYS)
+def test_numbers_of_elements_are_checked_where_they_are_written(wishes):
+    """What counts elements is compared with their number, and packed: numbers that do not fit, and what is no integer, are refused."""
+    given = lcm("struct m { int32_t n; double numbers[n]; int8_t few; string texts[few][2]; int16_t last; }")
+    unit, text = module(type_request("decode", "t.m", given), BOTH, wishes), text_of(given, wishes)
+    assert "= target.n\n" in text
+    assert "= target.few\n" in text
+    good = unit.m(n=1, numbers=[0.5], few=1, texts=[["a", "b"]], last=3)
+    assert unit.decode(unit.encode(good)) == good
+    assert unit.encode(replace(good, few=True)) == unit.encode(good)
+    for name, value, kind in (
+        ("n", 2, "count"),
+        ("n", 1.0, "range"),
+        ("n", "1", "count"),
+        ("few", 1 << 40, "count"),
+        ("last", 1 << 15, "range"),
+    ):
+        with pytest.raises(unit.EncodeError) as caught:
+            unit.encode(replace(good, **{name: value}))
+        assert caught.value.kind == kind

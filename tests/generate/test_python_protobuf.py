@@ -63,6 +63,25 @@ def test_messages_that_contain_their_own_type_are_written_by_functions(type_):
     answers_as_the_library(module(request), programs, harmed(messages, 12, type_))
 
 
+MUST_HAVE = {"schema": {"t.proto": 'syntax = "proto2"; package t; message M { required int32 n = 1; map<int32, M> named = 2; }'}}
+
+
+@pytest.mark.parametrize(
+    ("type_", "options"),
+    [("google.protobuf.Struct", {}), ("google.protobuf.Value", {}), ("rst.generic.Dictionary", {}), ("t.M", MUST_HAVE)],
+)
+def test_messages_without_a_byte(type_, options):
+    """They are objects of first values, and decoders that begin with much do not begin; but not where a message must have a field."""
+    given, is_made_at_once = {"encoding": "protobuf", **options}, not options
+    request = type_request("decode", type_, given)
+    assert ("if not end:" in generated(request, "python", BOTH, "unit")["unit.py"]) == is_made_at_once
+    unit, programs = module(request), (rj.Decoder.of(type_, **given), rj.Encoder.of(type_, **given))
+    answers_as_the_library(unit, programs, [b"", b"\x12\x00", b"\x0a"])
+    if is_made_at_once:
+        assert unit.decode(b"") == unit.decode(unit.encode(unit.decode(b"")))
+        assert unit.decode(b"") is not unit.decode(b"")
+
+
 @pytest.mark.parametrize("type_", ["sint32", "sint64", "int32", "int64", "uint64"])
 def test_integers_of_several_bytes(type_):
     """Packed and behind tags, of one byte to ten, cut off anywhere, and of more than ten."""

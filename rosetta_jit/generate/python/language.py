@@ -11,6 +11,7 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.unit_lanes import named_lanes
 from rosetta_jit.generate.python.decoding.decoder import print_decoder, taken_lanes
+from rosetta_jit.generate.python.decoding.empty_messages import print_empty_message
 from rosetta_jit.generate.python.decoding.late_objects import Late, late_objects
 from rosetta_jit.generate.python.decoding.making import Make
 from rosetta_jit.generate.python.encoding.collecting import Collect
@@ -189,6 +190,8 @@ class _Module:
         with writer.indented("if type(data) is not bytes:"):
             writer.line("data = bytes(data)")
         writer.line("end = len(data)")
+        for line in print_empty_message(self.unit, self.root):
+            writer.line(line)
         if any(attempt.is_bounded for attempt in attempts):
             writer.line("most = 1048576 + 64 * end")
         self._from_call(writer, {each for attempt in attempts for each in attempt.needs}, "decode")

@@ -12,7 +12,7 @@ from rosetta_jit.generate.python.decoding.sparse import OBJECT, attributes_of, b
 from rosetta_jit.generate.python.passes.borrowed import borrowed
 from rosetta_jit.generate.python.passes.direct import Direct
 from rosetta_jit.generate.python.printing.functions import is_flat, print_kernel
-from rosetta_jit.generate.python.printing.late_lists import class_without_lists
+from rosetta_jit.generate.python.printing.late_lists import late_lists
 from rosetta_jit.generate.python.printing.printed import Attempt, Objects
 from rosetta_jit.generate.python.printing.scope import Scope
 from rosetta_jit.generate.undamaged import undamaged_kernel
@@ -20,6 +20,7 @@ from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Advance, Block
 from rosetta_jit.kernel.walk import statements
+from rosetta_jit.model.layout import Span
 from rosetta_jit.model.types import Bytes, Ref
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -67,15 +68,15 @@ class _Decoder:
     def settings(self, scope: Scope) -> list[str]:
         return [*settings(self.make(scope, self.beside))] if scope.attributes is not None else []
 
-    def without_lists(self, scope: Scope) -> str:
-        return class_without_lists(self.unit, scope, self.names[self.unit.type])
+    def late_lists(self, scope: Scope) -> tuple[tuple[Span, ...], ...]:
+        return late_lists(self.unit, scope)
 
     def objects(self) -> Objects:
         """What the printers of functions need of all this."""
         in_all, numpy = arrays_of(self.unit, in_recursive=True), self.unit.numpy
         blobs = frozenset(lane for lane, type_ in in_all.items() if isinstance(self.unit.schema.resolve(type_), Bytes))
         lists = frozenset(arrays_of(self.unit)), frozenset(in_all), blobs
-        made = self.made, self.attributes, self.begun, self.settings, self.without_lists, self.row, self.inner, self.inner_names
+        made = self.made, self.attributes, self.begun, self.settings, self.late_lists, self.row, self.inner, self.inner_names
         return Objects(*made, self.unit.layout, *lists, numpy, frozenset(self.names.values()), late_rows(self.unit))
 
 

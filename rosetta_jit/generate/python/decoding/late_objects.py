@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rosetta_jit.generate.python.decoding.making import arrays_of
-from rosetta_jit.generate.python.passes.direct import LateRow
+from rosetta_jit.generate.python.passes.direct import LateRow, groups_of
 from rosetta_jit.generate.python.printing.late_lists import lists_of, lists_of_message, maker_without_lists, name_without_lists, print_maker
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.model.layout import Row
@@ -28,25 +28,27 @@ def late_rows(unit: Unit) -> dict[int, LateRow]:
 
 @dataclass(frozen=True, slots=True)
 class Late:
-    """Classes of objects without lists in a module: the ``lines`` that define them, and their names by the ``lists`` that objects have not.
+    """Classes of objects that lack lists in a module: the ``lines`` that define them, and the groups of the ``lists`` that they may lack.
 
     These are the fields for their numbers of elements, by lane and offset.
     """
 
     lines: tuple[str, ...] = ()
-    lists: Mapping[tuple[int, int], str] = field(default_factory=dict[tuple[int, int], str])
+    lists: Mapping[tuple[int, int], int] = field(default_factory=dict[tuple[int, int], int])
 
 
 def late_objects(unit: Unit, names: Mapping[str, str], decoder: str) -> Late:
-    """The classes of objects without lists that the text of a decoder makes."""
-    lines, lists = dict[str, None](), dict[tuple[int, int], str]()
+    """The classes of objects that lack lists which the text of a decoder makes."""
+    lines, lists = dict[str, None](), dict[tuple[int, int], int]()
     classes = [(0, names[unit.type], lists_of_message(unit), "")]
     classes += [
         (lane, names[each.struct.name], each.lists, print_maker(each, names[each.struct.name])) for lane, each in late_rows(unit).items()
     ]
     for lane, identifier, spans, maker in classes:
         without_lists = name_without_lists(identifier)
-        if (f"{maker_without_lists(identifier)}(" if maker else f", {without_lists})") in decoder:
-            lines |= {f"{without_lists} = _without_lists({identifier})": None, **({f"\n\n{maker}\n": None} if maker else {})}
-            lists |= {(lane, each.offset + 8): without_lists for each in spans}
+        if (f"{maker_without_lists(identifier)}(" if maker else f", {without_lists}[") in decoder:
+            groups = groups_of(spans)
+            table = f"{without_lists} = _ByLists({identifier}, {len(groups[0])})"
+            lines |= {table: None, **({f"\n\n{maker}\n": None} if maker else {})}
+            lists |= {(lane, each.offset + 8): number for number, group in enumerate(groups) for each in group}
     return Late(tuple(lines), lists)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 
 from rosetta_jit.generate.python.passes.slots import lanes_within
-from rosetta_jit.generate.python.printing.classes import NUMPY, first_value
+from rosetta_jit.generate.python.printing.classes import first_value
 from rosetta_jit.generate.python.printing.scope import CODES, Scope, view_name
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.model.layout import WIDTH, Member, Number, Row, Slot, Span, Variant, map_entry
@@ -194,7 +194,7 @@ class Make:
                 if WIDTH[element.scalar] == 1 and element.scalar != "bool":
                     borrowed = self._text("_bytes", slot, start, count)
                     if self.unit.numpy:
-                        return f"np.array(bytearray({borrowed}), np.uint8).view(np.{NUMPY[element.scalar][0]})"
+                        return f"_numbers_of(bytearray({borrowed}), {self.scope.dtype('u8')}).view({self.scope.dtype(element.scalar)})"
                     return f'memoryview({borrowed}).cast("{CODES[element.scalar]}").tolist()'
                 numbers = f"{self.scope.view(slot.lane, CODES[element.scalar])}[{_rows(start, count)}]"
                 if self.unit.numpy:
@@ -243,7 +243,8 @@ class Make:
         """An array of a list, or of a view of memory; numpy sees by itself what ``is_few`` floats are."""
         if not self.unit.numpy:
             return numbers
-        return f"np.array({numbers})" if is_few and scalar == "f64" else f"np.array({numbers}, np.{NUMPY[scalar][0]})"
+        type_ = self.scope.bool_dtype() if scalar == "bool" else self.scope.dtype(scalar)
+        return f"_numbers_of({numbers})" if is_few and scalar == "f64" else f"_numbers_of({numbers}, {type_})"
 
     def _direct(self, type_: Type, slot: Span, lane: int, row: str) -> str | None:
         """What is a list or a string already."""

@@ -19,7 +19,7 @@ from rosetta_jit.generate.python.passes.direct import Direct
 from rosetta_jit.generate.python.passes.late_fields import says_presence
 from rosetta_jit.generate.python.passes.mentions import blocks_within
 from rosetta_jit.generate.python.printing.classes import member_names
-from rosetta_jit.generate.python.printing.late_lists import lists_of_message
+from rosetta_jit.generate.python.printing.late_lists import set_groups
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.nodes import Block, Const, Expect, Fill, IsText, Place, SetField, Wire
 from rosetta_jit.kernel.terms import index
@@ -111,9 +111,9 @@ def begun(make: Make) -> list[str]:
 
 def settings(make: Make) -> Iterator[str]:
     """The lines that set the other fields of the object, which is made."""
-    unit, slot, lists = make.unit, make.unit.layout.root, list[str]()
+    unit, slot = make.unit, make.unit.layout.root
     assert isinstance(slot, Row)
-    late = lists_of_message(unit) if make.scope.without_lists else ()
+    lines: list[list[str]] = [[] for _ in make.scope.lists]
     for field, member, name in _fields(make):
         if _is_attribute(member, make):
             continue
@@ -124,14 +124,16 @@ def settings(make: Make) -> Iterator[str]:
             case _:
                 pass
         line = f"{OBJECT}.{name} = {value} if {there} else {make.first(field)}" if there else f"{OBJECT}.{name} = {value}"
-        if member.slot in late:
-            lists.append(f"    {line}")
-        else:
+        group = next((number for number, lists in enumerate(make.scope.lists) if member.slot in lists), None)
+        if group is None:
             yield line
+        else:
+            lines[group].append(line)
     if slot.unknown is not None:
         yield f"{OBJECT}.unknown_fields = {make.unknown(slot.unknown, 0, '0')}"
-    if lists:
-        yield from (f"if {make.scope.any_lists()}:", *lists, "else:", f"    _set_class({OBJECT}, {make.scope.without_lists})")
+    if lines:
+        has = [make.scope.any_lists(group) for group, _ in enumerate(lines)]
+        yield from set_groups(OBJECT, make.names[unit.type], [*zip(has, lines, strict=True)])
 
 
 def _fields(make: Make) -> Iterator[tuple[Field, Member, str]]:

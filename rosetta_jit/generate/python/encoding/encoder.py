@@ -46,8 +46,8 @@ class InParts:
     from_call: frozenset[str]
 
 
-def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], lists: Mapping[tuple[int, int], str]) -> InParts:
-    """The encoder of a unit; raises NotInParts where it cannot be printed so. ``lists`` are what `Parts` knows of objects without lists."""
+def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], lists: Mapping[tuple[int, int], int]) -> InParts:
+    """The encoder of a unit; raises NotInParts where it cannot be printed so. ``lists`` are those that `Parts` knows as late."""
     if len(kernel.bodies) != 1:
         raise NotInParts
     loads, written = set[str](), dict(KNOWN)

@@ -82,7 +82,7 @@ class Written:
             case Get(_, place) if not self.scope.has(place):
                 text = self.scope.element_of(place, type_)
             case Get(_, place):
-                text = bare(self.scope.objects[place.lane, place.row][place.offset])
+                text = self.scope.given(place)
             case Convert(_, count) if self.limits.get(count, 1 << 64) <= 1 << 8 * WIDTH[type_] - (type_[0] == "i"):
                 text = bare(expression(self.scope, count))
             case _:

@@ -107,6 +107,10 @@ class ObjectScope(Scope):
         known = self.objects.get((place.lane, place.row), {}).get(place.offset, "")
         return known in self.numbers or known.startswith(FLAG)
 
+    def given(self, place: Place) -> str:
+        """A number of an object, whatever a program has set."""
+        return bare(self.objects[place.lane, place.row][place.offset])
+
     def is_not_zero(self, place: Place) -> str:
         """Whether a number of an object has any bits."""
         known = self.objects[place.lane, place.row][place.offset]

@@ -20,9 +20,10 @@ from rosetta_jit.generate.python.passes.defaults import asked_first, reads_of
 from rosetta_jit.generate.python.passes.positions import NotInParts, Positions
 from rosetta_jit.generate.python.passes.presence import bit_tested, case_tested, places_read, words_tested
 from rosetta_jit.generate.python.passes.slots import lanes_within
+from rosetta_jit.generate.python.passes.stored import stored_as_read
 from rosetta_jit.generate.python.printing.expressions import expression
 from rosetta_jit.generate.python.printing.failures import fail
-from rosetta_jit.generate.python.printing.late_lists import runs_of_lists
+from rosetta_jit.generate.python.printing.late_lists import LACKS, runs_of_lists
 from rosetta_jit.generate.python.printing.printed import Function
 from rosetta_jit.generate.python.printing.statements import print_statement
 from rosetta_jit.generate.unit import Unit
@@ -38,8 +39,8 @@ class Parts(Loops):
 
     ``routines`` are the functions that give the bytes which routines write, ``called`` those of them that are. ``lengths`` are the locals
     of the kernel for the lengths of messages within others, ``words`` those for fields which say what an object has: ``tested`` are
-    those of them of which nothing but single bits is asked for. ``lists`` are the fields for the numbers of elements of lists that an
-    object has not, by lane and offset, if it is of the class that they name.
+    those of them of which nothing but single bits is asked for. ``lists`` are the groups of the fields for the numbers of elements of
+    lists that an object may lack, by lane and offset.
     """
 
     def __init__(self, unit: Unit, function: Function, scope: ObjectScope, body: nodes.Block, routines: Mapping[str, str]) -> None:
@@ -50,21 +51,25 @@ class Parts(Loops):
         super().__init__(unit, function, scope, needed)
         self.body, self.routines, self.called, self.depth = body, routines, set[str](), function.writer.depth
         self.lengths, self.words = set[str](), dict[str, nodes.Place]()
-        self.reads = reads_of(body)
+        self.reads, self.stored = reads_of(body), stored_as_read(body)
         self.binder.late = taken_late(body)
-        self.lists: Mapping[tuple[int, int], str] = {}
+        self.lists: Mapping[tuple[int, int], int] = {}
 
     # --- statements ------------------------------------------------------------------------------------------------------------------
 
     def block(self, block: nodes.Block) -> None:
         stmts = asked_first(block, self.reads, self.scope.is_number)
-        for row, run in runs_of_lists(tuple(stmts), self.lists, self.function.read):
-            if row is not None and (holder := self.scope.holders.get((row.lane, row.row))) is not None:
-                self.flush()
-                without_lists = next(name for (lane, _), name in self.lists.items() if lane == row.lane)
-                with self.function.writer.indented(f"if type({holder}) is not {without_lists}:"):
-                    self._statements(run)
-            else:
+        lacks = dict[str, str]()
+        for of, run in runs_of_lists(tuple(stmts), self.lists, self.function.read):
+            holder = self.scope.holders.get((of[0].lane, of[0].row)) if of is not None else None
+            if of is None or holder is None:
+                self._statements(run)
+                continue
+            self.flush()
+            if holder not in lacks:
+                lacks[holder] = self.binder.local(LACKS)
+                self.line(f"{lacks[holder]} = _lacking.get(type({holder}), 0)")
+            with self.function.writer.indented(f"if not {lacks[holder]} & {1 << of[1]}:"):
                 self._statements(run)
 
     def _statements(self, run: nodes.Block) -> None:
@@ -173,7 +178,9 @@ class Parts(Loops):
             case _:
                 pass
         self.positions.constant(stmt.name, stmt.value)
-        if stmt.name in self.function.read and stmt.name not in self.tested:
+        if stmt.name in self.stored and isinstance(stmt.value, nodes.Get) and self.scope.is_number(stmt.value.place):
+            self.line(f"{self.scope.locals.identifier(stmt.name)} = {self.scope.given(stmt.value.place)}")
+        elif stmt.name in self.function.read and stmt.name not in self.tested:
             print_statement(self.function, stmt)
 
     def _note(self, condition: nodes.Expr) -> None:

@@ -20,6 +20,19 @@ class LateRow:
     lists: tuple[Span, ...]
 
 
+MOST_GROUPS = 10
+"""Each set of groups that objects lack has a class, which is made when the first such object comes."""
+OF_GROUP = 8
+"""Lists of a group, at least: of larger ones more are made that nobody asked for, more groups take longer to look at."""
+
+
+def groups_of(lists: tuple[Span, ...]) -> tuple[tuple[Span, ...], ...]:
+    """Lists in groups, of which an object has all or none."""
+    number = min(max(len(lists) // OF_GROUP, 1), MOST_GROUPS)
+    size = -(-len(lists) // number)
+    return tuple(lists[at : at + size] for at in range(0, len(lists), size or 1))
+
+
 @dataclass(slots=True)
 class Direct:
     """What becomes objects at once in a body.

@@ -1,27 +1,30 @@
-"""Rows with many lists and maps (see `late_lists`): one that brings none sets nothing of them, and becomes an object without lists.
+"""Rows with many lists and maps (see `late_lists`): one that brings none of a group sets nothing of them, and its object lacks them.
 
 rows_texts_first = 0
 ...
-any_rows_lists = False
+any_rows_lists = any_rows_lists_0 = any_rows_lists_1 = False
 while at < stop:
     match case:
         case 10:
             any_rows_lists = True
+            any_rows_lists_0 = True
             ...
 if any_rows_lists:                                      without it there is a statement for each list
     rows_q[start * 42] = 1                              where the first list starts is not 0 in rows that have any
-    if rows_texts_used > rows_texts_first:
-        ...
-        rows_texts_first = rows_texts_used
+    if any_rows_lists_0:
+        rows_q[start * 42 + 14] = 1                     and where the last one of a group does, in rows that have any of that
+        if rows_texts_used > rows_texts_first:
+            ...
+            rows_texts_first = rows_texts_used
 
 [Row(...) if rows_texts_start or rows_texts_count else _new_Row(...) for ... in _unpack_each(...)]
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Set
+from collections.abc import Collection, Mapping, Set
 
-from rosetta_jit.generate.python.passes.direct import LateRow
+from rosetta_jit.generate.python.passes.direct import LateRow, groups_of
 from rosetta_jit.generate.python.passes.mentions import blocks_within, lanes_of, places_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Assign, Block, Compare, Const, Fill, If, Let, Local, Place, SetField, Stmt, Switch, Used, Var
@@ -29,7 +32,7 @@ from rosetta_jit.kernel.passes.fold import FALSE, TRUE
 from rosetta_jit.kernel.rewrite import with_blocks
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import blocks_of, statements
-from rosetta_jit.model.layout import Layout
+from rosetta_jit.model.layout import Layout, Span
 from rosetta_jit.startup.dataclass import replace
 
 
@@ -68,7 +71,7 @@ def _filled(block: Block, lane: int, late: LateRow, flag: str) -> tuple[Block, t
     Besides, the locals that say where a row's lists start: a row that has none leaves them as they are.
     """
     begin = next(number for number, stmt in enumerate(block) if _row_cleared(stmt, lane))
-    ends = [number for number, stmt in enumerate(block) if _list_set(stmt, lane, late)]
+    ends = [number for number, stmt in enumerate(block) if _list_set(stmt, lane, late.lists)]
     lanes = {each.lane for each in late.lists}
     between = block[begin + 1 : ends[0]] if len(ends) == len(late.lists) else ()
     if (
@@ -84,10 +87,16 @@ def _filled(block: Block, lane: int, late: LateRow, flag: str) -> tuple[Block, t
     }
     between = tuple(stmt for stmt in between if not (isinstance(stmt, Let) and stmt.name in firsts))
     told = [_with_next(block[number], firsts) for number in ends]
-    sets = (SetField(replace(row, offset=late.lists[0].offset), index(1)), *told)
+    flags, sets = [(flag, lanes)], list[Stmt]([SetField(replace(row, offset=late.lists[0].offset), index(1))])
+    for number, group in enumerate(groups_of(late.lists)):
+        flags.append((f"{flag}\0{number}", {each.lane for each in group}))
+        own = (stmt for end, stmt in zip(ends, told, strict=True) if _list_set(block[end], lane, group))
+        sets.append(If(Local("bool", flags[-1][0]), (SetField(replace(row, offset=group[-1].offset), index(1)), *own)))
     others = tuple(stmt for number, stmt in enumerate(block[ends[0] :], ends[0]) if number not in ends)
-    flagged = (_flagged(stmt, lanes, flag) for stmt in between)
-    return (*block[: begin + 1], Var(flag, FALSE), *flagged, If(Local("bool", flag), sets), *others), tuple(firsts)
+    for name, of in flags:
+        between = tuple(_flagged(stmt, of, name) for stmt in between)
+    begun = (Var(name, FALSE) for name, _ in flags)
+    return (*block[: begin + 1], *begun, *between, If(Local("bool", flag), tuple(sets)), *others), tuple(firsts)
 
 
 def _with_next(stmt: Stmt, firsts: Mapping[str, Used]) -> Stmt:
@@ -108,11 +117,11 @@ def _row_cleared(stmt: Stmt, lane: int) -> Place | None:
             return None
 
 
-def _list_set(stmt: Stmt, lane: int, late: LateRow) -> bool:
-    """Whether a statement says which rows a list of a row has, if it has any."""
+def _list_set(stmt: Stmt, lane: int, lists: Collection[Span]) -> bool:
+    """Whether a statement says which rows one of some lists of a row has, if it has any."""
     match stmt:
         case If(Compare("gt", Used(), Local()), (SetField(Place(of, _, offset)), SetField(Place())), ()):
-            return of == lane and offset in {each.offset for each in late.lists}
+            return of == lane and offset in {each.offset for each in lists}
         case _:
             return False
 

@@ -35,6 +35,8 @@ WORDS = frozenset(
         "copy",
         "np",
         "made",
+        "each",
+        "lacks",
     )
 ) | {f"call_{what}" for what in ("now", "number", "registers", "end", "copy", "into")}
 """What no class and no variable may be called: what functions are given, and what they need."""

@@ -166,7 +166,7 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
     function.settled = settled(body)
     if kernel.direction == "decode" and scope.flat:
         scope.attributes = objects.attributes(body, function.settled, scope.direct)
-        scope.without_lists = objects.without_lists(scope)
+        scope.lists = objects.late_lists(scope)
     function.unasked = unasked_words(body, objects.layout, scope)
     function.read = read_names(without_words(body, function.unasked), scope.direct.read())
     function.positive = not_negative(body, behind)

@@ -1,20 +1,22 @@
-"""Messages with many lists and maps: where none has come, their object is of a class that says so, until somebody asks for one.
+"""Messages with many lists and maps, in groups: where none of one comes, the class of the object says so, until somebody asks for one.
 
-if any_lists:                                           if type(target) is not _M_without_lists:
-    made.texts = texts if has_texts else []                 if len(target.texts):
-    made.numbers = numbers if has_numbers else []               ...
-else:                                                       if len(target.numbers):
-    _set_class(made, _M_without_lists)                          ...
+lacks = 3                                               lacks = _lacking.get(type(target), 0)
+if any_lists_0:                                         if not lacks & 1:
+    lacks -= 1                                              if len(target.texts):
+    made.texts = texts if has_texts else []                     ...
+    made.numbers = numbers if has_numbers else []           if len(target.numbers):
+...                                                             ...
+if lacks:                                               if not lacks & 2:
+    _set_class(made, _M_without_lists[lacks])               ...
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.python.passes.asked import asked_count
-from rosetta_jit.generate.python.passes.direct import LateRow
-from rosetta_jit.generate.python.passes.late_fields import UNKNOWN
+from rosetta_jit.generate.python.passes.direct import LateRow, groups_of
 from rosetta_jit.generate.python.printing.classes import TAKEN, member_names, numpy_scalar
 from rosetta_jit.generate.python.printing.scope import Scope
 from rosetta_jit.generate.unit import Unit
@@ -26,6 +28,8 @@ PRICE_OF_ARRAY = 3
 """How many lists take as much time to make as an array of numpy."""
 LEAST = 24
 """Lists of a type from which on it takes less time to make none of them."""
+LACKS = "lacks"
+"""The local that says which groups of lists an object lacks."""
 
 
 def lists_of_message(unit: Unit) -> tuple[Span, ...]:
@@ -53,23 +57,23 @@ def lists_of(struct: Struct, slot: Row, unit: Unit, least: int) -> tuple[Span, .
     return tuple(found) if price >= least else ()
 
 
-def class_without_lists(unit: Unit, scope: Scope, identifier: str) -> str:
-    """The class of objects of which no list has come; nothing where their lists are made whatever comes."""
+def late_lists(unit: Unit, scope: Scope) -> tuple[tuple[Span, ...], ...]:
+    """The groups of lists that the object of a message may lack; nothing where its lists are made whatever comes."""
     lists = lists_of_message(unit)
-    is_late = bool(lists) and scope.attributes is not None and all(scope.direct.late_at(each) is not None for each in lists)
-    return name_without_lists(identifier) if is_late else ""
+    is_late = scope.attributes is not None and all(scope.direct.late_at(each) is not None for each in lists)
+    return groups_of(lists) if is_late else ()
 
 
 def name_without_lists(identifier: str) -> str:
-    """What the class of objects of a class, of which no list has come, is called."""
+    """What the table of the classes of objects of a class, of which some lists have not come, is called."""
     return f"_{identifier}_without_lists"
 
 
 def said_to_come(scope: Scope, number: int) -> list[str]:
     """The locals that say of a late field, by its number, that it has come."""
     late = scope.direct.fields[number]
-    is_list = isinstance(late.slot, Span) and late.name != UNKNOWN
-    return [scope.has_field(late.name), *([scope.any_lists()] if scope.without_lists and is_list else [])]
+    groups = (group for group, lists in enumerate(scope.lists) if any(each is late.slot for each in lists))
+    return [scope.has_field(late.name), *map(scope.any_lists, groups)]
 
 
 def maker_without_lists(identifier: str) -> str:
@@ -87,10 +91,19 @@ def print_maker(late: LateRow, identifier: str) -> str:
             f"def {maker_without_lists(identifier)}({', '.join(map(scope.identifier, names))}):",
             f"    made = _new({identifier})",
             *(f"    made.{name} = {scope.identifier(name)}" for name in names),
-            f"    _set_class(made, {name_without_lists(identifier)})",
+            f"    _set_class(made, {name_without_lists(identifier)}[{(1 << len(groups_of(late.lists))) - 1}])",
             "    return made",
         ]
     )
+
+
+def set_groups(made: str, identifier: str, groups: Sequence[tuple[str, Sequence[str]]]) -> Iterator[str]:
+    """The lines that set those groups of an object's lists that it has, given what says so and what sets them, and its class."""
+    yield f"{LACKS} = {(1 << len(groups)) - 1}"
+    for number, (has, lines) in enumerate(groups):
+        yield f"if {has}:"
+        yield from (f"    {line}" for line in (f"{LACKS} -= {1 << number}", *lines))
+    yield from (f"if {LACKS}:", f"    _set_class({made}, {name_without_lists(identifier)}[{LACKS}])")
 
 
 def fields_besides(late: LateRow) -> Iterator[tuple[str, Field, Member]]:
@@ -99,17 +112,19 @@ def fields_besides(late: LateRow) -> Iterator[tuple[str, Field, Member]]:
     yield from (each for each in rows if each[2].slot not in late.lists)
 
 
-def runs_of_lists(block: Block, lists: Collection[tuple[int, int]], read: Collection[str]) -> Iterator[tuple[Place | None, Block]]:
-    """The statements of a block, in runs: those that do nothing where a row has none of some lists, with that row, and others.
+def runs_of_lists(
+    block: Block, lists: Mapping[tuple[int, int], int], read: Collection[str]
+) -> Iterator[tuple[tuple[Place, int] | None, Block]]:
+    """The statements of a block, in runs: those that do nothing where a row lacks a group of lists, with that row and group, and others.
 
-    ``lists`` are the fields for their numbers of elements, by lane and offset, ``read`` the locals that are printed.
+    ``lists`` are the groups of the fields for their numbers of elements, by lane and offset, ``read`` the locals that are printed.
     """
-    row: Place | None = None
-    runs: list[tuple[Place | None, list[Stmt]]] = []
+    row: tuple[Place, int] | None = None
+    runs: list[tuple[tuple[Place, int] | None, list[Stmt]]] = []
     for stmt in block:
         match stmt:
             case If(condition, _, ()) if (count := asked_count(condition)) and (count.lane, count.offset) in lists:
-                row = Place(count.lane, count.row)
+                row = Place(count.lane, count.row), lists[count.lane, count.offset]
             case Var(name, _) if name not in read:
                 pass
             case _:

@@ -12,7 +12,7 @@ from rosetta_jit.generate.python.passes.direct import Direct, LateRow
 from rosetta_jit.generate.python.printing.expressions import expression
 from rosetta_jit.generate.python.printing.scope import Scope
 from rosetta_jit.kernel import ir, nodes
-from rosetta_jit.model.layout import Layout
+from rosetta_jit.model.layout import Layout, Span
 from rosetta_jit.startup.dataclass import dataclass, field
 
 
@@ -41,7 +41,7 @@ class Objects:
     """How a function comes to objects: ``result`` is what a return of success gives at a position.
 
     Where a body sets ``attributes`` of the object (`sparse`), ``begun`` makes it, and ``settings`` are the lines before a return;
-    it is of a class ``without_lists`` where none has come, if there is one. ``late_rows`` are the lanes whose rows may be so, too.
+    it may lack the groups ``late_lists``. ``late_rows`` are the lanes whose rows may be so, too.
 
     Of decoders ``row`` is the object of a lane's row, ``inner`` are the lines of functions for rows that contain rows of their own type,
     ``inner_names`` what these are called: they refer to themselves, and to all rows, which would stay in memory for a while.
@@ -53,7 +53,7 @@ class Objects:
     attributes: Callable[[nodes.Block, frozenset[tuple[int, str]], Direct], dict[int, str] | None] = lambda _, __, ___: None
     begun: Callable[[Scope], list[str]] = lambda _: []
     settings: Callable[[Scope], list[str]] = lambda _: []
-    without_lists: Callable[[Scope], str] = lambda _: ""
+    late_lists: Callable[[Scope], tuple[tuple[Span, ...], ...]] = lambda _: ()
     row: Callable[[Scope, int], str] = lambda _, lane: f"<row {lane}>"
     inner: Callable[[Scope], list[str]] = lambda _: []
     inner_names: Callable[[Scope], list[str]] = lambda _: []

@@ -19,6 +19,7 @@ from rosetta_jit.generate.python.printing.classes import NUMPY
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.rewrite import locals_in
+from rosetta_jit.model.layout import Span
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
@@ -52,8 +53,8 @@ class Scope:
     its time and number, registers, object. ``small`` are the locals of 64 bits, without a sign, that are known to be below 2**63,
     ``sums`` those that are sums.
     ``unpacked`` are rows, by lane and index, whose numbers are locals of a comprehension: it gets their types by offset.
-    ``attributes`` are the fields of the message's row that are the object's at once, by offset, if it is made first; ``without_lists`` is
-    the class that it has then where none of its lists has come, if there is one.
+    ``attributes`` are the fields of the message's row that are the object's at once, by offset, if it is made first; ``lists`` are
+    the groups of lists that it may lack then.
     """
 
     locals: Locals
@@ -72,7 +73,7 @@ class Scope:
     from_call: set[str] = field(default_factory=set[str])
     direct: Direct = field(default_factory=Direct)
     attributes: dict[int, str] | None = None
-    without_lists: str = ""
+    lists: tuple[tuple[Span, ...], ...] = ()
     numpy: bool = False
     small: set[str] = field(default_factory=set[str])
     sums: dict[nodes.Expr, str] = field(default_factory=dict[nodes.Expr, str])
@@ -183,9 +184,9 @@ class Scope:
         """The local that says whether the message has a late field."""
         return self.locals.identifier(f"has\0{name}")
 
-    def any_lists(self) -> str:
-        """The local that says whether the message has any of its lists."""
-        return self.locals.identifier("any\0lists")
+    def any_lists(self, group: int) -> str:
+        """The local that says whether the message has any list of a group."""
+        return self.locals.identifier(f"any\0lists\0{group}")
 
     def field(self, lane: int, row: str, offset: int, scalar: str) -> str:
         """A scalar of a row."""

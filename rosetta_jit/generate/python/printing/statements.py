@@ -18,6 +18,7 @@ from rosetta_jit.generate.python.printing.reading import numbers_read, rows_read
 from rosetta_jit.generate.python.printing.reserving import reserve, take
 from rosetta_jit.generate.python.printing.rows_at_once import rows_at_once
 from rosetta_jit.generate.python.printing.scope import CODES
+from rosetta_jit.generate.python.printing.switching import print_switch
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import mul, type_of
@@ -235,11 +236,8 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
             if otherwise:
                 with function.writer.indented("else:"):
                     print_block(function, otherwise)
-        case nodes.Switch(value, cases, default):
-            with function.writer.indented(f"match {function.text(value)}:"):
-                for head, body in (*((f"case {number}:", body) for number, body in cases), ("case _:", default)):
-                    with function.writer.indented(head), scope.locals.case(body):
-                        print_block(function, body)
+        case nodes.Switch():
+            print_switch(function, stmt, print_block)
         case _:
             assert_never(stmt)
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-_Array, _numbers_in = np.ndarray, np.frombuffer
+_Array, _numbers_in, _numbers_of = np.ndarray, np.frombuffer, np.array
 _PLAIN = frozenset(map(np.dtype, "?bBhHiIlLqQfd"))
 """The types of arrays of numbers as this machine has them."""
 
