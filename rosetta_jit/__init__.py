@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.log import Log
     from rosetta_jit.pipeline.checked_mapping import CheckedMapping
-    from rosetta_jit.runtime.batch import Batch
+    from rosetta_jit.runtime.batches.batch import Batch
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.transports.opening import call, publish, serve, subscribe
 
@@ -91,7 +91,7 @@ _LAZY = {
     "Decoders": "rosetta_jit.api.wires",
     "Encoders": "rosetta_jit.api.wires",
     "Bridge": "rosetta_jit.api.bridges",
-    "Batch": "rosetta_jit.runtime.batch",
+    "Batch": "rosetta_jit.runtime.batches.batch",
     "Holder": "rosetta_jit.runtime.holder",
     "Log": "rosetta_jit.logs.log",
     "call": "rosetta_jit.transports.opening",

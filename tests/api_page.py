@@ -17,8 +17,8 @@ from rosetta_jit.frameworks.ros2.manners import Ros2Message
 from rosetta_jit.frameworks.yarp.manners import BottleMessage
 from rosetta_jit.logs.channel import Channel
 from rosetta_jit.logs.log import Log
-from rosetta_jit.runtime.nested_columns import Columns, Ragged
-from rosetta_jit.runtime.text_columns import Texts
+from rosetta_jit.runtime.batches.nested import Columns, Ragged
+from rosetta_jit.runtime.batches.texts import Texts
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.transports.base import Message, Sink, Source
 from rosetta_jit.transports.calls import Caller, Server

@@ -26,7 +26,7 @@ LOWERS = REPORTS | LANGUAGE | {"model", "wire", "kernel", "lowering"}
 LOWERING = {"lowering", "lowering.codec", "lowering.texts", "lowering.rules", "lowering.staging", "lowering.mapped", "lowering.lower"}
 BACKENDS = {"backends", "backends.llvm", "backends.numba", "backends.python", "backends.entry"}
 RUNTIME = {"runtime", "runtime.limits", "runtime.code", "runtime.cache", "runtime.functions"}
-RUNTIME |= {"runtime.attributes", "runtime.holder", "runtime.holder.objects", "runtime.looks", "runtime.arrow"}
+RUNTIME |= {"runtime.attributes", "runtime.batches", "runtime.holder", "runtime.holder.objects", "runtime.looks", "runtime.arrow"}
 HOLDERS = REPORTS | {"model.types", "model.words", "model.limits", "model.layout", "model.initial_values", "model.serial", "kernel.state"}
 COMPILER = REPORTS | LANGUAGE | KERNEL | LOWERING | BACKENDS | RUNTIME | {"model", "parsing", "wire", "frameworks", "frameworks.installed"}
 API = {"api", "api.options", "api.cacheable"}
@@ -126,7 +126,7 @@ MAY_IMPORT = {
         for module in (
             "callable",
             "cells",
-            "columns",
+            "batches.columns",
             "pickled_lanes",
             "lanes",
             "locks",
@@ -149,6 +149,7 @@ MAY_IMPORT = {
         "runtime.holder.objects.in_c",
     },
     "runtime.looks": HOLDERS | {"runtime.limits", "runtime.holder"},
+    "runtime.batches": HOLDERS | RUNTIME - {"runtime.functions"},
     "runtime.arrow": HOLDERS | {"runtime.holder"} | {f"runtime.{module}" for module in ("cells", "lanes", "memory_for_arrow", "rows")},
     "runtime.limits": set(),
     "runtime.code": set(),
@@ -164,7 +165,7 @@ MAY_IMPORT = {
     "api": COMPILER | API | {"in_numba", "stubs", "pipeline", "pipeline.request"},
     "logs": LOG_READER
     | {"api", "api.options", "file_errors", "recording", "parsing", "model.units", "frameworks.installed", "frameworks.lcm"}
-    | {"frameworks.ros2", "logs.folder_names", "runtime", "runtime.arrow", "runtime.holder"},
+    | {"frameworks.ros2", "logs.folder_names", "runtime", "runtime.arrow", "runtime.batches", "runtime.holder"},
     "logs.base": REPORTS | {"logs.reading.storage", "logs.reading.walking"},
     "logs.limits": set(),
     "logs.folder_names": set(),

@@ -13,7 +13,7 @@ from rosetta_jit.errors import DecodeError, LogError, SchemaError
 from rosetta_jit.logs.base import Block, Connection, Wanted
 from rosetta_jit.logs.decoded_parts import CLOCKS, Collector, OnError, Part, nothing
 from rosetta_jit.logs.moments import nanoseconds, shown
-from rosetta_jit.runtime.transposing import prepare
+from rosetta_jit.runtime.batches.transposing import prepare
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import replace
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.file import LogFile
     from rosetta_jit.logs.moments import Moment
     from rosetta_jit.logs.reading.walking import Rows
-    from rosetta_jit.runtime.batch import Batch
+    from rosetta_jit.runtime.batches.batch import Batch
 
     Program = TypeVar("Program", bound=Decoder | Encoder)
 

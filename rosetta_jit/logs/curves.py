@@ -13,9 +13,9 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.limits import MAX_LISTED_DEPTH
 from rosetta_jit.model.units import Context
-from rosetta_jit.runtime.batch import Batch, family_in
+from rosetta_jit.runtime.batches.batch import Batch, family_in
+from rosetta_jit.runtime.batches.nested import Columns, Ragged
 from rosetta_jit.runtime.holder.record import Child, Items, Node, Record
-from rosetta_jit.runtime.nested_columns import Columns, Ragged
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from rosetta_jit.api.decoder import Decoder
     from rosetta_jit.logs.base import Block
     from rosetta_jit.logs.reading.walking import Rows
-    from rosetta_jit.runtime.batch import Batch
-    from rosetta_jit.runtime.filling import Filling
+    from rosetta_jit.runtime.batches.batch import Batch
+    from rosetta_jit.runtime.batches.filling import Filling
 
 OnError: TypeAlias = Literal["raise", "skip", "mask"]
 CLOCKS = ("log_time", "publish_time")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rosetta_jit.runtime.batch import Batch, hand_over
+from rosetta_jit.runtime.batches.batch import Batch, hand_over
 
 if TYPE_CHECKING:
     import pyarrow as pa

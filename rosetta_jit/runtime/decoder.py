@@ -28,15 +28,16 @@ if TYPE_CHECKING:
     from _typeshed import ReadableBuffer as Buffer
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime import filling as batches
     from rosetta_jit.runtime import message_spans
-    from rosetta_jit.runtime.batch import Batch
-    from rosetta_jit.runtime.filling import Filling, OnError
+    from rosetta_jit.runtime.batches import filling as batches
+    from rosetta_jit.runtime.batches.batch import Batch
+    from rosetta_jit.runtime.batches.filling import Filling, OnError
     from rosetta_jit.runtime.holder.objects.giving import Givers
     from rosetta_jit.runtime.message_spans import MessageSpans
     from rosetta_jit.runtime.on_demand import OnDemand
 else:
-    batches, message_spans = late("rosetta_jit.runtime", "filling", "message_spans")
+    (batches,) = late("rosetta_jit.runtime.batches", "filling")
+    (message_spans,) = late("rosetta_jit.runtime", "message_spans")
 
 _Object = TypeVar("_Object")
 
@@ -260,7 +261,7 @@ class DecoderBase(Program):
             filling.add(data, spans, count)
 
     def _batch(self, count: int) -> Batch:
-        from rosetta_jit.runtime.batch import Batch
+        from rosetta_jit.runtime.batches.batch import Batch
 
         holder_type = self._loaded.holder_type
         is_large = count * holder_type.family_.layout.lanes[0].stride >= LARGE

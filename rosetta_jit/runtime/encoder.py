@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime import message_spans
-    from rosetta_jit.runtime.batch import Batch
+    from rosetta_jit.runtime.batches.batch import Batch
 
     Target = tuple[NDArray[np.uint8], int]
     """A buffer, and where to write in it."""
@@ -159,7 +159,7 @@ class EncoderBase(Program):
         return np.frombuffer(bytearray().join(messages), np.uint8), offsets
 
     def _batch_of(self, source: Any) -> Batch:
-        from rosetta_jit.runtime.batch import Batch
+        from rosetta_jit.runtime.batches.batch import Batch
 
         return source if isinstance(source, Batch) else Batch.from_arrow(self._loaded.holder_type, source)
 
@@ -168,7 +168,7 @@ class EncoderBase(Program):
         if not lanes.words[VALID]:
             raise lanes.invalid()
         if lanes.words[VALID] != CLEAN or lanes.source[0] is not None:
-            from rosetta_jit.runtime.batch_parts import settled
+            from rosetta_jit.runtime.batches.parts import settled
 
             lanes.adopt(settled(lanes))
 
@@ -293,7 +293,7 @@ class EncoderBase(Program):
             place(message)
             if lanes.words[VALID] == CLEAN and lanes.source[0] is None:
                 return self._written_row(lanes, row, target)
-        from rosetta_jit.runtime.batch_parts import joined
+        from rosetta_jit.runtime.batches.parts import joined
 
         with joined([(lanes, slice(row, row + 1))]) as alone:
             return self._written_row(alone, 0, target)

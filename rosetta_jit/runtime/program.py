@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.batch import Batch
+    from rosetta_jit.runtime.batches.batch import Batch
     from rosetta_jit.runtime.message_spans import MessageSpans
     from rosetta_jit.runtime.on_demand import OnDemand
 

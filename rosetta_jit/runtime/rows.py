@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
 import numpy as np
 
 from rosetta_jit.model.layout import SPAN_BYTES
+from rosetta_jit.runtime.batches.transposing import Steady, transposed
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder.record import Bit, Case, Cell, Presence
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.run import readable
-from rosetta_jit.runtime.transposing import Steady, transposed
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.runtime import filling
+from rosetta_jit.runtime.batches import filling
 
 SCHEMA = {"p/A.msg": "int32 n\nstring s\nfloat64[] xs\n"}
 

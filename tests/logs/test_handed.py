@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.runtime.batch import hand_over
+from rosetta_jit.runtime.batches.batch import hand_over
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.memory_for_arrow import SPARE
 

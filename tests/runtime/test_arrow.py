@@ -13,7 +13,7 @@ import pytest
 from rosetta_jit.errors import EncodeError, InvalidHolder
 from rosetta_jit.kernel.state import VALID
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Union
-from rosetta_jit.runtime.batch import Batch
+from rosetta_jit.runtime.batches.batch import Batch
 from rosetta_jit.runtime.holder import holder_class
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Pairs, Record, Scalar, Text
 

@@ -11,7 +11,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.errors import ValuesError
 from rosetta_jit.model.types import Array, Bytes, Field, Float, Int, Optional, Ref, Schema, String, Struct, Union
-from rosetta_jit.runtime.batch import Batch
+from rosetta_jit.runtime.batches.batch import Batch
 from rosetta_jit.runtime.holder import holder_class
 
 sys.path.insert(0, str(Path(__file__).parent))

@@ -10,7 +10,7 @@ import pytest
 
 from rosetta_jit.errors import EncodeError, ValuesError
 from rosetta_jit.model.types import Array, Bool, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct
-from rosetta_jit.runtime.batch import Batch
+from rosetta_jit.runtime.batches.batch import Batch
 from rosetta_jit.runtime.holder import holder_class
 
 sys.path.insert(0, str(Path(__file__).parent))

@@ -13,8 +13,8 @@ import pyarrow as pa
 import pytest
 
 from rosetta_jit.kernel.state import VALID
-from rosetta_jit.runtime.batch import Batch
-from rosetta_jit.runtime.nested_columns import Columns, Ragged
+from rosetta_jit.runtime.batches.batch import Batch
+from rosetta_jit.runtime.batches.nested import Columns, Ragged
 
 sys.path.insert(0, str(Path(__file__).parent))
 from schemas import flat, whole

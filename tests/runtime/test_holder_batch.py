@@ -10,7 +10,7 @@ import pytest
 
 from rosetta_jit.errors import InvalidHolder
 from rosetta_jit.kernel.state import VALID
-from rosetta_jit.runtime.batch import Batch
+from rosetta_jit.runtime.batches.batch import Batch
 
 sys.path.insert(0, str(Path(__file__).parent))
 from schemas import flat, whole

@@ -12,7 +12,7 @@ from rosetta_jit.errors import ValuesError
 from rosetta_jit.kernel.state import UNSETTLED, VALID
 from rosetta_jit.model.expr import Member, Path
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Union
-from rosetta_jit.runtime.batch import Batch
+from rosetta_jit.runtime.batches.batch import Batch
 from rosetta_jit.runtime.holder import holder_class
 
 POINT = Struct("t.Point", (Field("xy", Array(Float(64), 2)), Field("id", Bytes("octet", 3))))

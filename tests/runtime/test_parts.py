@@ -16,7 +16,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.errors import InUse, InvalidHolder
 from rosetta_jit.kernel.state import VALID
-from rosetta_jit.runtime.batch import Batch
+from rosetta_jit.runtime.batches.batch import Batch
 
 sys.path.insert(0, str(Path(__file__).parent))
 from schemas import flat, whole

@@ -11,9 +11,9 @@ import pytest
 from mcap.writer import Writer
 
 import rosetta_jit as rj
-from rosetta_jit.runtime import transposing
+from rosetta_jit.runtime.batches import transposing
+from rosetta_jit.runtime.batches.transposing import LEAST, WORTH_COMPILING, Steady, prepare, transposed
 from rosetta_jit.runtime.rows import numpys
-from rosetta_jit.runtime.transposing import LEAST, WORTH_COMPILING, Steady, prepare, transposed
 
 sys.path.insert(0, str(Path(__file__).parent))
 from test_arrow import filled

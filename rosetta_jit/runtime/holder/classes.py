@@ -163,7 +163,7 @@ class Holder(Message, metaclass=HolderClass):
         TypeError
             If messages contain each other without bound there.
         """
-        from rosetta_jit.runtime.columns import column_of
+        from rosetta_jit.runtime.batches.columns import column_of
 
         return self.lanes_.consistent(lambda path: column_of(self, path), name)
 

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any, assert_never
 import numpy as np
 
 from rosetta_jit.model.layout import scalar_of
+from rosetta_jit.runtime.batches.nested import Columns, Ragged, refuse_others
+from rosetta_jit.runtime.batches.texts import Texts
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder.message import Message, place
 from rosetta_jit.runtime.holder.paths import entries_to
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Cell, Child, Items, Node, Numbers, Pairs, Presence, Record, Scalar, Text
 from rosetta_jit.runtime.lanes import Lanes
-from rosetta_jit.runtime.nested_columns import Columns, Ragged, refuse_others
-from rosetta_jit.runtime.text_columns import Texts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,7 +10,7 @@ import numpy as np
 from rosetta_jit.errors import DecodeError
 from rosetta_jit.kernel.state import CAPACITY, CLEAN, LANE_WORDS, USED, VALID, lane_word
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.batch import Batch, begin_anew, is_handed_over, keep_only
+from rosetta_jit.runtime.batches.batch import Batch, begin_anew, is_handed_over, keep_only
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.memory import pointer_to
 from rosetta_jit.runtime.program import Loaded, one_by_one

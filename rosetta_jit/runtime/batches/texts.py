@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from rosetta_jit.model.types import String
+from rosetta_jit.runtime.batches.nested import Ragged
 from rosetta_jit.runtime.holder import coerce
-from rosetta_jit.runtime.nested_columns import Ragged
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from rosetta_jit.runtime.batch_parts import chosen_rows
+from rosetta_jit.runtime.batches.parts import chosen_rows
 from rosetta_jit.runtime.limits import MAX_TEXT_ITEMS
 from rosetta_jit.runtime.rows import elements
 from rosetta_jit.startup.dataclass import dataclass, replace

@@ -9,15 +9,15 @@ import numpy as np
 
 from rosetta_jit.errors import DecodeError, InUse
 from rosetta_jit.kernel.state import EPOCH, VALID
-from rosetta_jit.runtime.batch_parts import contents, errors_of_part, errors_together, joined, revived
-from rosetta_jit.runtime.columns import WithColumns, column, presence_mask
+from rosetta_jit.runtime.batches.columns import WithColumns, column, presence_mask
+from rosetta_jit.runtime.batches.nested import Origin, of_batch
+from rosetta_jit.runtime.batches.parts import contents, errors_of_part, errors_together, joined, revived
 from rosetta_jit.runtime.holder import Holder, Manners
 from rosetta_jit.runtime.holder.classes import HolderFamily
 from rosetta_jit.runtime.holder.family import family_of
 from rosetta_jit.runtime.holder.paths import entries_to
 from rosetta_jit.runtime.lanes import Lanes, in_use
 from rosetta_jit.runtime.memory_for_arrow import Handed
-from rosetta_jit.runtime.nested_columns import Origin, of_batch
 
 if TYPE_CHECKING:
     import pyarrow as pa
