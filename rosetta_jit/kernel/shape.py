@@ -14,7 +14,7 @@ from rosetta_jit.kernel.walk import bound_names, expressions_of, operands, state
 OF_A_BODY = frozenset[type[nodes.Stmt | nodes.Expr]](
     (nodes.Return, nodes.Reserve, nodes.Advance, nodes.HostCall, nodes.Used, nodes.HostValue, nodes.Register)
 )
-"""Kinds of statements and expressions that a routine has none of: its end, rows of lanes, what the host tells or does, and registers."""
+"""Kinds of statements and expressions that bodies may have and routines may not: returns, and uses of lanes, the host and registers."""
 
 TOO_DEEP = "an expression is nested too deep"
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+
 import pytest
 
 import rosetta_jit as rj
@@ -95,6 +97,20 @@ def test_lists_of_any_class_are_written(header, tmp_path):
     declared = f"{LIBRARY}#include <array>\n#include <deque>\nnamespace rj {{\n{HEADERS[header]}\nnamespace msg = ::rj;\n}}\n"
     (tmp_path / "parts.h").write_text(declared)
     compared(tmp_path, "ros1", Wishes(holder="ros2", include="parts.h"))
+
+
+@cpp.needs_cpp
+@pytest.mark.parametrize(("container", "complaint"), [("vector", ""), ("deque", "the elements of a list must lie one behind the other")])
+def test_lists_that_a_decoder_fills_lie_one_behind_the_other(container, complaint, tmp_path):
+    """A compiler says so of those that do not."""
+    classes = f"struct Leaf {{ std::string text; }}; struct Leaves {{ std::{container}<Leaf> leaves; }};"
+    (tmp_path / "leaves.h").write_text(f"{LIBRARY}#include <deque>\nnamespace rj {{\n{classes}\nnamespace msg = ::rj;\n}}\n")
+    options = {"encoding": "ros1", "schema": f"Leaf[] leaves\n{SEPARATOR}\nMSG: rj/Leaf\nstring text\n"}
+    wishes = Wishes(holder="ros2", include="leaves.h")
+    name = cpp.write(tmp_path, generated(type_request("decode", "rj/Leaves", options), "cpp", BOTH, "unit", wishes))
+    command = ["g++", "-std=c++17", "-fsyntax-only", f"-I{tmp_path}", tmp_path / f"{name}.cpp"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode != 0, complaint in done.stderr) == (bool(complaint), True), done.stderr
 
 
 LIST = Within("view", 1, 8, frozenset({"start"}))

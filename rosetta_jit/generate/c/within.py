@@ -1,6 +1,6 @@
-"""Lists within lists whose elements an encoder of C++ reads where an object has them: such a span begins with the address of its list.
+"""Lists within lists whose elements an encoder of C++ reads where an object has them: the start of such a span is the address of its list.
 
-A row of one is then the address of the list, and the number of an element behind it.
+The index of one of its rows is therefore that address plus the number of an element: `address + i`.
 """
 
 from __future__ import annotations

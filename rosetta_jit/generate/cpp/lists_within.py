@@ -1,8 +1,9 @@
-"""Lists within lists that an encoder reads where the object has them: a row of an element has the address of its list, and their count.
+"""Lists within lists that an encoder reads where the object has them: the row of an element has the address of its list, and its count.
 
-That is so of lists of structs, texts and lists, whatever has them; and of numbers that a kernel reads one by one, as it turns their bytes
-round, or as a class has them as others. The class has the elements themselves: where it has pointers to them, as protoc's, rows are read in
-less time, once to measure a message and once to write it. Each row of them must be found by such an address, which a local has or a row.
+These are lists of structs, texts and lists; and lists of numbers that a kernel reads one by one, because it swaps their bytes or converts
+them from the types of the class. Two conditions hold. The class has the elements themselves, not pointers to them as protoc's classes do:
+an encoder measures a message and then writes it, and would follow each pointer twice, which takes longer than to make rows. And kernels
+reach the elements by nothing but the address in the row, or a local that has it (`generate.c.within`).
 """
 
 from __future__ import annotations

@@ -150,7 +150,7 @@ class _Printing:
             _within_lanes(self.lines, function, self._used_at_start, lambda lanes: print_block(function, body, _end(function, body), lanes))
 
     def _parts(self, name: str, body: Block) -> None:
-        """The functions of an attempt: what are variables for lanes elsewhere are names of places in the codec, as spilled locals are."""
+        """The functions of an attempt. Names of spilled locals, and of lanes' rows and counts, stand for places in the codec."""
         read, locals_, parts = read_names(body), Names(self.lanes.words()), parted(body, name)
         spilled = {local: _place(type_, number) for number, (local, type_) in enumerate(parts.spilled(read).items())}
         counts = {lane: _place("i64", len(spilled) + lane) for lane in range(len(self.lanes.all))}
@@ -171,7 +171,7 @@ class _Printing:
 
     @contextmanager
     def _apart(self, function: Function, block: Block, counts: Mapping[int, str]) -> Generator[None]:
-        """A function that sees no variables of others, in which what it uses of the codec has names."""
+        """A global function, around which `symbol-macrolet` names the places in the codec that it uses."""
         scope, used = function.scope, names_in(block)
         named = {scope.locals.symbol(local): place for local, place in function.spilled.items() if local in used}
         named |= {self.lanes.used(lane): counts[lane] for lane in sorted(scope.counted)}
@@ -232,7 +232,7 @@ def _end(function: Function, body: Block) -> Callable[[], None]:
 
 
 def _fields(block: Block, sites: Sequence[Site]) -> str:
-    """Which fields a block is about: the first and the last one that it has something to say of."""
+    """Which fields a block is about: the first and the last one in which it can fail."""
     failing = (stmt for stmt in flat(block) if isinstance(stmt, Require | Expect | HostCall))
     paths = [path for stmt in failing if (path := sites[stmt.failure.site].path)]
     return f"{paths[0]} to {paths[-1]}" if paths else "the message"

@@ -40,7 +40,7 @@ class Function:
     ``routines`` are the functions of routines by name. ``numbers`` are the rows of the table that sites of the kernel have got, ``paths``
     the fields that lanes belong to, ``functions`` those of the mapping by name.
     ``staying`` are lanes of which a message leaves rows to others. ``spilled`` are locals that lie in the codec, each with the form that
-    reads and sets it there, and ``passed`` what functions that see no variables of each other get.
+    reads and sets it there. ``passed`` are the arguments that a global function passes on to each part and routine.
     """
 
     name: str
@@ -301,9 +301,10 @@ def _if(function: Function, condition: nodes.Expr, then: nodes.Block, otherwise:
 
 
 def _call(function: Function, call: nodes.Call) -> None:
-    """What a routine gives is the number of its own site that failed, or 0; its results, and bits that it gets, pass by way of the codec.
+    """A call of a routine, or of a part of the function.
 
-    A part of the function gives what the function does, or 0.
+    A routine returns the number of its own site that failed, or 0. Its results, and arguments of `BOXED` types, lie in slots of the codec.
+    A part returns what the whole function returns then, or 0 if it goes on.
     """
     if call.routine not in function.routines:
         function.line(f"(run-part ({call.routine}{function.passed}) {function.name})")

@@ -1,4 +1,4 @@
-"""Integers of objects that an encoder compares and writes: the struct module asks whether they fit, and nothing has to before.
+"""Integers of objects that an encoder compares and writes: the struct module checks their range as it writes them, once is enough.
 
 read = target.size                  without a call of _within
 if len(data) != read:

@@ -1,6 +1,6 @@
-"""Switches as Python: a match compares one case after the other, so that many cases are parted first.
+"""Switches as Python: a match compares one case after the other, so that many cases are divided by a binary search first.
 
-known = True                            what is done where no case is meant stands once
+known = True                            so that the default stands once, behind the search
 if tag < 130:
     match tag:
         case 10:
