@@ -65,6 +65,9 @@ OTHERS = {
     "a list of flags": {"flags": [{"set": False, "rest": 1}] * 2},
 }
 """What the source file reads, as lists that have many elements, or texts that have nothing."""
+EMPTY_IN_CDR = {"lists of numbers", "a list of numbers", "a list of flags", "lists of texts", "bytes and a list of texts"}
+"""Texts of CDR have a byte behind them, and so are never empty."""
+EMPTY = {*TYPES} - {"numbers", "numbers behind bytes", "triangles"}
 WRITTEN = {*TYPES}
 IN_HEADER = {*TYPES} - {"numbers behind bytes"}
 ALIGNED = {"poses between texts"}
@@ -89,6 +92,7 @@ def test_messages_that_are_harmed_get_the_same_answers(type_, encoding, tmp_path
     texts = generated(type_request("decode", "rj/Message", options), "cpp", BOTH, "unit")
     is_found = encoding == "ros1" or type_ not in ALIGNED
     assert ("static bool is_read(" in texts["unit.hpp"]) == (type_ in IN_HEADER and is_found)
+    assert ("static bool is_read_empty(" in texts["unit.hpp"]) == (type_ in (EMPTY if encoding == "ros1" else EMPTY_IN_CDR))
     assert ("put_at_once(" in texts["unit.hpp"]) == (type_ in WRITTEN and is_found)
     values = TYPES[type_][1]
     other = values | OTHERS.get(type_, {})

@@ -81,7 +81,7 @@ def compared(tmp_path, encoding: str, wishes: Wishes) -> str:
 
 
 @cpp.needs_cpp
-@pytest.mark.parametrize("encoding", ["ros1", "cdr"])
+@pytest.mark.parametrize("encoding", ["ros1", pytest.param("cdr", marks=pytest.mark.campaign)])
 def test_lists_within_lists_are_written_from_where_they_are(encoding, tmp_path):
     """No rows are made of them: structs, texts, and lists within those, of any length and of a fixed one."""
     text = compared(tmp_path, encoding, Wishes())
@@ -91,7 +91,9 @@ def test_lists_within_lists_are_written_from_where_they_are(encoding, tmp_path):
 
 
 @cpp.needs_cpp
-@pytest.mark.parametrize("header", HEADERS)
+@pytest.mark.parametrize(
+    "header", ["not one behind the other", *(pytest.param(each, marks=pytest.mark.campaign) for each in ("alike", "in another order"))]
+)
 def test_lists_of_any_class_are_written(header, tmp_path):
     """Elements may lie in memory in any way, bools, too."""
     declared = f"{LIBRARY}#include <array>\n#include <deque>\nnamespace rj {{\n{HEADERS[header]}\nnamespace msg = ::rj;\n}}\n"

@@ -78,7 +78,12 @@ def message(chance: random.Random) -> bytes:
     return b"".join([*fields, nested, another, *([b"\xc0\x02\x05"] if chance.random() < 0.3 else [])])
 
 
-COMPILERS = ["g++", pytest.param("g++ -O1", marks=pytest.mark.campaign), "g++ -U__SSE2__", "clang++"]
+COMPILERS = [
+    "g++",
+    pytest.param("g++ -O1", marks=pytest.mark.campaign),
+    "g++ -U__SSE2__",
+    pytest.param("clang++", marks=pytest.mark.campaign),
+]
 EVERY = [*COMPILERS, "gcc"]
 
 

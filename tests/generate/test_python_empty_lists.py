@@ -123,7 +123,8 @@ def test_rows_get_their_lists_when_somebody_asks(unit):
 
 def test_rows_without_lists_may_be_anywhere():
     """An object of a row is what any other one of its class is, wherever a program puts it."""
-    body = OF_MANY.replace("message M {", "message M { Row one = 6; map<int32, Row> named = 7;")
+    leaf = "message Leaf { repeated string texts = 1; }"
+    body = f"{leaf} message Row {{ {MANY} }} message M {{ repeated Row rows = 1; Row one = 6; map<int32, Row> named = 7; }}"
     unit = module(type_request("decode", "t.M", protobuf(body)))
     (row,) = unit.decode(b"\x0a\x00").rows
     assert unit.encode(unit.M(one=row)) == b"\x32\x00"

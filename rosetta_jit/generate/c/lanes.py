@@ -95,7 +95,7 @@ class Packed:
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """An array of an object, whose elements are rows: what gives it a `$count` of them, and the first one until then."""
+    """An array of an object, whose elements are rows: what gives it a `$count` of them, and the first one until then, if any is used."""
 
     sized: str
     rows: str = "nullptr"

@@ -44,7 +44,9 @@ def _given_rows(scope: Scope, stmt: nodes.Reserve | nodes.Advance, count: str) -
     if isinstance(stmt, nodes.Advance):
         rows = scope.rows(stmt.lane)
         scope.moved.add(stmt.lane)
-        return [f"{rows} = {Template(scope.lanes.given[stmt.lane].sized).substitute(count=count)};"]
+        given = scope.lanes.given[stmt.lane]
+        sized = Template(given.sized).substitute(count=count)
+        return [f"{rows} = {sized};" if given.rows else f"{sized};"]
     scope.takes("failure")
     is_too_much = f"{count} > {scope.takes('holder')}->most"
     return [f"if ({is_too_much}) {{", f"    return {scope.calls('full')}(failure, {stmt.lane}, {count} - holder->most);", "}"]

@@ -39,5 +39,7 @@ def size_left(count: Expr) -> Expr | None:
     match count:
         case Binary("sub", Const(_, -1), size):
             return size
+        case Const(type_, -1):
+            return Const(type_, 0)
         case _:
             return None

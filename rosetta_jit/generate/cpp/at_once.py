@@ -15,7 +15,7 @@ from rosetta_jit.generate.c.scope import Scope
 from rosetta_jit.generate.c.statements import Function, lacks, print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.cpp.checks import IMPLIED, fewer
-from rosetta_jit.generate.cpp.empty_lists import lanes_of_empty_lists, of_empty_lists
+from rosetta_jit.generate.cpp.empty_lists import lanes_of_empty_lists, lanes_of_nothing, of_empty_lists, of_nothing
 from rosetta_jit.generate.cpp.few_elements import lanes_of_few_elements, of_few_elements
 from rosetta_jit.generate.cpp.opened import without_asking, without_counting
 from rosetta_jit.generate.parentheses import bare
@@ -23,7 +23,7 @@ from rosetta_jit.generate.reachable import read_names
 from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.passes.fold import folded
+from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import replace
 
@@ -48,7 +48,22 @@ def at_once(kernel: Kernel, lanes: Lanes, apart: tuple[Kernel, Lanes]) -> str:
     if found is None or two_roundings((kernel,)):
         return ""
     checks, effects, lanes = found
-    checks = fewer(checks, is_sized=not any(_has_length(lanes, each) for each in effects))
+    return _printed(kernel, fewer(checks, is_sized=not any(_has_length(lanes, each) for each in effects)), effects, lanes)
+
+
+def of_no_elements_at_once(kernel: Kernel, lanes: Lanes) -> str:
+    """The same of messages whose texts and lists are all empty, for which their size is looked at first."""
+    found = _straightened(of_nothing(kernel.bodies[0], lanes))
+    if found is None or two_roundings((kernel,)):
+        return ""
+    checks, effects = found
+    if any(isinstance(stmt, nodes.Expect) and stmt.condition == FALSE for stmt in checks):
+        return ""
+    return _printed(kernel, fewer(checks, is_sized=True), effects, lanes_of_nothing(lanes))
+
+
+def _printed(kernel: Kernel, checks: nodes.Block, effects: nodes.Block, lanes: Lanes) -> str:
+    """The statements of both, empty where they need more than what such a decoder is given."""
     words = lanes.words() | function_names() | {"data"}
     scope = Scope(Namespace(words), replace(lanes, shared=SHARED), set(), set(), set())
     function = Function(scope, kernel.sites, {}, read=read_names((*checks, *effects)))
@@ -79,6 +94,8 @@ def is_shared(function: str) -> bool:
 
 def _straightened(body: nodes.Block) -> tuple[nodes.Block, nodes.Block] | None:
     """What a body checks and what it sets, if it does nothing else; a check that fails stands for a branch that sets nothing."""
+    if not body:
+        return None
     *stmts, last = body
     checks, effects = list[nodes.Stmt](), list[nodes.Stmt]()
     for stmt in stmts:

@@ -1,4 +1,4 @@
-"""A decoder's statements for messages whose lists are empty, as those often are that say more of what a message has besides.
+"""A decoder's statements for messages whose lists are empty, as optional ones often are, and for messages that have no texts, either.
 
 How many elements a list has must be found before any text is checked: a message that has some loses a comparison.
 """
@@ -26,14 +26,37 @@ NOT_EMPTY = nodes.Failure(0, NONE)
 
 def of_empty_lists(body: Block, lanes: Lanes) -> Block:
     """The statements of a body that are left, behind checks that lists of the message are empty; the body itself if there are none."""
-    lists = frozenset(straight.lane for (lane, _), straight in lanes.straight.items() if lane == 0 and straight.lane)
+    lists = lists_of(lanes)
     reserved = (stmt.count for stmt in body if isinstance(stmt, nodes.Reserve) and stmt.lane in lists)
     counts = {count.name for count in reserved if isinstance(count, nodes.Local)}
+    return _of_no_more(body, lists, counts, anywhere=False) if lists else body
+
+
+def of_nothing(body: Block, lanes: Lanes) -> Block:
+    """The same of messages that have no elements at all, and no texts: all of these have one size."""
+    sizes = (each for stmt in body if isinstance(stmt, nodes.Require) for each in subexpressions(stmt.size))
+    named = {each.name for each in sizes if isinstance(each, nodes.Local)}
+    counts = {stmt.name for stmt in body if isinstance(stmt, nodes.Let) and stmt.name in named and _is_loaded(stmt.value)}
+    return _of_no_more(body, lists_of(lanes), counts, anywhere=True) if counts else ()
+
+
+def _is_loaded(value: Expr) -> bool:
+    """Whether a value is a number of the message."""
+    return isinstance(value, nodes.Load) or (isinstance(value, nodes.Convert) and _is_loaded(value.operand))
+
+
+def lists_of(lanes: Lanes) -> frozenset[int]:
+    """The lists of the message."""
+    return frozenset(straight.lane for (lane, _), straight in lanes.straight.items() if lane == 0 and straight.lane)
+
+
+def _of_no_more(body: Block, lists: frozenset[int], counts: set[str], *, anywhere: bool) -> Block:
+    """A body where counts are 0, ``anywhere`` or before a text is looked at."""
     values, found, is_soon = dict[str, Expr](), list[Stmt](), True
     for each in body:
         stmt = with_values(each, values)
         match stmt:
-            case nodes.Let(name) if name in counts and is_soon:
+            case nodes.Let(name) if name in counts and (anywhere or is_soon):
                 values[name] = NONE
                 found += [stmt, nodes.Expect(nodes.Compare("eq", nodes.Local("i64", name), NONE), NOT_EMPTY)]
             case nodes.Let(name, value) | nodes.Var(name, value) if isinstance(value, nodes.Const):
@@ -44,14 +67,16 @@ def of_empty_lists(body: Block, lanes: Lanes) -> Block:
                 found.append(nodes.Let(name, value))
             case nodes.Reserve(lane, count) | nodes.Advance(lane, count) if lane in lists and count == NONE:
                 pass
-            case nodes.While(condition) if condition == FALSE:
+            case nodes.Expect(nodes.IsText(_, size)) if size == NONE:
+                pass
+            case nodes.While(condition) | nodes.If(condition, _, ()) if condition == FALSE:
                 pass
             case nodes.For(_, count) if count == NONE:
                 pass
             case _:
                 found.append(stmt)
         is_soon = is_soon and not any(isinstance(part, nodes.IsText) for expr in expressions_of(stmt) for part in subexpressions(expr))
-    return tuple(found) if lists else body
+    return tuple(found)
 
 
 def of_no_elements(body: Block) -> Block:
@@ -78,6 +103,14 @@ def lanes_of_empty_lists(lanes: Lanes) -> Lanes:
     """How such statements reach the object: a list has no lane, but is emptied."""
     straight = {at: replace(each, statement=each.empty) if each.empty else each for at, each in lanes.straight.items()}
     return replace(lanes, straight=straight, opened=frozenset())
+
+
+def lanes_of_nothing(lanes: Lanes) -> Lanes:
+    """How statements for messages without elements and texts reach the object: arrays have no first element."""
+    return replace(
+        lanes_of_empty_lists(lanes),
+        given={lane: replace(each, rows="") if each.rows == "nullptr" else each for lane, each in lanes.given.items()},
+    )
 
 
 def with_values(stmt: Stmt, values: Mapping[str, Expr]) -> Stmt:

@@ -29,9 +29,10 @@ RESET = (
 
 @dataclass(frozen=True, slots=True)
 class AtOnce:
-    """The statements that read a message in the header, and those that write one; empty where it cannot be."""
+    """The statements that read a message in the header, or an empty one, and those that write one; empty where it cannot be."""
 
     reads: str = ""
+    reads_empty: str = ""
     puts: str = ""
 
 
@@ -60,7 +61,12 @@ def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
         declarations="\n".join(_declared(unit, there)),
         hidden="".join(
             Template(_declarations()[f"{name}_private"]).substitute(statements=text.rstrip())
-            for name, text in (("read_at_once", there.reads), ("put_at_once", there.puts))
+            for name, text in (
+                ("read_empty_at_once", there.reads_empty),
+                ("read_at_once", there.reads),
+                ("any", there.reads or there.reads_empty),
+                ("put_at_once", there.puts),
+            )
             if text
         ),
         state=_state(unit),
@@ -118,7 +124,13 @@ def _declarations() -> dict[str, str]:
 def _declared(unit: Unit, there: AtOnce) -> list[str]:
     """The codec's functions."""
     known = _declarations()
-    found = [known["read_at_once" if there.reads else "decode"]] if "borrow" in unit.kernels else []
+    is_there = " || ".join(
+        f"{name}(static_cast<const unsigned char *>(bytes), static_cast<std::int64_t>(size), target)"
+        for name, text in (("is_read_empty", there.reads_empty), ("is_read", there.reads))
+        if text
+    )
+    decode = Template(known["read_at_once"]).substitute(reads=is_there) if is_there else known["decode"]
+    found = [decode] if "borrow" in unit.kernels else []
     for wire in wires_of(unit):
         every, last = unit.arrivals[wire]
         found.append(Template(known["wire"]).substitute(wire=wire, every=every, last=last))

@@ -10,7 +10,7 @@ from rosetta_jit.generate.c.functions import Printed, print_kernel
 from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.language import parts_of
 from rosetta_jit.generate.cleared import without_clearing
-from rosetta_jit.generate.cpp.at_once import at_once
+from rosetta_jit.generate.cpp.at_once import at_once, of_no_elements_at_once
 from rosetta_jit.generate.cpp.decoder import decoder_of, open_decoder_of
 from rosetta_jit.generate.cpp.header import AtOnce, header
 from rosetta_jit.generate.cpp.manners import MANNERS, Manners
@@ -35,6 +35,7 @@ def files(unit: Unit) -> dict[str, str]:
     decoder = decoder_of(unit, manners, unit.kernels["borrow"], parts.lanes) if "borrow" in unit.kernels else None
     there = AtOnce(
         "" if decoder is None else at_once(*decoder, open_decoder_of(unit, manners, parts.lanes)),
+        "" if decoder is None else of_no_elements_at_once(*decoder),
         put_at_once(unit, manners, parts.lanes) if "encode" in unit.kernels else "",
     )
     return {

@@ -264,7 +264,7 @@ def _methods(
         texts.append(
             Template(known["decode"]).substitute(
                 into,
-                function="decode_any" if there.reads else "try_decode",
+                function="decode_any" if there.reads or there.reads_empty else "try_decode",
                 begin="\n".join(_told(asks)),
                 bind="\n".join(f"    {FILLED}->{lanes.rows(each.lane)}.fill({each.spot.at});" for each in directs["decode"]),
                 reset=reset,
