@@ -14,10 +14,11 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from rosetta_jit.generate.lisp.bindings import Variable, declaration, named_forms
 from rosetta_jit.generate.lisp.expressions import Scope, access, expression
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.parts import is_large, names_in, parted
-from rosetta_jit.generate.lisp.statements import BOXED, Function, Variable, declaration, named_forms, print_block, registers
+from rosetta_jit.generate.lisp.statements import BOXED, Function, print_block, registers
 from rosetta_jit.generate.lisp.words import LISP_TYPES, Names, hyphenated
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.reachable import leaves, reached, read_names
