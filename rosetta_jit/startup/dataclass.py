@@ -179,8 +179,8 @@ _OF_EACH_CLASS = ("__dict__", "__weakref__")
 
 def _init(fields: Mapping[str, Field], names: dict[str, Any], *, are_plain: bool, has_post_init: bool) -> Callable[..., None]:
     """Objects are made often, and generic code would be slow at it: each class has its own, with ``names`` of its own for what it needs."""
-    if are_plain and 0 < len(fields) <= len(STORES) and not has_post_init:
-        return _named(STORES[len(fields) - 1], ("self", *fields), names, ())
+    if are_plain and len(fields) < len(STORES) and not has_post_init:
+        return _named(STORES[len(fields)], ("self", *fields), names, ())
     kinds: list[tuple[bool, bool]] = []
     defaults: list[Any] = []
     for number, (name, field) in enumerate(fields.items()):
@@ -211,8 +211,8 @@ def _made_anew(store: Callable[[object, object], None], make: Callable[[], objec
 @cache
 def _stores(kinds: tuple[tuple[bool, bool], ...], *, has_post_init: bool) -> CodeType:
     """The code of an `__init__`: for each field, whether it is a parameter, and whether it has a value of its own if it is none."""
-    if 0 < len(kinds) <= len(STORES) and not has_post_init and all(is_parameter for is_parameter, _ in kinds):
-        return STORES[len(kinds) - 1]
+    if len(kinds) < len(STORES) and not has_post_init and all(is_parameter for is_parameter, _ in kinds):
+        return STORES[len(kinds)]
     parameters, body = ["self"], list[str]()
     for number, (is_parameter, has_default) in enumerate(kinds):
         if is_parameter:
