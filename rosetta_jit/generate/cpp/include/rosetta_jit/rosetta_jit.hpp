@@ -729,34 +729,88 @@ inline std::int64_t write_varint_exactly(unsigned char *target, std::uint64_t nu
     return at - target;
 }
 
-/* The same of a number below 1 << 28, where there is room for four bytes. */
-inline std::int64_t write_varint_of_four(unsigned char *target, std::uint64_t number) noexcept
-{
-    const std::int64_t size = varint_size(number);
-    std::uint32_t word = static_cast<std::uint32_t>(number);
-    word += (word & 0x0fffc000u) * 3u;
-    word += word & 0x3f803f80u;
-    word |= static_cast<std::uint32_t>(VARINT_MORE[size]);
-    std::memcpy(target, &word, sizeof word);
-    return size;
-}
-
-/* And of a number below 1 << 14, where there is room for two bytes. */
+/* The same of a number below 1 << 14, where there is room for two bytes. */
 inline std::int64_t write_varint_of_two(unsigned char *target, std::uint64_t number) noexcept
 {
-    const unsigned low = static_cast<unsigned>(number), more = low >= 128u ? 1u : 0u;
-    const std::uint16_t both = static_cast<std::uint16_t>(low + (low & 0x3f80u) + (more << 7));
+    const std::uint64_t more = (number + 0x3f80u) >> 14;
+    const std::uint16_t both = static_cast<std::uint16_t>(number + (number & 0x3f80u) + (more << 7));
     std::memcpy(target, &both, sizeof both);
     return 1 + static_cast<std::int64_t>(more);
 }
 
-/* The bytes that numbers take from `number` on; `value` says which they are. */
-template <class Value> ROSETTA_JIT_INLINE std::int64_t size_of_varints(std::int64_t &number, std::int64_t count, Value value)
+/* Two numbers below 1 << 42 are written where there is room for 16 bytes, and the bytes of several numbers are counted, as many as come in groups. */
+#if defined(__SSE2__)
+/* The exponents, from bit 52 on, of two numbers below 1 << 52 as floats that are four times as large: 1025 and the number of the highest bit. */
+ROSETTA_JIT_INLINE pair exponents(pair numbers) noexcept
+{
+    typedef double floats __attribute__((vector_size(16)));
+    constexpr std::uint64_t HUGE_FLOAT = std::uint64_t{1023 + 54} << 52; /* 1 << 54, whose fraction counts fours */
+    const floats sums = reinterpret_cast<floats>(numbers | pair{HUGE_FLOAT | 1, HUGE_FLOAT | 1});
+    return reinterpret_cast<pair>(sums - floats{0x1p54, 0x1p54});
+}
+
+ROSETTA_JIT_INLINE std::int64_t write_two_varints(unsigned char *target, std::uint64_t first, std::uint64_t second) noexcept
+{
+    constexpr std::uint64_t LOW = 0x3fff, MIDDLE = LOW << 16, HIGH = LOW << 32, UPPER = 0x3f803f803f80u;
+    const pair numbers = {first, second};
+    const pair halves = (numbers & pair{LOW, LOW}) | ((numbers << 2) & pair{MIDDLE, MIDDLE}) | ((numbers << 4) & pair{HIGH, HIGH});
+    const pair apart = halves + (halves & pair{UPPER, UPPER}), sizes = exponents(apart) >> 55; /* an eighth of them: 128 and the number of the last byte */
+    const std::uint64_t one = sizes[0] - 127, other = sizes[1] - 127;
+    const pair words = apart | pair{VARINT_MORE[one], VARINT_MORE[other]};
+    const std::uint64_t written[2] = {words[0], words[1]};
+    std::memcpy(target, &written[0], sizeof written[0]);
+    std::memcpy(target + one, &written[1], sizeof written[1]);
+    return static_cast<std::int64_t>(one + other);
+}
+
+template <class Value> ROSETTA_JIT_INLINE std::int64_t size_of_several(std::int64_t &number, std::int64_t count, Value value)
+{
+    constexpr std::int64_t EXCESS = 143; /* 9/64 of the exponent are so many bytes more than the number has */
+    const __m128i nine_of_64 = _mm_set1_epi16(9 << 10);
+    std::int64_t size = 0;
+    pair sizes = {0, 0};
+    const auto of_two = [&](pair each) { return reinterpret_cast<pair>(_mm_mulhi_epu16(reinterpret_cast<__m128i>(exponents(each) >> 52), nine_of_64)); };
+    const auto longer = [](pair each) { return (each + pair{0x3f80, 0x3f80}) >> 14; }; /* 1 if they take two bytes, not one */
+    for (; count - number >= 8; number += 8) {
+        const pair a = {value(number), value(number + 1)}, b = {value(number + 2), value(number + 3)};
+        const pair c = {value(number + 4), value(number + 5)}, d = {value(number + 6), value(number + 7)};
+        const pair any = (a | b) | (c | d);
+        const std::uint64_t all = any[0] | any[1];
+        if (all < std::uint64_t{1} << 14) {
+            sizes += (longer(a) + longer(b)) + (longer(c) + longer(d));
+            size += 8;
+        } else if (all < std::uint64_t{1} << 52) {
+            sizes += (of_two(a) + of_two(b)) + (of_two(c) + of_two(d));
+            size -= 8 * EXCESS;
+        } else {
+            for (std::int64_t each = number; each < number + 8; each++) {
+                size += varint_size(value(each));
+            }
+        }
+    }
+    return size + static_cast<std::int64_t>(sizes[0] + sizes[1]);
+}
+#else
+inline std::int64_t write_two_varints(unsigned char *target, std::uint64_t first, std::uint64_t second) noexcept
+{
+    const std::int64_t size = write_varint(target, first);
+    return size + write_varint(target + size, second);
+}
+
+template <class Value> ROSETTA_JIT_INLINE std::int64_t size_of_several(std::int64_t &number, std::int64_t count, Value value)
 {
     std::int64_t size = 0;
     for (; count - number >= 4; number += 4) {
         size += varint_size(value(number)) + varint_size(value(number + 1)) + varint_size(value(number + 2)) + varint_size(value(number + 3));
     }
+    return size;
+}
+#endif
+
+/* The bytes that numbers take from `number` on; `value` says which they are. */
+template <class Value> ROSETTA_JIT_INLINE std::int64_t size_of_varints(std::int64_t &number, std::int64_t count, Value value)
+{
+    std::int64_t size = size_of_several(number, count, value);
     for (; number < count; number++) {
         size += varint_size(value(number));
     }
@@ -786,11 +840,9 @@ ROSETTA_JIT_INLINE std::int64_t write_varints(unsigned char *bytes, std::int64_t
             size += write_varint_of_two(target + size, each[1]);
             size += write_varint_of_two(target + size, each[2]);
             size += write_varint_of_two(target + size, each[3]);
-        } else if (all < 1u << 28 && end - at >= 16) {
-            size = write_varint_of_four(target, each[0]);
-            size += write_varint_of_four(target + size, each[1]);
-            size += write_varint_of_four(target + size, each[2]);
-            size += write_varint_of_four(target + size, each[3]);
+        } else if (all < std::uint64_t{1} << 42 && end - at >= 32) {
+            size = write_two_varints(target, each[0], each[1]);
+            size += write_two_varints(target + size, each[2], each[3]);
         } else if (end - at >= 40) {
             size = write_varint(target, each[0]);
             size += write_varint(target + size, each[1]);
