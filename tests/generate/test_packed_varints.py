@@ -208,8 +208,9 @@ int main() {
             for (const std::int64_t count : {7, 8, 16, 19}) {
                 std::int64_t number = 0;
                 const std::int64_t seldom = (count + 2) / 3, often = count - seldom;
-                const std::int64_t found_size = size_of_varints(number, count, [&](std::int64_t which) { return which % 3 == 0 ? other : each; });
-                if (number != count || found_size != often * varint_size(each) + seldom * varint_size(other)) return 7;
+                const auto of_three = [&](std::int64_t which) { return which % 3 == 0 ? other : each; };
+                const std::int64_t size_of_all = size_of_varints(number, count, of_three);
+                if (number != count || size_of_all != often * varint_size(each) + seldom * varint_size(other)) return 7;
             }
         }
         if (each < 1u << 14 && (write_varint_of_two(found, each) != varint_size(each) || std::memcmp(found, wanted, size) != 0)) return 4;

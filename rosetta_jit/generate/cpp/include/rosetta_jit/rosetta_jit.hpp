@@ -1588,7 +1588,7 @@ struct lie_in_order<Container, std::enable_if_t<has_data<const Container>::value
     : std::is_same<std::remove_cv_t<std::remove_reference_t<decltype(*data_of(std::declval<const Container &>()))>>, element_type<Container>> {};
 
 /* The elements of a list, by their index. */
-template <class Container> ROSETTA_JIT_INLINE auto elements_of(const Container &source) noexcept
+template <class Container> ROSETTA_JIT_INLINE auto elements_of(Container &source) noexcept
 {
     if constexpr (lie_in_order<Container>::value) {
         return data_of(source);
@@ -1631,12 +1631,38 @@ constexpr bool may_lie = std::is_standard_layout_v<Class> && std::is_trivially_c
 template <class Class, class Row> constexpr bool may_lie = false;
 #endif
 
-/* Elements as they lie in a message; of an empty list there may be no place. */
-template <class Element> void copy_elements(Element *target, const unsigned char *from, std::int64_t size)
+/* Elements as they lie in a message; of an empty list there may be no place. Those that an iterator reaches never lie so. */
+template <class Elements> void copy_elements(Elements target, const unsigned char *from, std::int64_t size)
 {
-    if (ROSETTA_JIT_LIKELY(size > 0)) {
-        std::memcpy(static_cast<void *>(target), from, static_cast<std::size_t>(size));
+    static_cast<void>(target);
+    static_cast<void>(from);
+    if constexpr (std::is_pointer_v<Elements>) {
+        if (ROSETTA_JIT_LIKELY(size > 0)) {
+            std::memcpy(static_cast<void *>(target), from, static_cast<std::size_t>(size));
+        }
     }
+    static_cast<void>(size);
+}
+
+/* What elements are that lie one behind the other: those that an iterator reaches do not. */
+struct not_in_order {};
+template <class Elements> using in_order = std::conditional_t<std::is_pointer_v<Elements>, std::remove_pointer_t<Elements>, not_in_order>;
+
+/* Numbers of a message that an iterator reaches. */
+template <class Elements>
+std::enable_if_t<!std::is_pointer_v<Elements>> copy_numbers(Elements target, std::int64_t to, const unsigned char *source, std::int64_t from, std::int64_t size)
+{
+    using Number = typename std::iterator_traits<Elements>::value_type;
+    constexpr std::int64_t STEP = sizeof(Number);
+    for (std::int64_t at = 0; at < size; at += STEP) {
+        std::memcpy(&target[static_cast<std::ptrdiff_t>((to + at) / STEP)], source + from + at, STEP);
+    }
+}
+
+template <std::int64_t Size, class Elements>
+std::enable_if_t<!std::is_pointer_v<Elements>> copy_known(Elements target, std::int64_t to, const unsigned char *source, std::int64_t from)
+{
+    copy_numbers(target, to, source, from, Size);
 }
 
 /* To write a message: rows that are made of the elements of a container when they are read. `Rows` says how. */
@@ -1820,17 +1846,20 @@ struct without_values {
     template <class Choice, class = decltype(Choice::SKIP)> constexpr operator Choice() const noexcept { return Choice::SKIP; }
 };
 
-/* Lists whose elements are set where they are as a message is read: they have no rows, and no more elements than rows may be. */
+/* Lists whose elements are set where they are as a message is read: they have no rows, and no more elements than rows may be. A pointer reaches elements that
+   lie one behind the other, an iterator those of other lists, as of std::deque. */
 template <class Container> struct open_lane {
     using Element = element_type<Container>;
-    static_assert(has_data<Container>::value, "the elements of a list must lie one behind the other");
-    Element *rows = nullptr;
+    using Elements = decltype(elements_of(std::declval<Container &>()));
+    static_assert(std::is_base_of_v<std::random_access_iterator_tag, typename std::iterator_traits<Elements>::iterator_category>,
+                  "the elements of a list must be reached by their index");
+    Elements rows = {};
     std::int64_t capacity = 0;
     std::int64_t used = 0;
 
     void reset(std::int64_t most) noexcept
     {
-        rows = nullptr;
+        rows = {};
         capacity = most;
         used = 0;
     }
@@ -1839,13 +1868,14 @@ template <class Container> struct open_lane {
 };
 
 /* Gives a list as many elements as follow in the message. */
-template <class Container> element_type<Container> *opened(Container &target, std::int64_t count)
+template <class Container> auto opened(Container &target, std::int64_t count)
 {
-    static_assert(has_data<Container>::value, "the elements of a list must lie one behind the other");
     if constexpr (std::is_constructible_v<element_type<Container>, without_values>) {
         const std::size_t wanted = static_cast<std::size_t>(count);
         if (wanted > target.size()) {
-            target.reserve(wanted);
+            if constexpr (lie_in_order<Container>::value) {
+                target.reserve(wanted);
+            }
             while (target.size() < wanted) {
                 target.emplace_back(without_values{});
             }
@@ -1854,7 +1884,7 @@ template <class Container> element_type<Container> *opened(Container &target, st
     if (count != count_of(target)) { /* as hardly ever when messages come again and again */
         resize_to(target, count);
     }
-    return data_of(target);
+    return elements_of(target);
 }
 
 /* The same of numbers, of which there may be a fixed count: an array has as many, or a vector gets them, as lcm-gen has both. */
