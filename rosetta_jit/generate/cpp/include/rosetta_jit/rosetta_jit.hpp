@@ -411,8 +411,10 @@ template <class Row> struct lane {
         }
     }
 
-    /* No rows, and its own memory. */
-    void reset()
+    /* No rows: `clear` where no elements of a container have been shown, which `reset` changes for its own memory. */
+    void clear() noexcept { used = 0; }
+
+    void reset() noexcept
     {
         rows = memory.get();
         capacity = room;
